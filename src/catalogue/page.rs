@@ -1,0 +1,69 @@
+//! One entry of a catalogue, described by its own source file.
+
+/// A page: a name and the source file that defines it.
+#[derive(Debug, Clone, Copy)]
+pub struct Page {
+    /// The module's name, as in `residual_ratio`.
+    pub module: &'static str,
+    /// The text of the source file.
+    pub source: &'static str,
+}
+
+/// A named list of pages.
+#[derive(Debug, Clone, Copy)]
+pub struct Catalogue {
+    /// What the pages are, in the plural: `media`, `estimators`.
+    pub name: &'static str,
+    /// The pages, in the order of registration.
+    pub pages: &'static [Page],
+}
+
+/// The page of a module beside the caller.
+#[macro_export]
+macro_rules! page {
+    ($module:ident) => {
+        $crate::catalogue::Page {
+            module: stringify!($module),
+            source: include_str!(concat!(stringify!($module), ".rs")),
+        }
+    };
+}
+
+impl Page {
+    /// The name in case files: `residual-ratio`.
+    #[must_use]
+    pub fn name(&self) -> String {
+        self.module.replace('_', "-")
+    }
+
+    /// The file's own documentation: its leading `//!` lines.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let lines = self.source.lines().take_while(|line| line.starts_with("//!"));
+        let text: Vec<&str> = lines
+            .map(|line| line.trim_start_matches("//!"))
+            .map(|line| line.strip_prefix(' ').unwrap_or(line))
+            .collect();
+        text.join("\n")
+    }
+
+    /// The first sentence of the documentation, on one line.
+    #[must_use]
+    pub fn summary(&self) -> String {
+        let text = self.text();
+        let first = text.split("\n\n").next().unwrap_or_default();
+        first.replace('\n', " ").trim_end_matches('.').to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_page_describes_itself() {
+        let page = page!(settings);
+        assert_eq!(page.name(), "settings");
+        assert!(page.summary().starts_with("Settings as written"));
+    }
+}

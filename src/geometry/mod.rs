@@ -1,0 +1,9 @@
+//! Points, rays and the bodies that bound a medium. Floor 0.
+
+pub mod bounds;
+pub mod point;
+pub mod ray;
+
+pub use bounds::{Aabb, Bounds};
+pub use point::Point;
+pub use ray::Ray;

@@ -1,0 +1,2 @@
+//! Case → plan → run → verdict → record.
+pub mod record;

@@ -1,0 +1,7 @@
+//! Trueflight.
+pub mod catalogue;
+pub mod geometry;
+pub mod harness;
+pub mod media;
+pub mod numeric;
+pub mod rng;

@@ -1,0 +1,168 @@
+//! A field as a case file gives it: along a line, or as a volume with a ray through it.
+
+use std::sync::Arc;
+
+use super::{CATALOGUE, Medium, Profile, Volume};
+use crate::catalogue::{Domain, Settings};
+use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::Span;
+
+/// A field and the stretch of line or ray on which it is asked about.
+pub enum Body {
+    /// `medium.NAME = { … }` on `span = [from, to]`.
+    Line {
+        /// The field's name in the catalogue.
+        name: String,
+        /// The field as a function of the distance.
+        profile: Arc<Profile>,
+        /// Where it is asked about.
+        span: Span,
+    },
+    /// `volume.NAME = { … }` crossed by `ray = { … }`.
+    Volume {
+        /// The field's name in the catalogue.
+        name: String,
+        /// The field as a function of the point.
+        volume: Arc<Volume>,
+        /// The ray.
+        ray: Ray,
+    },
+}
+
+impl Body {
+    /// Reads `medium` and `span`, or `volume` and `ray`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        match (settings.has("medium"), settings.has("volume")) {
+            (true, false) => {
+                let field = read_line(settings);
+                let span = read_span(settings);
+                let (name, profile) = field?;
+                Some(Self::Line { name, profile: Arc::new(profile), span: span? })
+            }
+            (false, true) => {
+                let field = read_volume(settings);
+                let ray = settings.table("ray").and_then(|ray| read_ray(&ray));
+                let (name, volume) = field?;
+                Some(Self::Volume { name, volume: Arc::new(volume), ray: ray? })
+            }
+            (both, _) => {
+                let found = if both { "both `medium` and `volume`" } else { "no field is given" };
+                let help = "give `medium.NAME = { … }` with `span = [from, to]`, or \
+                            `volume.NAME = { … }` with `ray = { origin, direction, length }`";
+                settings.fault_at(settings.span.clone(), "", found, help);
+                None
+            }
+        }
+    }
+
+    /// Reads another field for the same line or ray: a control variate.
+    pub fn read_beside(&self, settings: &Settings) -> Option<Self> {
+        match self {
+            Self::Line { span, .. } => {
+                let (name, profile) = read_line(settings)?;
+                Some(Self::Line { name, profile: Arc::new(profile), span: *span })
+            }
+            Self::Volume { ray, .. } => {
+                let (name, volume) = read_volume(settings)?;
+                Some(Self::Volume { name, volume: Arc::new(volume), ray: *ray })
+            }
+        }
+    }
+
+    /// The field's name in the catalogue.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Line { name, .. } | Self::Volume { name, .. } => name,
+        }
+    }
+
+    /// The field along its line or ray, clipped to its bounds.
+    #[must_use]
+    pub fn medium(&self) -> Medium {
+        match self {
+            Self::Line { profile, span, .. } => Medium::new(profile.clone(), *span, *span),
+            Self::Volume { volume, ray, .. } => {
+                let support = volume.bounds().clip(ray);
+                let profile = Arc::new(volume.along(ray, support));
+                Medium::new(profile, ray.span(), support)
+            }
+        }
+    }
+}
+
+fn names() -> Vec<String> {
+    CATALOGUE.pages.iter().map(crate::catalogue::Page::name).collect()
+}
+
+fn read_line(settings: &Settings) -> Option<(String, Profile)> {
+    let (index, field) = settings.table("medium")?.choice(&names())?;
+    let profile = Profile::read(index, &field);
+    field.close();
+    Some((names().swap_remove(index), profile?))
+}
+
+fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
+    let (index, field) = settings.table("volume")?.choice(&names())?;
+    let volume = Volume::read(index, &field);
+    field.close();
+    Some((names().swap_remove(index), volume?))
+}
+
+fn read_span(settings: &Settings) -> Option<Span> {
+    let ends = settings.numbers("span", Domain::Finite, 2)?;
+    let &[from, to] = ends.as_slice() else {
+        settings.fault("span", "`span` has more than two ends", "it takes [from, to]");
+        return None;
+    };
+    if from > to {
+        settings.fault(
+            "span",
+            format!("`span` ends at {to}, before it begins at {from}"),
+            "it takes [from, to] with from ≤ to",
+        );
+        return None;
+    }
+    Some(Span::new(from, to))
+}
+
+fn read_ray(settings: &Settings) -> Option<Ray> {
+    let origin = settings.triple("origin");
+    let direction = settings.triple("direction");
+    let length = settings.number("length", Domain::NonNegative);
+    settings.close();
+    let ray = Ray::new(Point(origin?), Point(direction?), length?);
+    if ray.is_none() {
+        settings.fault("direction", "`direction` is the zero vector", "it takes any other vector");
+    }
+    ray
+}
+
+/// Reads `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }` of a volume that has
+/// no bounds of its own; without the key the volume fills all of space.
+pub(super) fn read_bounds(settings: &Settings) -> Option<Bounds> {
+    if !settings.has("bounds") {
+        return Some(Bounds::Everywhere);
+    }
+    let (index, bounds) = settings.table("bounds")?.choice(&["sphere".into(), "box".into()])?;
+    let read = if index == 0 {
+        let centre = bounds.triple("centre");
+        let radius = bounds.number("radius", Domain::Positive);
+        centre.zip(radius).map(|(c, radius)| Bounds::Sphere { centre: Point(c), radius })
+    } else {
+        read_box(&bounds).map(Bounds::Box)
+    };
+    bounds.close();
+    read
+}
+
+/// Reads `low` and `high`, the corners of a box.
+pub(super) fn read_box(settings: &Settings) -> Option<Aabb> {
+    let (low, high) = (settings.triple("low"), settings.triple("high"));
+    let (low, high) = (low?, high?);
+    if (0..3).any(|axis| low[axis] >= high[axis]) {
+        settings.fault("high", "the box has no volume", "each entry of `high` is above `low`");
+        return None;
+    }
+    Some(Aabb { low: Point(low), high: Point(high) })
+}

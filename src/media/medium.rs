@@ -1,0 +1,133 @@
+//! A field along one ray: what an experiment is about.
+
+use std::sync::Arc;
+
+use super::{FreeFlight, Profile, Visitor};
+use crate::numeric::{Known, Span};
+
+/// A field along one ray, zero outside its support.
+///
+/// The support is where the ray is inside the field's bounds; estimators walk there and nowhere
+/// else, so that empty space costs nothing.
+#[derive(Clone)]
+pub struct Medium {
+    profile: Arc<Profile>,
+    span: Span,
+    support: Span,
+}
+
+impl Medium {
+    /// The field on `span`, zero outside `support`.
+    #[must_use]
+    pub fn new(profile: Arc<Profile>, span: Span, support: Span) -> Self {
+        let support = support.intersect(span);
+        Self { profile, span, support }
+    }
+
+    /// The whole ray.
+    #[must_use]
+    pub fn span(&self) -> Span {
+        self.span
+    }
+
+    /// The part of the ray where the field may be non-zero.
+    #[must_use]
+    pub fn support(&self) -> Span {
+        self.support
+    }
+
+    /// The profile, for kernels that are compiled once per type.
+    #[must_use]
+    pub fn profile(&self) -> &Profile {
+        &self.profile
+    }
+
+    /// `σ_t(t)`, zero outside the support. Not for loops: it finds the type anew each time.
+    #[must_use]
+    pub fn extinction(&self, t: f64) -> f64 {
+        if t < self.support.from || t > self.support.to {
+            return 0.0;
+        }
+        self.profile.visit(Lookup(t))
+    }
+
+    /// `σ_t` at many distances inside the support.
+    #[must_use]
+    pub fn extinctions(&self, at: &[f64]) -> Vec<f64> {
+        self.profile.visit(Lookups(at))
+    }
+
+    /// `τ` over the part of `span` inside the support.
+    #[must_use]
+    pub fn optical_depth(&self, span: Span) -> Known {
+        let inside = span.intersect(self.support);
+        if inside.is_empty() { Known::new(0.0, 0.0) } else { self.profile.visit(Depth(inside)) }
+    }
+
+    /// The distance where the optical depth from the beginning of the support reaches `depth`;
+    /// `None` where the ray leaves first.
+    #[must_use]
+    pub fn free_flight(&self, depth: f64) -> Option<f64> {
+        self.profile.visit(Flight(self.support, depth))
+    }
+
+    /// The kinks of the field inside the support, in any order.
+    #[must_use]
+    pub fn breaks(&self) -> Vec<f64> {
+        self.profile.visit(Breaks(self.support))
+    }
+
+    /// See [`super::OpticalDepth::panel_nodes`].
+    #[must_use]
+    pub fn panel_nodes(&self) -> Option<usize> {
+        self.profile.visit(PanelNodes)
+    }
+}
+
+struct Lookup(f64);
+impl Visitor for Lookup {
+    type Output = f64;
+    fn visit<F: FreeFlight>(self, field: &F) -> f64 {
+        field.extinction(self.0)
+    }
+}
+
+struct Lookups<'a>(&'a [f64]);
+impl Visitor for Lookups<'_> {
+    type Output = Vec<f64>;
+    fn visit<F: FreeFlight>(self, field: &F) -> Vec<f64> {
+        self.0.iter().map(|&t| field.extinction(t)).collect()
+    }
+}
+
+struct Depth(Span);
+impl Visitor for Depth {
+    type Output = Known;
+    fn visit<F: FreeFlight>(self, field: &F) -> Known {
+        field.optical_depth(self.0)
+    }
+}
+
+struct Flight(Span, f64);
+impl Visitor for Flight {
+    type Output = Option<f64>;
+    fn visit<F: FreeFlight>(self, field: &F) -> Option<f64> {
+        if self.0.is_empty() { None } else { field.free_flight(self.0, self.1) }
+    }
+}
+
+struct Breaks(Span);
+impl Visitor for Breaks {
+    type Output = Vec<f64>;
+    fn visit<F: FreeFlight>(self, field: &F) -> Vec<f64> {
+        field.breaks(self.0)
+    }
+}
+
+struct PanelNodes;
+impl Visitor for PanelNodes {
+    type Output = Option<usize>;
+    fn visit<F: FreeFlight>(self, field: &F) -> Option<usize> {
+        field.panel_nodes()
+    }
+}

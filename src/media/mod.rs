@@ -1,0 +1,180 @@
+//! Extinction fields, one page each, as one ray sees them and as volumes that a ray is clipped to.
+//!
+//! Floor 1. A field promises as much as it can, one trait per capability, each asking for the one
+//! before it: [`Extinction`] can be looked up, [`OpticalDepth`] can also be integrated exactly,
+//! [`FreeFlight`] can also be inverted. A medium and a control variate need the second, a sampling
+//! extinction needs the third; which role a field plays is its place in a struct.
+//!
+//! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
+
+pub mod body;
+pub mod medium;
+pub mod piecewise;
+
+use crate::catalogue::{Catalogue, Settings};
+use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::{Known, Lane, Span, roots};
+
+pub use body::Body;
+pub use medium::Medium;
+pub use piecewise::{Cursor, Piecewise};
+
+/// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
+pub trait Extinction: Send + Sync {
+    /// The extinction at `t`, written once for every lane type.
+    fn extinction<L: Lane>(&self, t: L) -> L;
+}
+
+/// A field whose integral is known.
+pub trait OpticalDepth: Extinction {
+    /// `τ(a, b) = ∫ₐᵇ σ_t(t) dt` with a bound on its own error.
+    fn optical_depth(&self, span: Span) -> Known;
+
+    /// The distances inside `span` where the field or one of its derivatives jumps, or that frame
+    /// a feature which quadrature would otherwise step over. In any order.
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        let _ = span;
+        Vec::new()
+    }
+
+    /// How many Gauss nodes between two breaks integrate `σ_t` and its square to rounding; `None`
+    /// where no fixed number does and panels are halved until they agree.
+    fn panel_nodes(&self) -> Option<usize> {
+        None
+    }
+}
+
+/// A field whose integral can be inverted.
+pub trait FreeFlight: OpticalDepth {
+    /// The distance `s` with `τ(span.from, s) = depth`; `None` where the ray leaves the span first.
+    ///
+    /// The default brackets the root of the exact optical depth; pages with a closed form
+    /// override it.
+    fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
+        let depth_to = |s: f64| self.optical_depth(Span::new(span.from, s)).value;
+        if depth_to(span.to) <= depth {
+            return None;
+        }
+        Some(roots::root(span.from, span.to, |s| depth_to(s) - depth))
+    }
+}
+
+/// A page of the catalogue: how a field is read from a case file, in 1-D and in 3-D.
+pub trait Field: Sized + Send + Sync + 'static {
+    /// What one ray sees.
+    type Profile: FreeFlight + 'static;
+
+    /// Reads the 1-D form, a function of the distance `t`, from `medium.NAME = { … }`.
+    ///
+    /// The default is for fields that exist in 3-D only.
+    fn line(settings: &Settings) -> Option<Self::Profile> {
+        let help = "write `volume` instead of `medium`, and give a `ray`";
+        settings.fault_at(settings.span.clone(), "", "this field has no 1-D form", help);
+        None
+    }
+
+    /// Reads the 3-D form from `volume.NAME = { … }`.
+    fn volume(settings: &Settings) -> Option<Self>;
+
+    /// Where the volume may be non-zero; a ray is clipped to it.
+    fn bounds(&self) -> Bounds;
+
+    /// `σ_t(p)` for a point within the bounds.
+    fn extinction_at(&self, p: Point) -> f64;
+
+    /// A number that `σ_t` exceeds nowhere in the box.
+    fn majorant(&self, within: &Aabb) -> f64;
+
+    /// What the ray sees on the stretch `inside`, which lies within the bounds.
+    fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
+}
+
+/// A computation that is compiled once for each profile type.
+pub trait Visitor {
+    /// What it answers.
+    type Output;
+
+    /// The computation.
+    fn visit<F: FreeFlight>(self, field: &F) -> Self::Output;
+}
+
+/// Lists the pages: from one line each come the module, the variants of [`Profile`] and
+/// [`Volume`], the name in case files and the row in `trueflight list`.
+macro_rules! media {
+    ($($module:ident :: $Field:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Every page, in the order of registration.
+        pub const CATALOGUE: Catalogue =
+            Catalogue { name: "media", pages: &[$($crate::page!($module)),*] };
+
+        /// What one ray sees of some field of the catalogue.
+        #[allow(clippy::large_enum_variant)] // one per experiment
+        #[allow(missing_docs)] // each variant is its page
+        pub enum Profile { $($Field(<$module::$Field as Field>::Profile)),* }
+
+        impl Profile {
+            /// Runs a computation on the concrete type: names become types here, once.
+            pub fn visit<V: Visitor>(&self, visitor: V) -> V::Output {
+                match self { $(Self::$Field(field) => visitor.visit(field)),* }
+            }
+
+            /// Reads `NAME = { … }` in its 1-D form.
+            fn read(index: usize, settings: &Settings) -> Option<Self> {
+                let readers = [$(|s: &Settings| {
+                    <$module::$Field as Field>::line(s).map(Self::$Field)
+                }),*];
+                readers[index](settings)
+            }
+        }
+
+        /// Some field of the catalogue in its 3-D form.
+        #[allow(missing_docs)] // each variant is its page
+        pub enum Volume { $($Field($module::$Field)),* }
+
+        impl Volume {
+            /// Where the volume may be non-zero.
+            #[must_use]
+            pub fn bounds(&self) -> Bounds {
+                match self { $(Self::$Field(field) => field.bounds()),* }
+            }
+
+            /// `σ_t(p)`, zero outside the bounds.
+            #[must_use]
+            pub fn extinction_at(&self, p: Point) -> f64 {
+                if !self.bounds().contains(p) {
+                    return 0.0;
+                }
+                match self { $(Self::$Field(field) => field.extinction_at(p)),* }
+            }
+
+            /// A number that `σ_t` exceeds nowhere in the box.
+            #[must_use]
+            pub fn majorant(&self, within: &Aabb) -> f64 {
+                match self { $(Self::$Field(field) => field.majorant(within)),* }
+            }
+
+            /// What the ray sees on the stretch `inside`.
+            #[must_use]
+            pub fn along(&self, ray: &Ray, inside: Span) -> Profile {
+                match self {
+                    $(Self::$Field(field) => Profile::$Field(field.along(ray, inside))),*
+                }
+            }
+
+            /// Reads `NAME = { … }` in its 3-D form.
+            fn read(index: usize, settings: &Settings) -> Option<Self> {
+                let readers = [$(|s: &Settings| {
+                    <$module::$Field as Field>::volume(s).map(Self::$Field)
+                }),*];
+                readers[index](settings)
+            }
+        }
+    };
+}
+
+media! {
+    constant::Constant,
+    piecewise_constant::PiecewiseConstant,
+    piecewise_linear::PiecewiseLinear,
+}

@@ -1,0 +1,283 @@
+//! Straight pieces: the shape of every sampling extinction and of most controls.
+
+use super::{Extinction, FreeFlight, OpticalDepth};
+use crate::numeric::{Known, Lane, Span, sum::Sum};
+
+/// A field made of straight pieces, which need not meet at the knots.
+///
+/// ```text
+/// σ(t) = leftᵢ + slopeᵢ (t − knotᵢ),   knotᵢ ≤ t < knotᵢ₊₁
+/// ```
+///
+/// Outside the knots the first and the last value go on. Integral and inverse are closed forms.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piecewise {
+    knots: Vec<f64>,
+    left: Vec<f64>,
+    slope: Vec<f64>,
+    depth: Vec<f64>,
+}
+
+/// Where a walk through a [`Piecewise`] field stands.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cursor {
+    /// The distance reached.
+    pub t: f64,
+    piece: usize,
+}
+
+impl Piecewise {
+    /// One value on the whole span.
+    #[must_use]
+    pub fn constant(value: f64, span: Span) -> Self {
+        Self::steps(&[span.from, span.to], &[value])
+    }
+
+    /// `values[i]` between `breaks[i]` and `breaks[i + 1]`; breaks ascend.
+    #[must_use]
+    pub fn steps(breaks: &[f64], values: &[f64]) -> Self {
+        Self::pieces(breaks, values.to_vec(), vec![0.0; values.len()])
+    }
+
+    /// Straight lines through the points `(knots[i], values[i])`; knots ascend.
+    #[must_use]
+    pub fn lines(knots: &[f64], values: &[f64]) -> Self {
+        let pieces = knots.windows(2).zip(values.windows(2));
+        let slope = pieces.map(|(k, v)| (v[1] - v[0]) / (k[1] - k[0])).collect();
+        Self::pieces(knots, values[..values.len() - 1].to_vec(), slope)
+    }
+
+    /// Straight lines between the given `(first, last)` values of each piece; knots ascend.
+    #[must_use]
+    pub fn joined(knots: &[f64], ends: impl Iterator<Item = (f64, f64)>) -> Self {
+        let lines = knots.windows(2).zip(ends);
+        let (left, slope) =
+            lines.map(|(k, (first, last))| (first, (last - first) / (k[1] - k[0]))).unzip();
+        Self::pieces(knots, left, slope)
+    }
+
+    fn pieces(knots: &[f64], left: Vec<f64>, slope: Vec<f64>) -> Self {
+        let mut sum = Sum::default();
+        let mut depth = vec![0.0];
+        for (i, ends) in knots.windows(2).enumerate() {
+            let width = ends[1] - ends[0];
+            sum.add(width * (left[i] + 0.5 * slope[i] * width));
+            depth.push(sum.value());
+        }
+        Self { knots: knots.to_vec(), left, slope, depth }
+    }
+
+    /// The same field restricted to, or continued over, a span.
+    #[must_use]
+    pub fn on(&self, span: Span) -> Self {
+        if span.is_empty() {
+            return Self::constant(self.value(span.from), span);
+        }
+        let inner = self.knots.iter().copied().filter(|&k| span.contains_inside(k));
+        let knots: Vec<f64> =
+            std::iter::once(span.from).chain(inner).chain(std::iter::once(span.to)).collect();
+        let pieces: Vec<(f64, f64)> = knots
+            .windows(2)
+            .map(|ends| {
+                let (outside, piece) = self.piece_at(0.5 * (ends[0] + ends[1]));
+                match outside {
+                    Some(value) => (value, 0.0),
+                    None => (self.line(piece, ends[0]), self.slope[piece]),
+                }
+            })
+            .collect();
+        let (left, slope) = pieces.into_iter().unzip();
+        Self::pieces(&knots, left, slope)
+    }
+
+    /// The same field times a factor.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let left = self.left.iter().map(|x| x * factor).collect();
+        let slope = self.slope.iter().map(|x| x * factor).collect();
+        Self::pieces(&self.knots, left, slope)
+    }
+
+    /// The knots, ascending.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The value, if there is only one.
+    #[must_use]
+    pub fn single_value(&self) -> Option<f64> {
+        (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
+    }
+
+    /// Both one-sided values at every knot, for a search of extremes.
+    pub fn corner_values(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.left.len()).flat_map(|i| [self.left[i], self.line(i, self.knots[i + 1])])
+    }
+
+    /// The field at `t`.
+    #[must_use]
+    #[inline]
+    pub fn value(&self, t: f64) -> f64 {
+        if let [value] = self.left[..]
+            && self.slope[0] == 0.0
+        {
+            return value;
+        }
+        match self.piece_at(t) {
+            (Some(value), _) => value,
+            (None, piece) => self.line(piece, t),
+        }
+    }
+
+    /// The piece that holds `t`, and the value where `t` lies outside the knots.
+    #[inline]
+    fn piece_at(&self, t: f64) -> (Option<f64>, usize) {
+        let last = self.left.len() - 1;
+        if t < self.knots[0] {
+            return (Some(self.left[0]), 0);
+        }
+        if t >= self.knots[last + 1] {
+            return (Some(self.line(last, self.knots[last + 1])), last);
+        }
+        let after = self.knots.partition_point(|&knot| knot <= t);
+        (None, (after - 1).min(last))
+    }
+
+    #[inline]
+    fn line(&self, piece: usize, t: f64) -> f64 {
+        self.left[piece] + self.slope[piece] * (t - self.knots[piece])
+    }
+
+    /// `∫` from the first knot to `t`.
+    fn depth_to(&self, t: f64) -> f64 {
+        match self.piece_at(t) {
+            (Some(value), 0) if t < self.knots[0] => value * (t - self.knots[0]),
+            (Some(value), last) => self.depth[last + 1] + value * (t - self.knots[last + 1]),
+            (None, piece) => {
+                let width = t - self.knots[piece];
+                self.depth[piece] + width * (self.left[piece] + 0.5 * self.slope[piece] * width)
+            }
+        }
+    }
+
+    /// A walk from the first knot.
+    #[must_use]
+    #[inline]
+    pub fn begin(&self) -> Cursor {
+        Cursor { t: self.knots[0], piece: 0 }
+    }
+
+    /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
+    /// the last knot. Non-negative fields only.
+    ///
+    /// ```text
+    /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
+    /// ```
+    #[inline]
+    pub fn fly(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+        if let [value] = self.left[..]
+            && self.slope[0] == 0.0
+        {
+            cursor.t += depth / value;
+            return (cursor.t < self.knots[1]).then_some(value);
+        }
+        while cursor.piece < self.left.len() {
+            let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
+            let here = self.line(cursor.piece, cursor.t);
+            let left = (end - cursor.t) * 0.5 * (here + self.line(cursor.piece, end));
+            if depth < left {
+                let root = (here * here + 2.0 * slope * depth).max(0.0).sqrt();
+                cursor.t += 2.0 * depth / (here + root);
+                return Some(self.line(cursor.piece, cursor.t));
+            }
+            depth -= left;
+            cursor.t = end;
+            cursor.piece += 1;
+        }
+        None
+    }
+}
+
+impl Extinction for Piecewise {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        t.map(|t| self.value(t))
+    }
+}
+
+impl OpticalDepth for Piecewise {
+    fn optical_depth(&self, span: Span) -> Known {
+        let (from, to) = (self.depth_to(span.from), self.depth_to(span.to));
+        Known::new(to - from, 2.0 * f64::EPSILON * (from.abs() + to.abs()))
+    }
+
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        self.knots.iter().copied().filter(|&t| span.contains_inside(t)).collect()
+    }
+
+    fn panel_nodes(&self) -> Option<usize> {
+        Some(3)
+    }
+}
+
+impl FreeFlight for Piecewise {
+    fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
+        let field = self.on(span);
+        let mut cursor = field.begin();
+        field.fly(&mut cursor, depth).map(|_| cursor.t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lines() -> Piecewise {
+        Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9])
+    }
+
+    #[test]
+    fn depth_of_lines_is_a_hand_sum() {
+        // theory: ∫ from 0.3 to 3.7 of the line through (0, .2), (1, 1.5), (2.5, .4), (4, .9)
+        assert!((lines().optical_depth(Span::new(0.3, 3.7)).value - 2.8765).abs() < 1e-15);
+    }
+
+    #[test]
+    fn steps_jump_at_their_breaks() {
+        let steps = Piecewise::steps(&[0.0, 1.0, 2.0], &[1.0, 3.0]);
+        assert_eq!((steps.value(0.999), steps.value(1.0)), (1.0, 3.0));
+        assert_eq!((steps.value(-1.0), steps.value(9.0)), (1.0, 3.0));
+    }
+
+    #[test]
+    fn flight_inverts_depth_over_pieces() {
+        let field = lines();
+        for step in 1..40 {
+            let depth = 0.1 * f64::from(step);
+            let flight = field.free_flight(Span::new(0.3, 4.0), depth);
+            match flight {
+                Some(s) => {
+                    let back = field.optical_depth(Span::new(0.3, s)).value;
+                    assert!((back - depth).abs() < 1e-14);
+                }
+                None => assert!(field.optical_depth(Span::new(0.3, 4.0)).value <= depth),
+            }
+        }
+    }
+
+    #[test]
+    fn flight_jumps_over_an_empty_piece() {
+        let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]);
+        let s = steps.free_flight(Span::new(0.0, 3.0), 1.5).expect("inside");
+        assert!((s - 2.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_restricted_field_keeps_its_values() {
+        let part = lines().on(Span::new(0.5, 3.0));
+        for t in [0.5, 0.9, 1.0, 2.0, 2.9] {
+            assert!((part.value(t) - lines().value(t)).abs() < 1e-15);
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! Layers of homogeneous extinction.
+//!
+//! ```text
+//! σ_t(x) = valuesᵢ,   breaksᵢ ≤ x < breaksᵢ₊₁
+//! ```
+//!
+//! In 1-D `x` is the distance `t`; in 3-D it is the height `p·axis` of a plane-parallel medium.
+//! Outside the breaks the first and the last value go on.
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `breaks` | ascending, n + 1 of them | length | required |
+//! | `values` | σ_t ≥ 0 of each layer, n of them | 1/length | required |
+//! | `axis` | 3-D only: the direction of `x`; it is normalised | | `[0, 0, 1]` |
+//! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
+//!
+//! Optical depth and free flight are closed forms.
+
+use super::piecewise_linear::Layers;
+use super::{Field, Piecewise};
+use crate::catalogue::{Domain, Settings};
+use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::Span;
+
+/// A plane-parallel volume of homogeneous layers.
+pub struct PiecewiseConstant(Layers);
+
+/// Reads `breaks` and `values`, one value between every two breaks.
+pub fn read_steps(settings: &Settings) -> Option<Piecewise> {
+    let breaks = settings.numbers("breaks", Domain::Finite, 2);
+    let values = settings.numbers("values", Domain::NonNegative, 1);
+    let (breaks, values) = (breaks?, values?);
+    if breaks.windows(2).any(|ends| ends[0] >= ends[1]) {
+        settings.fault("breaks", "`breaks` do not ascend", "each break is above the one before");
+        return None;
+    }
+    if values.len() + 1 != breaks.len() {
+        let message = format!("{} values stand between {} breaks", values.len(), breaks.len());
+        settings.fault("values", message, "there is one value between every two breaks");
+        return None;
+    }
+    Some(Piecewise::steps(&breaks, &values))
+}
+
+impl Field for PiecewiseConstant {
+    type Profile = Piecewise;
+
+    fn line(settings: &Settings) -> Option<Piecewise> {
+        read_steps(settings)
+    }
+
+    fn volume(settings: &Settings) -> Option<Self> {
+        Layers::read(settings, read_steps).map(Self)
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.0.bounds
+    }
+
+    fn extinction_at(&self, p: Point) -> f64 {
+        self.0.extinction_at(p)
+    }
+
+    fn majorant(&self, within: &Aabb) -> f64 {
+        self.0.majorant(within)
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
+        self.0.along(ray, inside)
+    }
+}

@@ -1,0 +1,164 @@
+//! Layers of linearly varying extinction.
+//!
+//! ```text
+//! σ_t(x) = the straight line through (knotsᵢ, valuesᵢ) and (knotsᵢ₊₁, valuesᵢ₊₁)
+//! ```
+//!
+//! In 1-D `x` is the distance `t`; in 3-D it is the height `p·axis` of a plane-parallel medium.
+//! Outside the knots the first and the last value go on.
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `knots` | ascending, two or more | length | required |
+//! | `values` | σ_t ≥ 0 at each knot | 1/length | required |
+//! | `axis` | 3-D only: the direction of `x`; it is normalised | | `[0, 0, 1]` |
+//! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
+//!
+//! Optical depth and free flight are closed forms.
+
+use super::{Field, Piecewise, body};
+use crate::catalogue::{Domain, Settings};
+use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::Span;
+
+/// A plane-parallel volume of linearly varying layers.
+pub struct PiecewiseLinear(Layers);
+
+/// Reads `knots` and `values`, one value at every knot.
+pub fn read_lines(settings: &Settings) -> Option<Piecewise> {
+    let knots = settings.numbers("knots", Domain::Finite, 2);
+    let values = settings.numbers("values", Domain::NonNegative, 2);
+    let (knots, values) = (knots?, values?);
+    if knots.windows(2).any(|ends| ends[0] >= ends[1]) {
+        settings.fault("knots", "`knots` do not ascend", "each knot is above the one before");
+        return None;
+    }
+    if values.len() != knots.len() {
+        let message = format!("{} values stand at {} knots", values.len(), knots.len());
+        settings.fault("values", message, "there is one value at every knot");
+        return None;
+    }
+    Some(Piecewise::lines(&knots, &values))
+}
+
+impl Field for PiecewiseLinear {
+    type Profile = Piecewise;
+
+    fn line(settings: &Settings) -> Option<Piecewise> {
+        read_lines(settings)
+    }
+
+    fn volume(settings: &Settings) -> Option<Self> {
+        Layers::read(settings, read_lines).map(Self)
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.0.bounds
+    }
+
+    fn extinction_at(&self, p: Point) -> f64 {
+        self.0.extinction_at(p)
+    }
+
+    fn majorant(&self, within: &Aabb) -> f64 {
+        self.0.majorant(within)
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
+        self.0.along(ray, inside)
+    }
+}
+
+/// A plane-parallel volume: straight pieces along an axis.
+pub struct Layers {
+    pieces: Piecewise,
+    axis: Point,
+    /// Where the volume may be non-zero.
+    pub bounds: Bounds,
+}
+
+impl Layers {
+    /// Reads the pieces by the given function, then `axis` and `bounds`.
+    pub fn read(settings: &Settings, pieces: fn(&Settings) -> Option<Piecewise>) -> Option<Self> {
+        let pieces = pieces(settings);
+        let axis = settings.triple_or("axis", [0.0, 0.0, 1.0]);
+        let bounds = body::read_bounds(settings);
+        let Some(axis) = Point(axis?).normalised() else {
+            settings.fault("axis", "`axis` is the zero vector", "it takes any other vector");
+            return None;
+        };
+        Some(Self { pieces: pieces?, axis, bounds: bounds? })
+    }
+
+    /// `σ_t` at the height of `p`.
+    #[must_use]
+    pub fn extinction_at(&self, p: Point) -> f64 {
+        self.pieces.value(p.dot(self.axis))
+    }
+
+    /// The largest value at any height that the box reaches.
+    #[must_use]
+    pub fn majorant(&self, within: &Aabb) -> f64 {
+        let reach = (0..3).map(|i| {
+            let (a, b) = (within.low.0[i] * self.axis.0[i], within.high.0[i] * self.axis.0[i]);
+            Span::new(a.min(b), a.max(b))
+        });
+        let span = reach.fold(Span::empty(0.0), |s, r| Span::new(s.from + r.from, s.to + r.to));
+        self.pieces.on(span).corner_values().fold(0.0, f64::max)
+    }
+
+    /// The pieces as the ray crosses them: heights `p·axis` become distances.
+    #[must_use]
+    pub fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
+        let (height, climb) = (ray.origin.dot(self.axis), ray.direction.dot(self.axis));
+        // A ray that climbs by less than rounding over its length stays in its layer.
+        if (climb * ray.length).abs() <= f64::EPSILON * height.abs().max(f64::MIN_POSITIVE) {
+            return Piecewise::constant(self.pieces.value(height), inside);
+        }
+        let mut crossings: Vec<f64> =
+            self.pieces.knots().iter().map(|knot| (knot - height) / climb).collect();
+        crossings.retain(|&t| inside.contains_inside(t));
+        crossings.extend([inside.from, inside.to]);
+        crossings.sort_by(f64::total_cmp);
+        crossings.dedup();
+        if crossings.len() < 2 {
+            return Piecewise::constant(self.pieces.value(height + climb * inside.from), inside);
+        }
+        // Two lookups inside each piece fix its line without touching the jumps at its ends.
+        let ends = crossings.windows(2).map(|piece| {
+            let at = |u: f64| {
+                let t = piece[0] + u * (piece[1] - piece[0]);
+                self.pieces.value(height + climb * t)
+            };
+            let (a, b) = (at(0.25), at(0.75));
+            (1.5 * a - 0.5 * b, 1.5 * b - 0.5 * a)
+        });
+        Piecewise::joined(&crossings, ends)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::media::OpticalDepth;
+
+    #[test]
+    fn an_oblique_ray_sees_the_layers_stretched() {
+        let pieces = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
+        let depth = pieces.optical_depth(Span::new(0.3, 3.7)).value;
+        let layers = Layers { pieces, axis: Point([0.0, 0.0, 1.0]), bounds: Bounds::Everywhere };
+        let (origin, direction) = (Point([5.0, 1.0, 3.7]), Point([0.6, 0.0, -0.8]));
+        let ray = Ray::new(origin, direction, 3.4 / 0.8).expect("a direction");
+        let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
+        assert!((seen - depth / 0.8).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_level_ray_stays_in_its_layer() {
+        let pieces = Piecewise::steps(&[0.0, 1.0, 2.0], &[0.5, 3.0]);
+        let layers = Layers { pieces, axis: Point([0.0, 0.0, 1.0]), bounds: Bounds::Everywhere };
+        let ray = Ray::new(Point([0.0, 0.0, 0.5]), Point([1.0, 0.0, 0.0]), 2.0).expect("direction");
+        let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
+        assert!((seen - 1.0).abs() < 1e-15);
+    }
+}

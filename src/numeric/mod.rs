@@ -1,0 +1,13 @@
+//! Numbers: lanes and their elementary functions, exact sums, quadrature, roots.
+//!
+//! Floor 0. Nothing here has heard of light, media or statistics.
+
+pub mod elementary;
+pub mod known;
+pub mod lane;
+pub mod quadrature;
+pub mod roots;
+pub mod sum;
+
+pub use known::{Known, Span};
+pub use lane::Lane;

@@ -1,0 +1,106 @@
+//! Gauss–Legendre quadrature, and running integrals at its nodes.
+
+/// An `n`-point Gauss–Legendre rule on `[0, 1]` with the matrix of its running integrals.
+///
+/// ```text
+/// ∫₀¹ f ≈ Σⱼ wⱼ f(xⱼ),   exact for polynomials of degree 2n − 1
+/// ∫₀^{xᵢ} f ≈ Σⱼ Aᵢⱼ f(xⱼ), exact for polynomials of degree n − 1
+/// ```
+///
+/// The running integrals integrate the interpolation polynomial through the nodes, as collocation
+/// methods do (E. Hairer, S. Nørsett, G. Wanner, *Solving Ordinary Differential Equations I*,
+/// section II.7).
+#[derive(Debug, Clone)]
+pub struct GaussLegendre {
+    /// Nodes in `(0, 1)`, ascending.
+    pub nodes: Vec<f64>,
+    /// Weights; they sum to 1.
+    pub weights: Vec<f64>,
+    /// Row `i` holds the weights of `∫₀^{xᵢ}`.
+    pub running: Vec<Vec<f64>>,
+}
+
+impl GaussLegendre {
+    /// The rule with `n ≥ 1` nodes.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        let (nodes, weights): (Vec<f64>, Vec<f64>) =
+            (0..n).map(|i| node_and_weight(n, n - 1 - i)).unzip();
+        // ∫₀^{xᵢ} of the Lagrange polynomials, themselves integrated exactly by this very rule:
+        // they have degree n − 1 ≤ 2n − 1.
+        let running = nodes
+            .iter()
+            .map(|&end| {
+                let mut row = vec![0.0; n];
+                for (&node, &weight) in nodes.iter().zip(&weights) {
+                    let at = end * node;
+                    for (j, entry) in row.iter_mut().enumerate() {
+                        *entry += end * weight * lagrange(&nodes, j, at);
+                    }
+                }
+                row
+            })
+            .collect();
+        Self { nodes, weights, running }
+    }
+
+    /// `∫_from^to f`.
+    pub fn integrate(&self, from: f64, to: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+        let length = to - from;
+        let points = self.nodes.iter().zip(&self.weights);
+        length * points.map(|(&x, &w)| w * f(from + length * x)).sum::<f64>()
+    }
+}
+
+/// Newton's iteration on the Legendre polynomial `P_n` from Tricomi's starting value, mapped to
+/// `[0, 1]`; `i = 0` is the largest node.
+fn node_and_weight(n: usize, i: usize) -> (f64, f64) {
+    let order = n as f64;
+    let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (order + 0.5)).cos();
+    let mut slope = 1.0;
+    for _ in 0..100 {
+        let (mut previous, mut value) = (1.0, x);
+        for k in 2..=n {
+            let k = k as f64;
+            (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
+        }
+        slope = order * (x * value - previous) / (x * x - 1.0);
+        let step = value / slope;
+        x -= step;
+        if step.abs() <= 1e-16 {
+            break;
+        }
+    }
+    (0.5 * (1.0 + x), 1.0 / ((1.0 - x * x) * slope * slope))
+}
+
+fn lagrange(nodes: &[f64], j: usize, x: f64) -> f64 {
+    let others = nodes.iter().enumerate().filter(|&(k, _)| k != j);
+    others.map(|(_, &node)| (x - node) / (nodes[j] - node)).product()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn integrates_the_highest_degree_exactly() {
+        for n in 1..=20_u32 {
+            let rule = GaussLegendre::new(n as usize);
+            let degree = 2 * n - 1;
+            let exact = 1.0 / f64::from(degree + 1);
+            let value = rule.integrate(0.0, 1.0, |x| x.powi(degree.cast_signed()));
+            assert!((value - exact).abs() < 1e-14, "{n} nodes: {value} against {exact}");
+        }
+    }
+
+    #[test]
+    fn running_integrals_reach_every_node() {
+        let rule = GaussLegendre::new(12);
+        let f: Vec<f64> = rule.nodes.iter().map(|x| x.exp()).collect();
+        for (row, &end) in rule.running.iter().zip(&rule.nodes) {
+            let value: f64 = row.iter().zip(&f).map(|(a, b)| a * b).sum();
+            assert!((value - end.exp_m1()).abs() < 1e-14);
+        }
+    }
+}

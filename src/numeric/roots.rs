@@ -1,0 +1,80 @@
+//! Roots and minima of functions of one variable.
+
+/// The root of a function that changes sign on `[low, high]`, by bisection with secant steps
+/// (regula falsi in the Illinois form), to the last bits of the bracket.
+///
+/// Where both ends have one sign, the end with the smaller absolute value is returned.
+pub fn root(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    let (mut f_low, mut f_high) = (f(low), f(high));
+    if f_low == 0.0 || (f_low > 0.0) == (f_high > 0.0) && f_low.abs() < f_high.abs() {
+        return low;
+    }
+    if (f_low > 0.0) == (f_high > 0.0) {
+        return high;
+    }
+    for step in 0..200 {
+        let width = high - low;
+        let secant = high - f_high * width / (f_high - f_low);
+        let inside = secant > low && secant < high && step % 3 != 2;
+        let middle = if inside { secant } else { low + 0.5 * width };
+        if middle <= low || middle >= high {
+            break;
+        }
+        let f_middle = f(middle);
+        if f_middle == 0.0 {
+            return middle;
+        }
+        if (f_middle > 0.0) == (f_low > 0.0) {
+            (low, f_low) = (middle, f_middle);
+            f_high *= 0.5;
+        } else {
+            (high, f_high) = (middle, f_middle);
+            f_low *= 0.5;
+        }
+        if high - low <= 4.0 * f64::EPSILON * high.abs().max(low.abs()) {
+            break;
+        }
+    }
+    0.5 * (low + high)
+}
+
+/// Where a function with one minimum on `[low, high]` is smallest, by golden sections until the
+/// bracket is `tolerance` wide.
+///
+/// Source: J. Kiefer, *Sequential minimax search for a maximum*, Proc. AMS 4 (1953), 502–506.
+pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
+    const SECTION: f64 = 0.618_033_988_749_894_9;
+    let mut left = high - SECTION * (high - low);
+    let mut right = low + SECTION * (high - low);
+    let (mut f_left, mut f_right) = (f(left), f(right));
+    while high - low > tolerance && left < right {
+        if f_left <= f_right {
+            (high, right, f_right) = (right, left, f_left);
+            left = high - SECTION * (high - low);
+            f_left = f(left);
+        } else {
+            (low, left, f_left) = (left, right, f_right);
+            right = low + SECTION * (high - low);
+            f_right = f(right);
+        }
+    }
+    0.5 * (low + high)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_a_root_to_the_last_bits() {
+        let x = root(0.0, 3.0, |x| x * x - 2.0);
+        assert!((x - 2.0f64.sqrt()).abs() < 1e-15);
+        assert_eq!(root(0.0, 1.0, |x| x), 0.0);
+    }
+
+    #[test]
+    fn finds_a_minimum() {
+        let x = minimum(-3.0, 9.0, 1e-9, |x| (x - 1.5).powi(2));
+        assert!((x - 1.5).abs() < 1e-7);
+    }
+}

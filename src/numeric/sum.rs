@@ -1,0 +1,57 @@
+//! Sums that do not lose their small terms.
+
+/// A running sum with its rounding error kept beside it.
+///
+/// ```text
+/// s ← s + x,  c ← c + (what the addition rounded away);  value = s + c
+/// ```
+///
+/// Source: A. Neumaier, *Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen*,
+/// ZAMM 54 (1974), 39–51.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Sum {
+    sum: f64,
+    correction: f64,
+}
+
+impl Sum {
+    /// Adds one term.
+    #[inline]
+    pub fn add(&mut self, x: f64) {
+        let total = self.sum + x;
+        self.correction +=
+            if self.sum.abs() >= x.abs() { (self.sum - total) + x } else { (x - total) + self.sum };
+        self.sum = total;
+    }
+
+    /// Adds another sum, its correction included.
+    pub fn merge(&mut self, other: &Self) {
+        self.add(other.sum);
+        self.correction += other.correction;
+    }
+
+    /// The sum so far.
+    #[must_use]
+    pub fn value(&self) -> f64 {
+        self.sum + self.correction
+    }
+}
+
+impl FromIterator<f64> for Sum {
+    fn from_iter<I: IntoIterator<Item = f64>>(terms: I) -> Self {
+        let mut sum = Self::default();
+        terms.into_iter().for_each(|x| sum.add(x));
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_terms_survive_a_large_one() {
+        let sum: Sum = [1.0, 1e100, 1.0, -1e100].into_iter().collect();
+        assert_eq!(sum.value(), 2.0);
+    }
+}

@@ -1,0 +1,114 @@
+//! Random numbers by address. Floor 0.
+//!
+//! Every random number of a run has an address: (seed, experiment, block, lane) names a stream,
+//! and the position in the stream is fixed by the draw. Threads, shards and machines are no part
+//! of it, so that any number of them makes the same draws.
+
+use rand::Rng;
+use rand_pcg::Pcg64;
+
+use crate::numeric::elementary;
+
+/// The generator of one stream: PCG XSL RR 128/64.
+///
+/// Source: M. E. O'Neill, *PCG: A family of simple fast space-efficient statistically good
+/// algorithms for random number generation*, Harvey Mudd College HMC-CS-2014-0905 (2014).
+pub type Stream = Pcg64;
+
+/// Where a stream is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Address {
+    /// The run's seed.
+    pub seed: u64,
+    /// The experiment's name, hashed by [`name_hash`].
+    pub experiment: u64,
+    /// The block of draws within the experiment.
+    pub block: u64,
+    /// The lane within the block: 0 for scalar kernels, [`PILOT`] for pilot rays.
+    pub lane: u64,
+}
+
+/// The lane of the pilot rays that learn a sampling extinction before the first draw.
+pub const PILOT: u64 = u64::MAX;
+
+impl Address {
+    /// The generator at the stream's beginning.
+    ///
+    /// The whole address is hashed into both the state and the increment: PCG streams that differ
+    /// in the stream word only may be correlated.
+    #[must_use]
+    pub fn stream(self) -> Stream {
+        let mut hash = 0x7472_7565_666c_6967; // "trueflig": keeps seed 0 away from state 0
+        for word in [self.seed, self.experiment, self.block, self.lane] {
+            hash = mix(hash ^ word);
+        }
+        let mut word = || {
+            hash = hash.wrapping_add(0x9e37_79b9_7f4a_7c15);
+            u128::from(mix(hash))
+        };
+        let state = word() << 64 | word();
+        let increment = word() << 64 | word();
+        Pcg64::new(state, increment)
+    }
+}
+
+/// The finaliser of `SplitMix64` (S. Vigna, after G. Steele, D. Lea, C. Flood, *Fast splittable
+/// pseudorandom number generators*, OOPSLA 2014), a bijection of 64-bit words.
+fn mix(mut z: u64) -> u64 {
+    z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// FNV-1a of a name, mixed: an experiment keeps its streams when others join or leave the run.
+#[must_use]
+pub fn name_hash(name: &str) -> u64 {
+    let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    mix(name.bytes().fold(0xcbf2_9ce4_8422_2325, fnv))
+}
+
+/// Uniform in `[0, 1)`, all 53 bits: for decisions, `unit(rng) < p` has probability `p`.
+#[inline]
+pub fn unit<R: Rng>(rng: &mut R) -> f64 {
+    const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
+    (rng.next_u64() >> 11) as f64 * SCALE
+}
+
+/// Exponential with mean 1: `−ln u` with `u` uniform in `(0, 1]`, so that it is never infinite.
+#[inline]
+pub fn exponential<R: Rng>(rng: &mut R) -> f64 {
+    -elementary::ln(1.0 - unit(rng))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_part_of_the_address_matters() {
+        let base = Address { seed: 1, experiment: 2, block: 3, lane: 0 };
+        let others = [
+            Address { seed: 2, ..base },
+            Address { experiment: 3, ..base },
+            Address { block: 4, ..base },
+            Address { lane: PILOT, ..base },
+        ];
+        let first = base.stream().next_u64();
+        assert_eq!(first, base.stream().next_u64());
+        for other in others {
+            assert_ne!(first, other.stream().next_u64());
+        }
+    }
+
+    #[test]
+    fn exponential_has_mean_and_variance_one() {
+        let mut rng = Address { seed: 1, experiment: 0, block: 0, lane: 0 }.stream();
+        let n = 1_000_000;
+        let draws: Vec<f64> = (0..n).map(|_| exponential(&mut rng)).collect();
+        let mean = draws.iter().sum::<f64>() / f64::from(n);
+        let variance = draws.iter().map(|x| (x - 1.0).powi(2)).sum::<f64>() / f64::from(n);
+        assert!((mean - 1.0).abs() < 5e-3, "5 standard errors: {mean}");
+        assert!((variance - 1.0).abs() < 15e-3, "5 standard errors: {variance}");
+    }
+}
