@@ -1,2 +1,21 @@
-//! Case → plan → run → verdict → record.
+//! Case → plan → draws → verdicts → record. Floor 5.
+//!
+//! The only place where names become types: a case file is read into a [`Case`], a [`Plan`] prepares
+//! its experiments and shares out the error rate, [`run::draw`] draws them, and [`judge`] turns what
+//! was drawn into a [`Record`], which is all that reports see.
+
+pub mod case;
+pub mod checks;
+pub mod curves;
+pub mod judge;
+pub mod plan;
 pub mod record;
+pub mod run;
+pub mod scenario;
+pub mod source;
+pub mod sweep;
+
+pub use case::Case;
+pub use plan::{Options, Plan};
+pub use record::Record;
+pub use source::{CaseError, Source};

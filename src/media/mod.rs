@@ -8,6 +8,7 @@
 //! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
 
 pub mod body;
+pub mod control;
 pub mod medium;
 pub mod piecewise;
 
@@ -16,6 +17,7 @@ use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::{Known, Lane, Span, roots};
 
 pub use body::Body;
+pub use control::Control;
 pub use medium::Medium;
 pub use piecewise::{Cursor, Piecewise};
 
@@ -87,6 +89,12 @@ pub trait Field: Sized + Send + Sync + 'static {
 
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
+
+    /// The same field with only its first few octaves, for explorers; `None` if it has no octaves.
+    fn coarsened(&self, octaves: usize) -> Option<Self> {
+        let _ = octaves;
+        None
+    }
 }
 
 /// A computation that is compiled once for each profile type.
@@ -160,6 +168,12 @@ macro_rules! media {
                 match self {
                     $(Self::$Field(field) => Profile::$Field(field.along(ray, inside))),*
                 }
+            }
+
+            /// The same field with only its first few octaves; `None` if it has no octaves.
+            #[must_use]
+            pub fn coarsened(&self, octaves: usize) -> Option<Self> {
+                match self { $(Self::$Field(field) => field.coarsened(octaves).map(Self::$Field)),* }
             }
 
             /// Reads `NAME = { … }` in its 3-D form.

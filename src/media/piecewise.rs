@@ -110,6 +110,17 @@ impl Piecewise {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
     }
 
+    /// Whether no piece has a slope.
+    #[must_use]
+    pub fn is_steps(&self) -> bool {
+        self.slope.iter().all(|&slope| slope == 0.0)
+    }
+
+    /// The ends and the first value of every piece.
+    pub fn segments(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+        self.knots.windows(2).zip(&self.left).map(|(ends, &value)| ([ends[0], ends[1]], value))
+    }
+
     /// Both one-sided values at every knot, for a search of extremes.
     pub fn corner_values(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.left.len()).flat_map(|i| [self.left[i], self.line(i, self.knots[i + 1])])

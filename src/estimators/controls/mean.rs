@@ -1,0 +1,40 @@
+//! The mean of σ_t over the support: the best constant control of the double particle model.
+//!
+//! ```text
+//! σ_c = τ/ℓ
+//! ```
+//!
+//! It takes no settings.
+//!
+//! Source: Szirmay-Kalos et al. 2017, section 3.4, *Optimal control variate*.
+
+use super::Recipe;
+use crate::catalogue::Settings;
+use crate::estimators::{Refusal, Site};
+use crate::media::{Body, Control, Piecewise};
+
+/// The mean of σ_t.
+#[derive(Debug, Clone, Copy)]
+pub struct Mean;
+
+impl Mean {
+    /// Reads `{}`.
+    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+        Some(Self)
+    }
+}
+
+impl Recipe for Mean {
+    fn label(&self) -> String {
+        "mean".into()
+    }
+
+    fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
+        let support = site.mesh.support();
+        if support.is_empty() {
+            return Ok(Control::None);
+        }
+        let mean = site.mesh.optical_depth().value / support.length();
+        Ok(Control::Pieces(Piecewise::constant(mean, support)))
+    }
+}

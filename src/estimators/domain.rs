@@ -1,0 +1,153 @@
+//! Where an estimator exists and is unbiased.
+
+use super::Setup;
+use crate::numeric::Span;
+use crate::problems::Problem;
+
+/// Inequalities are tested with this relative slack, so that `σ̂ = max σ_t` is not refused for
+/// rounding.
+const SLACK: f64 = 1e-12;
+
+/// Why an estimator is not run.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Refusal {
+    /// An inequality that the estimator needs does not hold.
+    #[error("needs {needs}, but {found} at t = {at:.6}")]
+    Inequality {
+        /// What must hold everywhere.
+        needs: &'static str,
+        /// What was found instead.
+        found: String,
+        /// Where on the ray.
+        at: f64,
+    },
+    /// The estimator does not fit what it was given.
+    #[error("needs {needs}, but {found}")]
+    Mismatch {
+        /// What it takes.
+        needs: &'static str,
+        /// What it was given.
+        found: String,
+    },
+}
+
+impl Refusal {
+    /// A mismatch in words.
+    #[must_use]
+    pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
+        Self::Mismatch { needs, found: found.into() }
+    }
+}
+
+impl<P: Problem> Setup<P> {
+    fn residual(&self, t: f64, extinction: f64) -> f64 {
+        extinction - self.control.extinction(t)
+    }
+
+    /// What the residual is called in messages.
+    fn residual_name(&self) -> &'static str {
+        if self.control.is_none() { "σ_t" } else { "σ_t − σ_c" }
+    }
+
+    /// σ̂ must be positive wherever the residual is not zero, or collisions are missed for good.
+    ///
+    /// # Errors
+    ///
+    /// The stretch of the ray that σ̂ leaves out.
+    pub fn require_coverage(&self) -> Result<(), Refusal> {
+        let cut = self.mesh.refined(self.sampling.knots(), &|_, _| Vec::new());
+        // A piece of σ̂ that is zero at its middle is zero throughout: pieces are straight and not
+        // negative.
+        let empty = self.sampling.knots().windows(2).map(|ends| Span::new(ends[0], ends[1]));
+        let blind =
+            empty.filter(|span| self.sampling.value(span.middle()) <= 0.0).find_map(|span| {
+                let residual = cut.largest(|t, sigma| {
+                    if span.contains_inside(t) { self.residual(t, sigma).abs() } else { 0.0 }
+                });
+                residual.filter(|&(_, size)| size > 0.0)
+            });
+        match blind {
+            None => Ok(()),
+            Some((at, size)) => Err(Refusal::Inequality {
+                needs: "σ̂ > 0 wherever the residual is not zero",
+                found: format!("σ̂ = 0 while |{}| = {size:.6}", self.residual_name()),
+                at,
+            }),
+        }
+    }
+
+    /// `0 ≤ σ_t − σ_c ≤ σ̂` everywhere: σ̂ is a majorant.
+    ///
+    /// # Errors
+    ///
+    /// Where it is violated most.
+    pub fn require_majorant(&self) -> Result<(), Refusal> {
+        self.require_not_negative("σ_t − σ_c ≥ 0")?;
+        self.require_ratio_at_most(1.0, "σ̂ ≥ σ_t − σ_c")
+    }
+
+    /// `σ_t − σ_c ≥ 0` everywhere.
+    ///
+    /// # Errors
+    ///
+    /// Where it is violated most.
+    pub fn require_not_negative(&self, needs: &'static str) -> Result<(), Refusal> {
+        if self.control.is_none() {
+            return Ok(());
+        }
+        let cut = self.mesh.refined(&self.control.breaks(), &|_, _| Vec::new());
+        let worst = cut.largest(|t, sigma| -self.residual(t, sigma));
+        let scale = cut.largest(|_, sigma| sigma).map_or(0.0, |(_, largest)| largest);
+        match worst {
+            Some((at, deficit)) if deficit > SLACK * scale => Err(Refusal::Inequality {
+                needs,
+                found: format!("{} = {:.6}", self.residual_name(), -deficit),
+                at,
+            }),
+            _ => Ok(()),
+        }
+    }
+
+    /// `σ_t − σ_c ≤ limit · σ̂` everywhere.
+    ///
+    /// # Errors
+    ///
+    /// Where it is violated most.
+    pub fn require_ratio_at_most(&self, limit: f64, needs: &'static str) -> Result<(), Refusal> {
+        self.require_coverage()?;
+        let mut cuts = self.sampling.knots().to_vec();
+        cuts.extend(self.control.breaks());
+        let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
+        let worst = cut.largest(|t, sigma| {
+            let residual = self.residual(t, sigma);
+            if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
+        });
+        match worst {
+            Some((at, ratio)) if ratio > limit * (1.0 + SLACK) => {
+                let sampling = self.sampling.value(at);
+                let name = self.residual_name();
+                let found = format!(
+                    "σ̂ = {sampling:.6} and {name} = {:.6}, r = {ratio:.6},",
+                    ratio * sampling
+                );
+                Err(Refusal::Inequality { needs, found, at })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// One constant `σ̂ > 0` on the whole support.
+    ///
+    /// # Errors
+    ///
+    /// What σ̂ is instead.
+    pub fn require_constant_sampling(&self) -> Result<f64, Refusal> {
+        let needs = "a constant σ̂ > 0";
+        match self.sampling.single_value() {
+            Some(value) if value > 0.0 || self.mesh.support().is_empty() => Ok(value),
+            Some(value) => Err(Refusal::mismatch(needs, format!("σ̂ = {value}"))),
+            None => Err(Refusal::mismatch(needs, "σ̂ varies along the ray")),
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! Free flight by Woodcock (delta) tracking: fly through a majorant to the first real collision.
+//!
+//! ```text
+//! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̄(tᵢ),  tᵢ a Poisson process of rate σ̄;  S if there is none
+//! ```
+//!
+//! Exact in law for `σ̄ ≥ σ_t`; refused elsewhere. Lookups are those of `woodcock` for the
+//! transmittance: `E = ∫ σ̄ T dt`.
+//!
+//! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
+//! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
+
+use crate::catalogue::Settings;
+use crate::estimators::rules::Null;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::problems::{FreeFlight, Problem};
+use crate::rng::{Stream, exponential, unit};
+use crate::theory::{Prediction, flight};
+
+/// Woodcock tracking; σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct Woodcock;
+
+impl Estimator<FreeFlight> for Woodcock {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+    }
+
+    fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {
+        let product = setup.product(&Null);
+        let mesh = product.mesh(&[]);
+        let lookups = product.integrals(&mesh, &[mesh.support().to])[0].count();
+        flight::predict(&setup.mesh, lookups)
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<FreeFlight>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let ray = setup.problem.medium().span();
+        let mut cursor = setup.sampling.begin();
+        let mut lookups = 0;
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            lookups += 1;
+            if unit(rng) * sampling < medium.extinction(cursor.t) {
+                return Draw { value: [cursor.t - ray.from], lookups };
+            }
+        }
+        Draw { value: [ray.length()], lookups }
+    }
+}

@@ -1,0 +1,169 @@
+//! Estimators, one page each: how a draw is made, and what theory says of it. Floor 4.
+//!
+//! An estimator is data. What it works on (medium, σ̂, control) is prepared once in a [`Setup`];
+//! its loop is compiled once per field type and entered once per buffer of draws. Estimators of
+//! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
+
+pub mod controls;
+pub mod domain;
+pub mod free_flight;
+pub mod rules;
+pub mod sampling;
+pub mod setup;
+pub mod transmittance;
+pub mod transmittance_curve;
+pub mod trial;
+pub mod walk;
+
+use crate::catalogue::{Catalogue, Settings};
+use crate::media::Extinction;
+use crate::problems::Problem;
+use crate::rng::{Address, Stream};
+use crate::theory::Prediction;
+
+pub use domain::Refusal;
+pub use setup::{Setup, Site};
+pub use transmittance_curve::Portrait;
+pub use trial::{DrawBuffer, Experiment};
+
+/// One realisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Draw<V> {
+    /// The value, one number per channel.
+    pub value: V,
+    /// How many times σ_t was evaluated.
+    pub lookups: u32,
+}
+
+/// What an estimator takes beside the medium.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Inputs {
+    /// A sampling extinction σ̂.
+    pub sampling: bool,
+    /// A control σ_c, if one is given.
+    pub control: bool,
+}
+
+impl Inputs {
+    /// Nothing.
+    pub const NONE: Self = Self { sampling: false, control: false };
+    /// σ̂ only.
+    pub const SAMPLING: Self = Self { sampling: true, control: false };
+    /// σ̂ and a control.
+    pub const BOTH: Self = Self { sampling: true, control: true };
+}
+
+/// A page of the catalogue of estimators of problem `P`.
+pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
+    /// What it takes.
+    const INPUTS: Inputs;
+
+    /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
+    /// it.
+    fn read(settings: &Settings) -> Option<Self>;
+
+    /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none.
+    fn label(&self) -> String {
+        String::new()
+    }
+
+    /// The same estimator with another albedo; `None` if it has no albedo.
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let _ = albedo;
+        None
+    }
+
+    /// The control it uses where the case gives none.
+    #[must_use]
+    fn default_control() -> Option<Box<dyn controls::Recipe>> {
+        None
+    }
+
+    /// Whether it exists and is unbiased here.
+    ///
+    /// # Errors
+    ///
+    /// The violated inequality and where on the ray.
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal>;
+
+    /// What theory says of a draw.
+    fn predict(&self, setup: &Setup<P>) -> Prediction;
+
+    /// The ray seen from the side, for estimators of a curve.
+    fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait> {
+        let _ = (setup, address);
+        None
+    }
+
+    /// Makes one draw.
+    fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
+    -> Draw<P::Value>;
+}
+
+/// A problem with a catalogue of estimators.
+pub trait Estimated: Problem {
+    /// The estimators of this problem.
+    const CATALOGUE: Catalogue;
+
+    /// Reads the settings of the estimator at a position of the catalogue.
+    fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
+}
+
+/// Lists the estimators of one problem: from one line each come the module, the name in case files
+/// and the row in `trueflight list`.
+macro_rules! estimators {
+    ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
+        $(pub mod $module;)*
+
+        impl $crate::estimators::Estimated for $Problem {
+            const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
+                name: "estimators",
+                pages: &[$($crate::page!($module)),*],
+            };
+
+            fn read_estimator(
+                index: usize,
+                settings: &$crate::catalogue::Settings,
+            ) -> Option<Box<dyn $crate::estimators::trial::Entry<Self>>> {
+                let readers = [$(|s: &$crate::catalogue::Settings| {
+                    <$module::$Page as $crate::estimators::Estimator<$Problem>>::read(s)
+                        .map(|page| Box::new(page) as Box<dyn $crate::estimators::trial::Entry<_>>)
+                }),*];
+                readers[index](settings)
+            }
+        }
+    };
+}
+use estimators;
+
+/// Lists recipes that prepare a sampling extinction or a control from its settings.
+macro_rules! recipes {
+    ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Every recipe, in the order of registration.
+        pub const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
+            name: $name,
+            pages: &[$($crate::page!($module)),*],
+        };
+
+        /// Reads `NAME = { … }`.
+        pub fn read(
+            settings: &$crate::catalogue::Settings,
+            body: &$crate::media::Body,
+        ) -> Option<Box<dyn $Trait>> {
+            let names: Vec<String> =
+                CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
+            let (index, recipe) = settings.choice(&names)?;
+            let readers = [$(
+                |s: &$crate::catalogue::Settings, b: &$crate::media::Body| {
+                    $module::$Page::read(s, b).map(|page| Box::new(page) as Box<dyn $Trait>)
+                }
+            ),*];
+            let read = readers[index](&recipe, body);
+            recipe.close();
+            read
+        }
+    };
+}
+use recipes;

@@ -1,0 +1,150 @@
+//! What happens at a tentative collision: the rules of the particle models.
+//!
+//! With `r = (σ_t − σ_c)/σ̂` the transmitted particle keeps the factor `1 − r` on average. The
+//! double particle model applies it as a weight; the single particle model spends a part of it on
+//! the chance `q_tran` that the particle goes on.
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! sections 3.1–3.3, Eqs. 7–12 and `SimulateParticle`.
+
+use crate::theory::{Outcome, Rule};
+
+/// Always go on, with weight `1 − r`: the double particle model (Eq. 8), ratio tracking.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Weight;
+
+impl Rule for Weight {
+    #[inline(always)]
+    fn outcome(&self, ratio: f64) -> Outcome {
+        Outcome { survival: 1.0, weight: 1.0 - ratio, loss: ratio }
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}
+
+/// Go on with probability `1 − r` and weight 1: Woodcock tracking, for `0 ≤ r ≤ 1`.
+///
+/// Beyond that range (a forced, biased run) the chance is cut to `[0, 1]`, as a comparison with a
+/// uniform number does in any renderer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Null;
+
+impl Rule for Null {
+    #[inline(always)]
+    fn outcome(&self, ratio: f64) -> Outcome {
+        Outcome { survival: (1.0 - ratio).clamp(0.0, 1.0), weight: 1.0, loss: 0.0 }
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        vec![0.0, 1.0]
+    }
+}
+
+/// How the single particle model chooses `q_tran`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Single {
+    /// `q = |1 − r|`, weight `sgn(1 − r)`; for `0 ≤ r ≤ 2`.
+    Terminating,
+    /// `q = min(1, |1 − r|)`; unbiased for every `r`; not in the paper.
+    Clamped,
+    /// `q = |1 − r| / D`, weight `sgn(1 − r) D`, `D = a|r| + |1 − r|`; unbiased for every `r`
+    /// (Eq. 12).
+    NonTerminating {
+        /// The albedo `a` in `[0, 1]`.
+        albedo: f64,
+    },
+    /// Terminating where `r ≥ 1` and `a r + |1 − r| ≤ 1`, otherwise non-terminating.
+    Adaptive {
+        /// The albedo `a` in `[0, 1]`.
+        albedo: f64,
+    },
+}
+
+impl Single {
+    #[inline(always)]
+    fn terminating(ratio: f64) -> Outcome {
+        // |1 − r| > 1 is no probability: such a case is refused, and a forced run shows the bias.
+        let survival = (1.0 - ratio).abs().min(1.0);
+        if ratio <= 1.0 {
+            Outcome { survival, weight: 1.0, loss: 0.0 }
+        } else {
+            Outcome { survival, weight: -1.0, loss: 2.0 }
+        }
+    }
+
+    #[inline(always)]
+    fn non_terminating(ratio: f64, albedo: f64) -> Outcome {
+        let transmitted = (1.0 - ratio).abs();
+        let scattered = albedo * ratio.abs();
+        let sum = scattered + transmitted;
+        // At r = 1 and a = 0 nothing is left of the particle, whatever q.
+        let survival = if sum == 0.0 { 0.0 } else { transmitted / sum };
+        if ratio <= 1.0 {
+            Outcome { survival, weight: sum, loss: ratio - scattered }
+        } else {
+            Outcome { survival, weight: -sum, loss: 1.0 + sum }
+        }
+    }
+}
+
+impl Rule for Single {
+    #[inline(always)]
+    fn outcome(&self, ratio: f64) -> Outcome {
+        match *self {
+            Self::Terminating => Self::terminating(ratio),
+            Self::Clamped if (1.0 - ratio).abs() <= 1.0 => Self::terminating(ratio),
+            Self::Clamped => Weight.outcome(ratio),
+            Self::NonTerminating { albedo } => Self::non_terminating(ratio, albedo),
+            Self::Adaptive { albedo } => {
+                if ratio >= 1.0 && albedo * ratio + (1.0 - ratio).abs() <= 1.0 {
+                    Self::terminating(ratio)
+                } else {
+                    Self::non_terminating(ratio, albedo)
+                }
+            }
+        }
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        match self {
+            Self::Terminating | Self::Clamped => vec![0.0, 1.0, 2.0],
+            Self::NonTerminating { .. } => vec![0.0, 1.0],
+            Self::Adaptive { albedo } => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_rule_keeps_the_transmitted_share_where_it_is_valid() {
+        for step in -40..=60 {
+            let r = 0.05 * f64::from(step);
+            let mut rules = vec![
+                Single::Clamped,
+                Single::NonTerminating { albedo: 0.7 },
+                Single::Adaptive { albedo: 0.7 },
+            ];
+            if (0.0..=2.0).contains(&r) {
+                rules.push(Single::Terminating);
+            }
+            for rule in rules {
+                let o = rule.outcome(r);
+                assert!((0.0..=1.0).contains(&o.survival), "{rule:?} at {r}");
+                assert!((o.survival * o.weight - (1.0 - r)).abs() < 1e-14, "{rule:?} at {r}");
+                assert!((o.loss - (1.0 - o.weight)).abs() < 1e-14, "{rule:?} at {r}");
+            }
+        }
+    }
+
+    #[test]
+    fn zero_albedo_at_ratio_one_is_no_division_by_zero() {
+        let outcome = Single::NonTerminating { albedo: 0.0 }.outcome(1.0);
+        assert_eq!((outcome.survival, outcome.weight), (0.0, 0.0));
+    }
+}

@@ -1,0 +1,40 @@
+//! One σ̂ for the whole ray.
+//!
+//! | setting | meaning | unit |
+//! |---|---|---|
+//! | `value` | σ̂ > 0 | 1/length |
+//!
+//! Free flight: `s = −ln(u)/σ̂`.
+
+use super::Recipe;
+use crate::catalogue::{Domain, Settings};
+use crate::estimators::{Refusal, Site};
+use crate::media::{Body, Control, Piecewise};
+
+/// A constant σ̂.
+#[derive(Debug, Clone, Copy)]
+pub struct Constant {
+    /// σ̂, 1/length.
+    pub value: f64,
+}
+
+impl Constant {
+    /// Reads `{ value }`.
+    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+        settings.number("value", Domain::Positive).map(|value| Self { value })
+    }
+}
+
+impl Recipe for Constant {
+    fn label(&self) -> String {
+        "constant".into()
+    }
+
+    fn constant(&self) -> Option<f64> {
+        Some(self.value)
+    }
+
+    fn prepare(&self, site: &Site, _: &Control) -> Result<Piecewise, Refusal> {
+        Ok(Piecewise::constant(self.value, site.mesh.support()))
+    }
+}

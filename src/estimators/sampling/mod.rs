@@ -1,0 +1,31 @@
+//! Recipes for the sampling extinction σ̂: any non-negative field that inverts exactly.
+
+use super::{Refusal, Site, recipes};
+use crate::media::{Control, Piecewise};
+
+/// How a sampling extinction is made for a medium and a control.
+pub trait Recipe: Send + Sync {
+    /// In words, as in `constant 0.4`.
+    fn label(&self) -> String;
+
+    /// The value, if it is one constant whatever the medium.
+    fn constant(&self) -> Option<f64> {
+        None
+    }
+
+    /// Makes σ̂ on the support of the medium.
+    ///
+    /// # Errors
+    ///
+    /// What the recipe needs and does not find.
+    fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal>;
+}
+
+recipes! {
+    "sampling", Recipe:
+    constant::Constant,
+    piecewise_constant::PiecewiseConstant,
+    piecewise_linear::PiecewiseLinear,
+    local_majorants::LocalMajorants,
+    pilot::Pilot,
+}

@@ -1,0 +1,36 @@
+//! A σ̂ made of straight lines.
+//!
+//! | setting | meaning | unit |
+//! |---|---|---|
+//! | `knots` | ascending distances along the ray, two or more | length |
+//! | `values` | σ̂ ≥ 0 at each knot | 1/length |
+//!
+//! Outside the knots the first and the last value go on. Free flight inverts each quadratic exactly:
+//! `s = 2u/(y₀ + √(y₀² + 2ku))`.
+
+use super::Recipe;
+use crate::catalogue::Settings;
+use crate::estimators::{Refusal, Site};
+use crate::media::piecewise_linear::read_lines;
+use crate::media::{Body, Control, Piecewise};
+
+/// A piecewise-linear σ̂.
+#[derive(Debug, Clone)]
+pub struct PiecewiseLinear(Piecewise);
+
+impl PiecewiseLinear {
+    /// Reads `{ knots, values }`.
+    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+        read_lines(settings).map(Self)
+    }
+}
+
+impl Recipe for PiecewiseLinear {
+    fn label(&self) -> String {
+        "piecewise-linear".into()
+    }
+
+    fn prepare(&self, site: &Site, _: &Control) -> Result<Piecewise, Refusal> {
+        Ok(self.0.on(site.mesh.support()))
+    }
+}

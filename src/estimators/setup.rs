@@ -1,0 +1,72 @@
+//! What an estimator works on, prepared once per experiment.
+
+use std::sync::Arc;
+
+use crate::media::{Body, Control, Piecewise};
+use crate::problems::Problem;
+use crate::rng::Address;
+use crate::theory::{Mesh, Rule, product::Product};
+
+/// What a recipe sees when it prepares a sampling extinction or a control.
+#[derive(Clone, Copy)]
+pub struct Site<'a> {
+    /// The field as the case gives it.
+    pub body: &'a Body,
+    /// The medium, cut into panels.
+    pub mesh: &'a Mesh,
+    /// Where pilot rays find their random numbers.
+    pub address: Address,
+}
+
+/// A problem with everything that its estimators need.
+pub struct Setup<P> {
+    /// What is sought.
+    pub problem: Arc<P>,
+    /// The medium, cut into panels.
+    pub mesh: Arc<Mesh>,
+    /// σ̂ on the support; zero for estimators that take none.
+    pub sampling: Piecewise,
+    /// σ_c.
+    pub control: Control,
+    /// `T_c = exp(−∫σ_c)` over the support.
+    pub control_transmittance: f64,
+    /// `T` over the support.
+    pub transmittance: f64,
+}
+
+impl<P: Problem> Setup<P> {
+    /// Joins the parts; σ̂ is restricted to the support.
+    #[must_use]
+    pub fn new(
+        problem: Arc<P>,
+        mesh: Arc<Mesh>,
+        sampling: Option<Piecewise>,
+        control: Control,
+    ) -> Self {
+        let support = mesh.support();
+        let sampling = sampling.unwrap_or_else(|| Piecewise::constant(0.0, support)).on(support);
+        let control_transmittance = control.optical_depth(support).exp_neg().value;
+        let transmittance = mesh.optical_depth().exp_neg().value;
+        Self { problem, mesh, sampling, control, control_transmittance, transmittance }
+    }
+
+    /// `r`, where medium, control and σ̂ are each one constant on the support.
+    #[must_use]
+    pub fn constant_ratio(&self) -> Option<f64> {
+        let control = match &self.control {
+            Control::None => 0.0,
+            Control::Pieces(pieces) => pieces.single_value()?,
+            Control::Field(_) => return None,
+        };
+        let sampling = self.sampling.single_value().filter(|&value| value > 0.0)?;
+        let mut extinctions = self.mesh.panels().flat_map(|panel| panel.extinction);
+        let first = *extinctions.next()?;
+        extinctions.all(|&x| x == first).then_some((first - control) / sampling)
+    }
+
+    /// The product estimator with the given rule, for theory.
+    #[must_use]
+    pub fn product<'a>(&'a self, rule: &'a dyn Rule) -> Product<'a> {
+        Product::new(&self.mesh, &self.sampling, &self.control, rule)
+    }
+}

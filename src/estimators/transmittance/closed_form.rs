@@ -1,0 +1,56 @@
+//! Closed-form tracking: the optical depth is known, so the answer is too.
+//!
+//! ```text
+//! X = exp(−τ),  Var X = 0,  no lookups
+//! ```
+//!
+//! Exact wherever the medium's optical depth is; every field of the catalogue has one. It is the
+//! end of the scale on which the others stand: zero variance at no cost.
+//!
+//! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
+//! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
+
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::problems::Transmittance;
+use crate::rng::Stream;
+use crate::theory::{Channel, CountLaw, Law, Moments, Prediction};
+
+/// Closed-form tracking; it has no settings.
+#[derive(Debug, Clone)]
+pub struct ClosedForm;
+
+/// The prediction of an estimator that always gives the exact answer.
+#[must_use]
+pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
+    let truth = setup.mesh.optical_depth().exp_neg();
+    let channel = Channel::unbiased(truth, Moments::certain(truth.value), [1.0; 2]);
+    let law = Some(Law::Atoms(vec![(truth.value, 1.0)]));
+    Prediction { law, ..Prediction::single(channel, CountLaw::always(lookups as f64)) }
+}
+
+impl Estimator<Transmittance> for ClosedForm {
+    const INPUTS: Inputs = Inputs::NONE;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        exact(setup, 0)
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        _: &M,
+        _: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        Draw { value: [setup.transmittance], lookups: 0 }
+    }
+}

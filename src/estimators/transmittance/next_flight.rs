@@ -1,0 +1,73 @@
+//! Next-flight estimation: at every collision, add the chance to fly straight to the end.
+//!
+//! ```text
+//! F(x) = v(x) + 1[x' < ℓ] ρ(x') F(x'),  v(x) = e^{−σ̄(ℓ−x)},  ρ = 1 − σ_t/σ̄
+//! X = F(0),  x' = x + flight of rate σ̄
+//! ```
+//!
+//! Unbiased for every constant `σ̄ > 0`; below the density the weights change sign.
+//!
+//! ```text
+//! E[F^k] from the Volterra equations of theory::volterra with g_k = Σ_{j<k} C(k, j) v^{k−j} A_j
+//! lookups Poisson(σ̄ ℓ)
+//! ```
+//!
+//! Source: S. N. Cramer, *Application of the fictitious scattering radiation transport model for
+//! deep-penetration Monte Carlo calculations*, Nuclear Science and Engineering 65 (1978);
+//! I. Georgiev et al., *Integral formulations of volumetric transmittance*, ACM Transactions on
+//! Graphics 38 (2019).
+
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::numeric::elementary;
+use crate::problems::Transmittance;
+use crate::rng::{Stream, exponential};
+use crate::theory::Prediction;
+use crate::theory::volterra::{self, Source, binomial};
+
+/// The next-flight estimator; a constant σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct NextFlight;
+
+impl Source for NextFlight {
+    fn moment(&self, k: usize, v: f64, lower: &[f64; 4]) -> f64 {
+        let mixed = (1..k).map(|j| binomial(k, j) * v.powi((k - j) as i32) * lower[j - 1]);
+        v.powi(k as i32) + mixed.sum::<f64>()
+    }
+}
+
+impl Estimator<Transmittance> for NextFlight {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_constant_sampling().map(|_| ())
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        volterra::predict(&setup.mesh, setup.sampling.single_value().unwrap_or(0.0), self)
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let end = setup.mesh.support().to;
+        let mut cursor = setup.sampling.begin();
+        let mut weight = 1.0;
+        let mut lookups = 0;
+        let mut score = elementary::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
+            lookups += 1;
+            score += weight * elementary::exp(-sampling * (end - cursor.t));
+        }
+        Draw { value: [score], lookups }
+    }
+}

@@ -1,0 +1,54 @@
+//! Ratio tracking: keep, at each tentative collision, the share that is null.
+//!
+//! ```text
+//! X = ∏ᵢ (1 − σ_t(tᵢ)/σ̂(tᵢ)),  tᵢ a Poisson process of rate σ̂ on [0, ℓ]
+//! ```
+//!
+//! Unbiased for every σ̂ that is positive wherever σ_t is. Where `σ̂ < σ_t` the factor is negative
+//! and the variance grows; where `σ̂ ≥ σ_t` throughout, X lies in [0, 1]. It is `double` without a
+//! control, and shares its code: the same random numbers make the same draws.
+//!
+//! ```text
+//! J_k = ∫ σ̂ r^k,  r = σ_t/σ̂,  lookups Poisson(∫σ̂)
+//! ```
+//!
+//! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
+//! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
+
+use super::double::{predict_weighted, unbiased_where_covered};
+use crate::catalogue::Settings;
+use crate::estimators::rules::Weight;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
+use crate::media::Extinction;
+use crate::problems::Transmittance;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+
+/// Ratio tracking; σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct Ratio;
+
+impl Estimator<Transmittance> for Ratio {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        unbiased_where_covered(setup)
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        predict_weighted(setup)
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        walk::product(setup, &Weight, medium, rng)
+    }
+}

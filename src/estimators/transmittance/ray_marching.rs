@@ -1,0 +1,106 @@
+//! Ray marching: a Riemann sum in the exponent. Biased, and here to be caught.
+//!
+//! ```text
+//! X = exp(−h Σⱼ σ_t((j + u) h)),  h = ℓ/steps,  u = ½, or uniform in [0, 1) with jitter
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `steps` | number of steps along the support | required |
+//! | `jitter` | one random offset for the whole ray | false |
+//!
+//! With jitter the sum is unbiased but the exponential of it is not (Jensen's inequality): the mean
+//! of X exceeds T. The bias is predicted exactly, as a quadrature over u:
+//!
+//! ```text
+//! E[X^k] = ∫₀¹ exp(−k h Σⱼ σ_t((j + u) h)) du
+//! ```
+//!
+//! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
+//! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
+
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Known, elementary};
+use crate::problems::Transmittance;
+use crate::rng::{Stream, unit};
+use crate::theory::{Channel, CountLaw, Moments, Prediction};
+
+/// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
+const PANELS: usize = 256;
+
+/// Ray marching.
+#[derive(Debug, Clone)]
+pub struct RayMarching {
+    steps: u32,
+    jitter: bool,
+}
+
+impl RayMarching {
+    fn depth(&self, setup: &Setup<Transmittance>, u: f64, look: impl Fn(f64) -> f64) -> f64 {
+        let support = setup.mesh.support();
+        let step = support.length() / f64::from(self.steps);
+        let at = |j: u32| support.from + (f64::from(j) + u) * step;
+        step * (0..self.steps).map(|j| look(at(j))).sum::<f64>()
+    }
+}
+
+impl Estimator<Transmittance> for RayMarching {
+    const INPUTS: Inputs = Inputs::NONE;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let steps = settings.count("steps", 1..=1_000_000);
+        let jitter = settings.flag_or("jitter", false);
+        Some(Self { steps: u32::try_from(steps?).ok()?, jitter: jitter? })
+    }
+
+    fn label(&self) -> String {
+        let jitter = if self.jitter { ", jittered" } else { "" };
+        format!("{} steps{jitter}", self.steps)
+    }
+
+    fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        let truth = setup.mesh.optical_depth().exp_neg();
+        let medium = setup.mesh.medium();
+        let value = |u: f64| (-self.depth(setup, u, |t| medium.extinction(t))).exp();
+        let (mean, moments) = if self.jitter {
+            let rule = GaussLegendre::new(4);
+            let width = 1.0 / PANELS as f64;
+            let over_offset = |f: &dyn Fn(f64) -> f64| -> f64 {
+                let panel = |i: usize| {
+                    let from = width * i as f64;
+                    rule.integrate(from, from + width, |u| f(value(u)))
+                };
+                (0..PANELS).map(panel).sum()
+            };
+            let mean = over_offset(&|x| x);
+            let relative = [2, 3, 4].map(|k| over_offset(&|x| ((x - mean) / mean).powi(k)));
+            (mean, Moments { scale: mean, relative, error: 1e-6 })
+        } else {
+            let mean = value(0.5);
+            (mean, Moments::certain(mean))
+        };
+        let channel = Channel {
+            mean: Known::new(mean, 1e-9 * mean),
+            ..Channel::unbiased(truth, moments, [1.0; 2])
+        };
+        Prediction::single(channel, CountLaw::always(f64::from(self.steps)))
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let u = if self.jitter { unit(rng) } else { 0.5 };
+        let depth = self.depth(setup, u, |t| medium.extinction(t));
+        Draw { value: [elementary::exp(-depth)], lookups: self.steps }
+    }
+}

@@ -1,0 +1,62 @@
+//! Woodcock (delta) tracking: fly through a majorant and stop at the first real collision.
+//!
+//! ```text
+//! X = 1 if every tentative collision is null, each with probability 1 − σ_t(tᵢ)/σ̄(tᵢ); else 0
+//! ```
+//!
+//! Unbiased for `σ̄ ≥ σ_t`; draws are 0 or 1. It is the terminating single particle model for
+//! `0 ≤ r ≤ 1`. Refused where σ̂ is no majorant: there the chance of a null collision is negative.
+//!
+//! ```text
+//! J_k = τ for every k,  Var X = T(1 − T),  E[lookups] = ∫ σ̄ T dt
+//! ```
+//!
+//! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
+//! for Monte Carlo neutronics calculations in reactors and other systems of complex geometry*,
+//! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
+//! technique*, Nuclear Science and Engineering 32 (1968).
+
+use crate::catalogue::Settings;
+use crate::estimators::rules::Null;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
+use crate::media::Extinction;
+use crate::problems::Transmittance;
+use crate::rng::Stream;
+use crate::theory::{Law, Prediction};
+
+/// Woodcock tracking; σ̂ is its only input.
+#[derive(Debug, Clone)]
+pub struct Woodcock;
+
+/// Adds the law of a draw that is 1 with probability T, else 0.
+#[must_use]
+pub fn zero_or_one(prediction: Prediction) -> Prediction {
+    let alive = prediction.channels[0].truth.value;
+    let law = Some(Law::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));
+    Prediction { law, ..prediction }
+}
+
+impl Estimator<Transmittance> for Woodcock {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        zero_or_one(setup.product(&Null).predict())
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        walk::product(setup, &Null, medium, rng)
+    }
+}

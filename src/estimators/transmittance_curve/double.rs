@@ -1,0 +1,98 @@
+//! The double particle model's continuous transmittance: one walk, many distances.
+//!
+//! ```text
+//! T̂(s) = T_c(s) ∏_{tᵢ < s} (1 − r(tᵢ)),  r = (σ_t − σ_c)/σ̂,  tᵢ a Poisson process of rate σ̂
+//! ```
+//!
+//! Unbiased at every s for every σ̂ that is positive wherever the residual is not zero. Between
+//! collisions T̂ follows the control's own decay. Values at two distances of one walk are
+//! correlated:
+//!
+//! ```text
+//! Var T̂(s) = T(s)² expm1(J₂(s)),  Cov[T̂(s₁), T̂(s₂)] = T(s₁) T(s₂) expm1(J₂(s₁)),  s₁ ≤ s₂
+//! lookups Poisson(∫σ̂)
+//! ```
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! sections 4.2–4.3, Figures 5 and 8.
+
+use super::portrait::{self, Portrait};
+use crate::catalogue::Settings;
+use crate::estimators::rules::Weight;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::{Extinction, Medium};
+use crate::numeric::{Span, elementary};
+use crate::problems::TransmittanceCurve;
+use crate::problems::transmittance_curve::{MOST, Values};
+use crate::rng::{Address, Stream, exponential};
+use crate::theory::{Prediction, curve};
+
+/// The double particle model; σ̂ and any control are its inputs.
+#[derive(Debug, Clone)]
+pub struct DoubleCurve;
+
+/// One walk: its tentative collisions `(t, σ_t(t), weight after it)`.
+#[must_use]
+pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream) -> Vec<[f64; 3]> {
+    let mut cursor = setup.sampling.begin();
+    let mut weight = 1.0;
+    let mut collisions = Vec::new();
+    while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+        let extinction = medium.extinction(cursor.t);
+        weight *= 1.0 - (extinction - setup.control.extinction(cursor.t)) / sampling;
+        collisions.push([cursor.t, extinction, weight]);
+    }
+    collisions
+}
+
+impl Estimator<TransmittanceCurve> for DoubleCurve {
+    const INPUTS: Inputs = Inputs::BOTH;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
+        setup.require_coverage()
+    }
+
+    fn predict(&self, setup: &Setup<TransmittanceCurve>) -> Prediction {
+        curve::predict(&setup.product(&Weight), setup.problem.ascending())
+    }
+
+    fn portrait(&self, setup: &Setup<TransmittanceCurve>, address: Address) -> Option<Portrait> {
+        Some(portrait::portrait(setup, address))
+    }
+
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<TransmittanceCurve>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        let support = setup.mesh.support();
+        let distances = setup.problem.ascending();
+        let mut values = Values { at: [0.0; MOST], count: distances.len() };
+        let mut next = 0;
+        let mut pass = |until: f64, weight: f64| {
+            while next < distances.len() && distances[next] <= until {
+                let upto = Span::new(support.from, distances[next]).intersect(support);
+                let depth = setup.control.optical_depth(upto).value;
+                values.at[next] = weight * elementary::exp(-depth);
+                next += 1;
+            }
+        };
+        let mut cursor = setup.sampling.begin();
+        let mut weight = 1.0;
+        let mut lookups = 0;
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            pass(cursor.t, weight);
+            let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
+            weight *= 1.0 - residual / sampling;
+            lookups += 1;
+        }
+        pass(f64::INFINITY, weight);
+        Draw { value: values, lookups }
+    }
+}

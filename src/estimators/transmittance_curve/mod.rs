@@ -1,0 +1,13 @@
+//! Estimators of the transmittance at many distances from one walk.
+
+pub mod portrait;
+
+use crate::estimators::estimators;
+use crate::problems::TransmittanceCurve;
+
+pub use portrait::Portrait;
+
+estimators! {
+    TransmittanceCurve:
+    double::DoubleCurve,
+}

@@ -1,0 +1,185 @@
+//! A case as written: a problem, its estimators, a sweep and what the user asks of the answer.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use super::scenario::{AnyScenario, Scenario};
+use super::source::{CaseError, Source};
+use super::sweep::SweepAxis;
+use crate::catalogue::{Domain, Page, Settings};
+use crate::media::Body;
+use crate::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
+
+/// A case file, read.
+pub struct Case {
+    /// The case's name.
+    pub name: String,
+    /// One line for tables and plots.
+    pub title: String,
+    /// The problem's name in the catalogue.
+    pub problem: String,
+    /// The problem with its medium and estimators.
+    pub scenario: Box<dyn AnyScenario>,
+    /// What is swept.
+    pub sweep: Option<SweepAxis>,
+    /// How many draws each experiment makes, if the case says.
+    pub draws: Option<u64>,
+    /// The relative differences that matter.
+    pub tolerance: Tolerance,
+    /// Whether experiments that are too short to pass are allowed.
+    pub allow_underpowered: bool,
+}
+
+/// The smallest relative differences that must be seen; `None` where the case does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tolerance {
+    /// Of the mean, relative to the truth.
+    pub mean: Option<f64>,
+    /// Of the variance, relative to the prediction.
+    pub variance: Option<f64>,
+    /// Of the lookups, relative to the prediction.
+    pub lookups: Option<f64>,
+}
+
+impl Case {
+    /// Reads a case.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read(source: &Source) -> Result<Self, CaseError> {
+        let faults = RefCell::default();
+        let root = source.parse(&faults);
+        let broken = !faults.borrow().is_empty();
+        let folder = source.folder();
+        let case = Self::from_root(&source.name, &Settings::new(&root, &folder, &faults));
+        let mut faults = faults.into_inner();
+        if broken {
+            // Half a file is missing keys that the other half may hold.
+            faults.retain(|fault| fault.path.is_empty() && fault.help == "this is not TOML");
+        }
+        faults.sort_by_key(|fault| fault.span.start);
+        match case {
+            Some(case) if faults.is_empty() => Ok(case),
+            _ => Err(CaseError::Faulty { source_text: source.clone(), faults }),
+        }
+    }
+
+    fn from_root(name: &str, root: &Settings) -> Option<Self> {
+        let title = root.text("title");
+        let expect_biased = read_expect(root);
+        let problem = root.table("problem").and_then(|problem| {
+            let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+            let (index, settings) = problem.choice(&names)?;
+            let body = Body::read(&settings);
+            let sweep = read_sweep(&settings);
+            let biased = expect_biased.unwrap_or(false);
+            let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
+            // The order is that of `problems::CATALOGUE`.
+            let scenario: Option<Box<dyn AnyScenario>> = match index {
+                0 => Scenario::<Transmittance>::read(&settings, body, biased, swept),
+                1 => Scenario::<FreeFlight>::read(&settings, body, biased, swept),
+                _ => Scenario::<TransmittanceCurve>::read(&settings, body, biased, swept),
+            };
+            settings.close();
+            Some((names[index].clone(), scenario?, sweep?))
+        });
+        let tolerance = match root.table_if("tolerance") {
+            Some(settings) => read_tolerance(&settings),
+            None => Some(Tolerance::default()),
+        };
+        let draws = if root.has("draws") {
+            root.count("draws", 2..=1_000_000_000_000).map(Some)
+        } else {
+            Some(None)
+        };
+        let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
+        root.close();
+        let (problem, scenario, sweep) = problem?;
+        expect_biased?;
+        Some(Self {
+            name: name.to_owned(),
+            title: title?,
+            problem,
+            scenario,
+            sweep,
+            draws: draws?,
+            tolerance: tolerance?,
+            allow_underpowered: underpowered? == "allow",
+        })
+    }
+
+    /// Reads every case of a file, or of a folder and those below it, in the order of the names.
+    ///
+    /// # Errors
+    ///
+    /// All files that cannot be read or are wrong.
+    pub fn read_all(paths: &[impl AsRef<Path>]) -> Result<Vec<Self>, Vec<CaseError>> {
+        let mut cases = Vec::new();
+        let mut errors = Vec::new();
+        for path in paths {
+            match files(path.as_ref()) {
+                Ok(files) => {
+                    for file in files {
+                        match Source::read(&file).and_then(|source| Self::read(&source)) {
+                            Ok(case) => cases.push(case),
+                            Err(error) => errors.push(error),
+                        }
+                    }
+                }
+                Err(error) => errors.push(error),
+            }
+        }
+        if errors.is_empty() { Ok(cases) } else { Err(errors) }
+    }
+}
+
+fn files(path: &Path) -> Result<Vec<std::path::PathBuf>, CaseError> {
+    let unreadable = |cause| CaseError::Unreadable { path: path.display().to_string(), cause };
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let mut found = Vec::new();
+    let mut folders = vec![path.to_owned()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
+            let entry = entry.map_err(unreadable)?.path();
+            if entry.is_dir() {
+                folders.push(entry);
+            } else if entry.extension().is_some_and(|extension| extension == "toml") {
+                found.push(entry);
+            }
+        }
+    }
+    found.sort();
+    if found.is_empty() {
+        return Err(CaseError::Empty { path: path.display().to_string() });
+    }
+    Ok(found)
+}
+
+/// Reads `expect = "biased"`; `None` after a mistake.
+pub(super) fn read_expect(settings: &Settings) -> Option<bool> {
+    settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
+}
+
+fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
+    match settings.table_if("sweep") {
+        Some(sweep) => SweepAxis::read(&sweep).map(Some),
+        None if settings.has("sweep") => None,
+        None => Some(None),
+    }
+}
+
+fn read_tolerance(settings: &Settings) -> Option<Tolerance> {
+    let read = |key: &'static str| {
+        if settings.has(key) {
+            settings.number(key, Domain::Positive).map(Some)
+        } else {
+            Some(None)
+        }
+    };
+    let (mean, variance, lookups) = (read("mean"), read("variance"), read("lookups"));
+    settings.close();
+    Some(Tolerance { mean: mean?, variance: variance?, lookups: lookups? })
+}

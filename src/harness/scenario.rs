@@ -1,0 +1,424 @@
+//! A problem with its medium and its estimators: where names become types.
+
+use std::sync::{Arc, OnceLock};
+
+use super::case::read_expect;
+use super::sweep::What;
+use crate::catalogue::{Page, Settings};
+use crate::estimators::trial::Entry;
+use crate::estimators::{
+    Estimated, Experiment, Portrait, Refusal, Setup, Site, controls, sampling,
+};
+use crate::media::{Body, Piecewise};
+use crate::rng::Address;
+use crate::theory::{Mesh, Prediction};
+
+/// One value of a sweep.
+pub type Variation = Option<(What, f64)>;
+
+/// Theory needs no random numbers, but recipes that learn from pilot rays do.
+const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
+
+/// A problem whose type is no longer visible.
+pub trait AnyScenario: Send + Sync {
+    /// The field's name in the catalogue.
+    fn medium(&self) -> &str;
+
+    /// The distance that each channel of a draw is about.
+    fn distances(&self) -> Vec<f64>;
+
+    /// How many estimators are written.
+    fn estimators(&self) -> usize;
+
+    /// Whether an estimator depends on a swept quantity.
+    fn depends_on(&self, estimator: usize, what: What) -> bool;
+
+    /// How an experiment is called in tables.
+    fn names(&self, estimator: usize, variation: Variation) -> Names;
+
+    /// Prepares an experiment; pilot rays and portraits find their random numbers at `address`.
+    fn prepare(&self, estimator: usize, variation: Variation, address: Address) -> Prepared;
+
+    /// What theory says of an experiment at a constant σ̂; `None` if it is refused.
+    ///
+    /// `Some((What::Sampling, σ̂))` replaces the estimator's own σ̂ too: it asks "what if".
+    fn predict(&self, estimator: usize, variation: Variation) -> Option<Prediction>;
+
+    /// The ray seen from the side, for estimators of a curve.
+    fn portrait(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+    ) -> Option<(Portrait, Vec<[f64; 2]>)>;
+
+    /// The largest `|σ_t − σ_c|` on the ray: the natural scale of σ̂ for an estimator.
+    fn natural_scale(&self, estimator: usize, variation: Variation) -> f64;
+}
+
+/// What an experiment is called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Names {
+    /// The estimator with its settings.
+    pub estimator: String,
+    /// The constant σ̂.
+    pub sampling: Option<f64>,
+    /// σ̂ in words.
+    pub sampling_kind: String,
+    /// The control in words.
+    pub control: String,
+}
+
+/// An experiment that can be drawn, or the reason why not.
+pub struct Prepared {
+    /// The experiment and what theory says of it.
+    pub outcome: Result<Ready, Refusal>,
+    /// Whether the case declares it biased.
+    pub expect_biased: bool,
+}
+
+/// An experiment that can be drawn.
+pub struct Ready {
+    /// What draws.
+    pub experiment: Box<dyn Experiment>,
+    /// What theory says. For a forced experiment the moments are void and removed.
+    pub prediction: Prediction,
+}
+
+/// An estimator as written.
+struct Written<P> {
+    name: String,
+    entry: Box<dyn Entry<P>>,
+    sampling: Option<Box<dyn sampling::Recipe>>,
+    control: Option<Box<dyn controls::Recipe>>,
+    expect_biased: bool,
+}
+
+/// A problem of known type.
+pub struct Scenario<P: Estimated> {
+    body: Body,
+    problem: Arc<P>,
+    mesh: OnceLock<Arc<Mesh>>,
+    sampling: Option<Box<dyn sampling::Recipe>>,
+    control: Option<Box<dyn controls::Recipe>>,
+    written: Vec<Written<P>>,
+}
+
+impl<P: Estimated> Scenario<P> {
+    /// Reads what follows the field: σ̂ and control for all, and the estimators.
+    pub fn read(
+        settings: &Settings,
+        body: Option<Body>,
+        expect_biased: bool,
+        swept: Option<What>,
+    ) -> Option<Box<dyn AnyScenario>> {
+        // Without a field nothing about it can be read, but unknown keys should not be blamed.
+        let Some(body) = body else {
+            for key in ["estimators", "sampling", "control", "distances", "ray", "span"] {
+                settings.entry(key);
+            }
+            return None;
+        };
+        let problem = P::read(&body, settings);
+        let sampling = read_if(settings, "sampling", &body, sampling::read);
+        let control = read_if(settings, "control", &body, controls::read);
+        let shared = settings.has("sampling") || swept == Some(What::Sampling);
+        let estimators = settings.tables("estimators").map(|tables| {
+            let read = |table: &Settings| Written::read(table, &body, expect_biased, shared);
+            tables.iter().map(read).collect::<Vec<_>>()
+        });
+        let estimators = estimators?;
+        if estimators.is_empty() {
+            settings.fault(
+                "estimators",
+                "no estimator is listed",
+                "list one, as in { ratio = {} }",
+            );
+        }
+        let written: Option<Vec<Written<P>>> = estimators.into_iter().collect();
+        Some(Box::new(Self {
+            problem: Arc::new(problem?),
+            mesh: OnceLock::new(),
+            sampling: sampling?,
+            control: control?,
+            written: written?,
+            body,
+        }))
+    }
+
+    fn mesh(&self) -> &Arc<Mesh> {
+        self.mesh.get_or_init(|| Arc::new(Mesh::new(self.problem.medium().clone())))
+    }
+
+    fn control_of(&self, index: usize, variation: Variation) -> Option<Box<dyn controls::Recipe>> {
+        let written = &self.written[index];
+        if !written.entry.inputs().control {
+            return None;
+        }
+        let own = written.control.as_deref();
+        match (own, variation) {
+            (Some(own), Some((What::Points, points))) => own.with_points(whole(points)),
+            (None, Some((What::Control, value))) => {
+                Some(Box::new(controls::constant::Constant { value }))
+            }
+            (None, Some((What::Points, points))) => {
+                self.control.as_deref().and_then(|control| control.with_points(whole(points)))
+            }
+            _ => None,
+        }
+    }
+
+    /// Calls `f` with the control that an experiment uses.
+    fn with_control<T>(
+        &self,
+        index: usize,
+        variation: Variation,
+        f: impl FnOnce(&dyn controls::Recipe) -> T,
+    ) -> T {
+        let written = &self.written[index];
+        if !written.entry.inputs().control {
+            return f(&controls::none::None);
+        }
+        if let Some(varied) = self.control_of(index, variation) {
+            return f(varied.as_ref());
+        }
+        if let Some(own) = written.control.as_deref().or(self.control.as_deref()) {
+            return f(own);
+        }
+        match written.entry.default_control() {
+            Some(default) => f(default.as_ref()),
+            None => f(&controls::none::None),
+        }
+    }
+
+    fn sampling_of(&self, index: usize) -> Option<&dyn sampling::Recipe> {
+        let written = &self.written[index];
+        let wanted = written.entry.inputs().sampling;
+        wanted.then(|| written.sampling.as_deref().or(self.sampling.as_deref())).flatten()
+    }
+
+    /// The setup of an experiment.
+    fn setup(
+        &self,
+        index: usize,
+        variation: Variation,
+        address: Address,
+    ) -> Result<Setup<P>, Refusal> {
+        let site = Site { body: &self.body, mesh: self.mesh(), address };
+        let control = self.with_control(index, variation, |recipe| recipe.prepare(&site))?;
+        let takes_sampling = self.written[index].entry.inputs().sampling;
+        let sampling: Option<Piecewise> = match variation {
+            Some((What::Sampling, value)) if takes_sampling => {
+                Some(Piecewise::constant(value, self.mesh().support()))
+            }
+            _ => match self.sampling_of(index) {
+                Some(recipe) => Some(recipe.prepare(&site, &control)?),
+                None => None,
+            },
+        };
+        let factor = match variation {
+            Some((What::SamplingScale, factor)) => factor,
+            _ => 1.0,
+        };
+        let sampling = sampling.map(|sampling| sampling.scaled(factor));
+        Ok(Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control))
+    }
+
+    fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
+        match variation {
+            Some((What::Albedo, albedo)) => self.written[index].entry.with_albedo(albedo),
+            _ => None,
+        }
+    }
+}
+
+impl<P: Estimated> AnyScenario for Scenario<P> {
+    fn medium(&self) -> &str {
+        self.body.name()
+    }
+
+    fn distances(&self) -> Vec<f64> {
+        self.problem.distances()
+    }
+
+    fn estimators(&self) -> usize {
+        self.written.len()
+    }
+
+    fn depends_on(&self, estimator: usize, what: What) -> bool {
+        let written = &self.written[estimator];
+        let inputs = written.entry.inputs();
+        match what {
+            What::Sampling => inputs.sampling && written.sampling.is_none(),
+            What::SamplingScale => inputs.sampling,
+            What::Albedo => written.entry.with_albedo(0.5).is_some(),
+            What::Control => inputs.control && written.control.is_none(),
+            What::Points => {
+                let control = written.control.as_deref().or(self.control.as_deref());
+                inputs.control && control.is_some_and(|control| control.with_points(2).is_some())
+            }
+        }
+    }
+
+    fn names(&self, estimator: usize, variation: Variation) -> Names {
+        let written = &self.written[estimator];
+        let label = self
+            .varied_entry(estimator, variation)
+            .map_or_else(|| written.entry.label(), |entry| entry.label());
+        let name = if label.is_empty() {
+            written.name.clone()
+        } else {
+            format!("{} ({label})", written.name)
+        };
+        let control = self.with_control(estimator, variation, |recipe| recipe.label());
+        let (sampling, sampling_kind) = match (variation, self.sampling_of(estimator)) {
+            (Some((What::Sampling, value)), _) if self.depends_on(estimator, What::Sampling) => {
+                (Some(value), "constant".into())
+            }
+            (Some((What::SamplingScale, factor)), Some(recipe)) => {
+                let kind = format!("{factor} × {}", recipe.label());
+                (recipe.constant().map(|value| value * factor), kind)
+            }
+            (_, Some(recipe)) => (recipe.constant(), recipe.label()),
+            (_, None) => (None, String::new()),
+        };
+        Names { estimator: name, sampling, sampling_kind, control }
+    }
+
+    fn prepare(&self, estimator: usize, variation: Variation, address: Address) -> Prepared {
+        let written = &self.written[estimator];
+        let varied = self.varied_entry(estimator, variation);
+        let entry = varied.as_deref().unwrap_or(&*written.entry);
+        let expect_biased = written.expect_biased;
+        let outcome = self.setup(estimator, variation, address).and_then(|setup| {
+            let refusal = entry.domain(&setup).err();
+            if let Some(refusal) = refusal {
+                if !expect_biased {
+                    return Err(refusal);
+                }
+                // Forced: the formulas do not hold here, only the truth does.
+                let mut prediction = entry.predict(&setup);
+                for channel in &mut prediction.channels {
+                    channel.moments = None;
+                }
+                prediction.lookups = None;
+                prediction.law = None;
+                prediction.covariances.clear();
+                return Ok(Ready { experiment: entry.experiment(setup), prediction });
+            }
+            let prediction = entry.predict(&setup);
+            Ok(Ready { experiment: entry.experiment(setup), prediction })
+        });
+        let outcome = outcome.and_then(refuse_what_cannot_be_computed);
+        Prepared { outcome, expect_biased }
+    }
+
+    fn predict(&self, estimator: usize, variation: Variation) -> Option<Prediction> {
+        let varied = self.varied_entry(estimator, variation);
+        let entry = varied.as_deref().unwrap_or(&*self.written[estimator].entry);
+        let setup = self.setup(estimator, variation, NOWHERE).ok()?;
+        entry.domain(&setup).ok()?;
+        Some(entry.predict(&setup))
+    }
+
+    fn portrait(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+    ) -> Option<(Portrait, Vec<[f64; 2]>)> {
+        let setup = self.setup(estimator, variation, address).ok()?;
+        let portrait = self.written[estimator].entry.portrait(&setup, address)?;
+        let site = Site { body: &self.body, mesh: self.mesh(), address };
+        let points = self.with_control(estimator, variation, |recipe| recipe.points(&site));
+        Some((portrait, points))
+    }
+
+    fn natural_scale(&self, estimator: usize, variation: Variation) -> f64 {
+        let Ok(setup) = self.setup(estimator, variation, NOWHERE) else { return 0.0 };
+        let control = &setup.control;
+        let largest = setup.mesh.largest(|t, sigma| (sigma - control.extinction(t)).abs());
+        largest.map_or(0.0, |(_, size)| size)
+    }
+}
+
+/// Below this transmittance the ratio of a draw to the truth is no longer a double.
+const FAINTEST: f64 = 1e-300;
+/// More lookups than this in one draw are a mistake in the case, not an experiment.
+const MOST_LOOKUPS: f64 = 1e6;
+
+fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
+    for channel in &ready.prediction.channels {
+        let truth = channel.truth.value;
+        if !truth.is_finite() || truth < FAINTEST && truth != 0.0 || truth == 0.0 {
+            let needs = "an answer between 1e-300 and infinity";
+            return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
+        }
+    }
+    match ready.prediction.lookups {
+        Some(lookups) if lookups.mean.is_nan() || lookups.mean > MOST_LOOKUPS => {
+            let needs = "at most a million lookups a draw";
+            Err(Refusal::mismatch(needs, format!("theory expects {:e}", lookups.mean)))
+        }
+        _ => Ok(ready),
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a checked count
+fn whole(points: f64) -> usize {
+    points as usize
+}
+
+fn read_if<T: ?Sized>(
+    settings: &Settings,
+    key: &'static str,
+    body: &Body,
+    read: fn(&Settings, &Body) -> Option<Box<T>>,
+) -> Option<Option<Box<T>>> {
+    match settings.table_if(key) {
+        Some(table) => read(&table, body).map(Some),
+        None if settings.has(key) => None,
+        None => Some(None),
+    }
+}
+
+impl<P: Estimated> Written<P> {
+    fn read(table: &Settings, body: &Body, expect_biased: bool, shared: bool) -> Option<Self> {
+        let names: Vec<String> = P::CATALOGUE.pages.iter().map(Page::name).collect();
+        let (index, settings) = table.choice(&names)?;
+        let entry = P::read_estimator(index, &settings);
+        let own_expect =
+            if settings.has("expect") { read_expect(&settings) } else { Some(expect_biased) };
+        let Some(entry) = entry else {
+            // The page's own mistakes are listed; what it would have taken is not known.
+            settings.entry("sampling");
+            settings.entry("control");
+            settings.close();
+            return None;
+        };
+        let inputs = entry.inputs();
+        let sampling = if inputs.sampling {
+            read_if(&settings, "sampling", body, sampling::read)
+        } else {
+            Some(None)
+        };
+        let control = if inputs.control {
+            read_if(&settings, "control", body, controls::read)
+        } else {
+            Some(None)
+        };
+        if inputs.sampling && !settings.has("sampling") && !shared {
+            let message = format!("`{}` has no sampling extinction", names[index]);
+            let help = "add `sampling.constant.value = …` to it or to the problem, or sweep it";
+            settings.fault_at(settings.span.clone(), "", message, help);
+        }
+        settings.close();
+        Some(Self {
+            name: names[index].clone(),
+            entry,
+            sampling: sampling?,
+            control: control?,
+            expect_biased: own_expect?,
+        })
+    }
+}

@@ -1,0 +1,151 @@
+//! A case file as text: parsed into a tree with places, and its mistakes shown in place.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use toml::de::{DeTable, DeValue};
+
+use crate::catalogue::{Entry, Fault, Node, Value};
+
+/// The text of a case file and where it came from.
+#[derive(Debug, Clone)]
+pub struct Source {
+    /// The case's name, as in `transmittance/eq21-sweep`.
+    pub name: String,
+    /// The file, or the name of a case built into the binary.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+}
+
+/// What is wrong with a case file, or why there is none.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// The file could not be read.
+    #[error("{path}: {cause}; give a case file, a folder of them, or the name of a built-in case")]
+    Unreadable {
+        /// The path as given.
+        path: String,
+        /// What the system said.
+        cause: std::io::Error,
+    },
+    /// A folder holds no case files.
+    #[error("{path}: no case file (*.toml) in this folder")]
+    Empty {
+        /// The folder.
+        path: String,
+    },
+    /// The file's contents are wrong.
+    #[error("{} mistake(s) in {}", faults.len(), source_text.path.display())]
+    Faulty {
+        /// The file.
+        source_text: Source,
+        /// Every mistake found, in the order of the file.
+        faults: Vec<Fault>,
+    },
+}
+
+impl CaseError {
+    /// The error with the lines of the file it is about, a caret under each mistake.
+    #[must_use]
+    pub fn render(&self, colour: bool) -> String {
+        let Self::Faulty { source_text, faults } = self else {
+            return format!("error: {self}");
+        };
+        let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
+        let path = source_text.path.display().to_string();
+        let shown = faults.iter().map(|fault| {
+            let title = if fault.path.is_empty() {
+                fault.message.clone()
+            } else {
+                format!("{} (in {})", fault.message, fault.path)
+            };
+            let end = source_text.text.len();
+            let span = fault.span.start.min(end)..fault.span.end.min(end);
+            let annotation = AnnotationKind::Primary.span(span).label(fault.help.as_str());
+            let snippet = Snippet::source(source_text.text.as_str())
+                .path(path.as_str())
+                .annotation(annotation);
+            renderer.render(&[Level::ERROR.primary_title(title).element(snippet)])
+        });
+        shown.collect::<Vec<_>>().join("\n\n")
+    }
+}
+
+impl Source {
+    /// Reads a file; its name is its path below a folder called `cases`, or its file name.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read as text.
+    pub fn read(path: &Path) -> Result<Self, CaseError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|cause| CaseError::Unreadable { path: path.display().to_string(), cause })?;
+        let parts: Vec<String> = path
+            .with_extension("")
+            .components()
+            .map(|part| part.as_os_str().to_string_lossy().into_owned())
+            .collect();
+        let below = parts.iter().rposition(|part| part == "cases").map(|at| at + 1);
+        let name = match below {
+            Some(at) if at < parts.len() => parts[at..].join("/"),
+            _ => parts.last().cloned().unwrap_or_default(),
+        };
+        Ok(Self { name, path: path.to_owned(), text })
+    }
+
+    /// The folder that file names inside the case start from.
+    #[must_use]
+    pub fn folder(&self) -> PathBuf {
+        self.path.parent().map(Path::to_owned).unwrap_or_default()
+    }
+
+    /// Parses the text; syntax errors are recorded, and what could be read is answered.
+    pub fn parse(&self, faults: &RefCell<Vec<Fault>>) -> Vec<Entry> {
+        let (table, errors) = DeTable::parse_recoverable(&self.text);
+        for error in errors {
+            faults.borrow_mut().push(Fault {
+                span: error.span().unwrap_or_default(),
+                path: String::new(),
+                message: error.message().replace('\n', ", "),
+                help: "this is not TOML".into(),
+            });
+        }
+        entries(table.get_ref())
+    }
+}
+
+fn entries(table: &DeTable<'_>) -> Vec<Entry> {
+    let entry = |(key, value): (&toml::Spanned<_>, &toml::Spanned<DeValue<'_>>)| {
+        let key: &toml::Spanned<std::borrow::Cow<'_, str>> = key;
+        let node = Node { value: read(value.get_ref()), span: value.span() };
+        Entry { key: key.get_ref().to_string(), key_span: key.span(), node }
+    };
+    let mut entries: Vec<Entry> = table.iter().map(entry).collect();
+    entries.sort_by_key(|entry| entry.key_span.start);
+    entries
+}
+
+fn read(value: &DeValue<'_>) -> Value {
+    match value {
+        DeValue::String(text) => Value::Text(text.to_string()),
+        DeValue::Integer(number) => {
+            let digits = i128::from_str_radix(number.as_str(), number.radix());
+            digits.map_or(Value::Other("a number too large"), |n| Value::Number(n as f64))
+        }
+        DeValue::Float(number) => {
+            number.as_str().parse().map_or(Value::Other("an unreadable number"), Value::Number)
+        }
+        DeValue::Boolean(flag) => Value::Boolean(*flag),
+        DeValue::Datetime(_) => Value::Other("a date"),
+        DeValue::Array(items) => Value::Array(
+            items
+                .iter()
+                .map(|item| Node { value: read(item.get_ref()), span: item.span() })
+                .collect(),
+        ),
+        DeValue::Table(table) => Value::Table(entries(table)),
+    }
+}

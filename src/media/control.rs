@@ -1,0 +1,62 @@
+//! The part of a medium that is integrated exactly.
+
+use super::{Medium, Piecewise};
+use crate::numeric::{Known, Span};
+
+/// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
+///
+/// The transmittance factors as `T = T_c · T_residual` with `T_c = exp(−∫σ_c)`; only the residual
+/// `σ_t − σ_c`, of either sign, is left to chance.
+#[derive(Clone)]
+pub enum Control {
+    /// `σ_c = 0`.
+    None,
+    /// Straight pieces: constant, mean, minimum, explorers.
+    Pieces(Piecewise),
+    /// Another field of the catalogue on the same ray.
+    Field(Medium),
+}
+
+impl Control {
+    /// `σ_c(t)` in 1/length.
+    #[must_use]
+    #[inline]
+    pub fn extinction(&self, t: f64) -> f64 {
+        match self {
+            Self::None => 0.0,
+            Self::Pieces(pieces) => pieces.value(t),
+            Self::Field(field) => field.extinction(t),
+        }
+    }
+
+    /// `∫σ_c` over a span inside the medium's support.
+    #[must_use]
+    pub fn optical_depth(&self, span: Span) -> Known {
+        match self {
+            Self::None => Known::new(0.0, 0.0),
+            Self::Pieces(pieces) => super::OpticalDepth::optical_depth(pieces, span),
+            Self::Field(field) => field.optical_depth(span),
+        }
+    }
+
+    /// The kinks of the control, in any order.
+    #[must_use]
+    pub fn breaks(&self) -> Vec<f64> {
+        match self {
+            Self::None => Vec::new(),
+            Self::Pieces(pieces) => pieces.knots().to_vec(),
+            Self::Field(field) => {
+                let support = field.support();
+                let mut breaks = field.breaks();
+                breaks.extend([support.from, support.to]);
+                breaks
+            }
+        }
+    }
+
+    /// Whether there is no control.
+    #[must_use]
+    pub fn is_none(&self) -> bool {
+        matches!(self, Self::None)
+    }
+}

@@ -1,0 +1,41 @@
+//! What is sought: each problem knows its own exact answer. Floor 2.
+
+pub mod free_flight;
+pub mod transmittance;
+pub mod transmittance_curve;
+
+use crate::catalogue::{Catalogue, Settings};
+use crate::media::{Body, Medium};
+
+pub use free_flight::FreeFlight;
+pub use transmittance::Transmittance;
+pub use transmittance_curve::TransmittanceCurve;
+
+/// Every problem, in the order of the design.
+pub const CATALOGUE: Catalogue = Catalogue {
+    name: "problems",
+    pages: &[
+        crate::page!(transmittance),
+        crate::page!(free_flight),
+        crate::page!(transmittance_curve),
+    ],
+};
+
+/// An integral along one ray.
+///
+/// Estimators are written for one problem, so that a wrong pairing does not compile.
+pub trait Problem: Send + Sync + Sized + 'static {
+    /// What one draw is: one number per channel.
+    type Value: Copy + AsRef<[f64]>;
+
+    /// Reads what the problem needs beside the field.
+    fn read(body: &Body, settings: &Settings) -> Option<Self>;
+
+    /// The field along the ray.
+    fn medium(&self) -> &Medium;
+
+    /// The distance that each channel of a draw is about.
+    fn distances(&self) -> Vec<f64> {
+        vec![self.medium().span().to]
+    }
+}

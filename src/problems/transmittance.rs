@@ -1,0 +1,37 @@
+//! The transmittance of a ray.
+//!
+//! ```text
+//! T = exp(−∫ σ_t(t) dt)
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
+//! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it | is required |
+//! | `sampling` | σ̂ of every estimator without its own | required unless swept |
+//! | `control` | σ_c of every estimator that takes one and has none of its own | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `control`, `points` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! The answer is exact because every field of the catalogue knows its optical depth.
+
+use super::Problem;
+use crate::catalogue::Settings;
+use crate::media::{Body, Medium};
+
+/// The transmittance of the whole ray.
+pub struct Transmittance {
+    medium: Medium,
+}
+
+impl Problem for Transmittance {
+    type Value = [f64; 1];
+
+    fn read(body: &Body, _: &Settings) -> Option<Self> {
+        Some(Self { medium: body.medium() })
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+}

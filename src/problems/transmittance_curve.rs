@@ -1,0 +1,72 @@
+//! The transmittance at many distances, all from one walk.
+//!
+//! ```text
+//! T(s_k) = exp(−∫₀^{s_k} σ_t(t) dt),  k = 1 … K
+//! ```
+//!
+//! Settings are those of `transmittance`, and
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `distances` | K, from 2 to 16: equally spaced up to the end of the ray | 8 |
+//!
+//! Means, variances and the covariance matrix are tested. The record also holds the ray's anatomy,
+//! as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.
+
+use super::Problem;
+use crate::catalogue::Settings;
+use crate::media::{Body, Medium};
+
+/// The most distances a curve can have.
+pub const MOST: usize = 16;
+
+/// The transmittance at ascending distances.
+pub struct TransmittanceCurve {
+    medium: Medium,
+    distances: Vec<f64>,
+}
+
+/// The values of one draw, one per distance.
+#[derive(Debug, Clone, Copy)]
+pub struct Values {
+    /// The values; the first `count` are meant.
+    pub at: [f64; MOST],
+    /// How many.
+    pub count: usize,
+}
+
+impl AsRef<[f64]> for Values {
+    fn as_ref(&self) -> &[f64] {
+        &self.at[..self.count]
+    }
+}
+
+impl TransmittanceCurve {
+    /// The distances, ascending.
+    #[must_use]
+    pub fn ascending(&self) -> &[f64] {
+        &self.distances
+    }
+}
+
+impl Problem for TransmittanceCurve {
+    type Value = Values;
+
+    fn read(body: &Body, settings: &Settings) -> Option<Self> {
+        let count = settings.count_or("distances", 2..=MOST as u64, 8)?;
+        let medium = body.medium();
+        let span = medium.span();
+        let step = span.length() / count as f64;
+        let mut distances: Vec<f64> = (1..count).map(|k| span.from + step * k as f64).collect();
+        distances.push(span.to);
+        Some(Self { medium, distances })
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn distances(&self) -> Vec<f64> {
+        self.distances.clone()
+    }
+}

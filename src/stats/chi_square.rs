@@ -1,0 +1,89 @@
+//! Pearson's test of counts against probabilities.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+
+use crate::numeric::sum::Sum;
+
+/// The fewest draws a bin must expect; smaller neighbours are merged.
+const LEAST: f64 = 10.0;
+
+/// The p-value of observed counts against the probabilities of their bins.
+///
+/// Neighbouring bins are merged until each expects at least ten draws. Probabilities that sum to
+/// less than 1 leave a last bin for the rest. `None` where fewer than two bins remain, so that
+/// there is nothing to test.
+///
+/// ```text
+/// χ² = Σ (O − E)²/E,  bins − 1 degrees of freedom
+/// ```
+///
+/// Source: K. Pearson, *On the criterion …*, Philosophical Magazine 50 (1900), 157–175.
+#[must_use]
+pub fn p_value(observed: &[Sum], probability: &[f64]) -> Option<f64> {
+    let observed: Vec<f64> = observed.iter().map(Sum::value).collect();
+    let draws = observed.iter().sum::<f64>();
+    let mut bins: Vec<(f64, f64)> = Vec::new();
+    let (mut count, mut expected) = (0.0, 0.0);
+    for (&o, &p) in observed.iter().zip(probability) {
+        count += o;
+        expected += p * draws;
+        if expected >= LEAST {
+            bins.push((count, expected));
+            (count, expected) = (0.0, 0.0);
+        }
+    }
+    let total = bins.iter().map(|bin| bin.1).sum::<f64>();
+    let rest = draws - total;
+    count += observed.iter().skip(probability.len()).sum::<f64>();
+    if rest >= LEAST {
+        bins.push((count, rest));
+    } else if let Some(last) = bins.last_mut() {
+        last.0 += count;
+        last.1 += rest;
+    }
+    if bins.len() < 2 {
+        return None;
+    }
+    let statistic: f64 = bins.iter().map(|(o, e)| (o - e).powi(2) / e).sum();
+    let law = ChiSquared::new((bins.len() - 1) as f64).ok()?;
+    Some(law.sf(statistic))
+}
+
+/// The number of bins that [`p_value`] would test at a planned number of draws.
+#[must_use]
+pub fn testable_bins(probability: &[f64], draws: f64) -> usize {
+    let mut bins = 0;
+    let mut expected = 0.0;
+    let mut total = 0.0;
+    for p in probability {
+        expected += p * draws;
+        if expected >= LEAST {
+            bins += 1;
+            total += expected;
+            expected = 0.0;
+        }
+    }
+    bins + usize::from(draws - total >= LEAST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counts(numbers: &[u32]) -> Vec<Sum> {
+        numbers.iter().map(|&n| [f64::from(n)].into_iter().collect()).collect()
+    }
+
+    #[test]
+    fn perfect_counts_pass_and_shifted_ones_do_not() {
+        let p = [0.25; 4];
+        assert!((p_value(&counts(&[250; 4]), &p).expect("bins") - 1.0).abs() < 1e-12);
+        assert!(p_value(&counts(&[350, 150, 250, 250]), &p).expect("bins") < 1e-6);
+    }
+
+    #[test]
+    fn rare_bins_are_merged_and_one_bin_is_no_test() {
+        assert_eq!(testable_bins(&[0.999, 0.0005, 0.0005], 1000.0), 1);
+        assert_eq!(p_value(&counts(&[1000, 0, 0]), &[0.999, 0.0005, 0.0005]), None);
+    }
+}

@@ -1,0 +1,7 @@
+//! Statistics that have never heard of light. Floor 1.
+
+pub mod chi_square;
+pub mod normal;
+pub mod tally;
+
+pub use tally::{Moments2, Tally};

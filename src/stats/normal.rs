@@ -1,0 +1,26 @@
+//! The normal law.
+
+use statrs::distribution::{ContinuousCDF, Normal};
+
+/// The `z` that a standard normal exceeds with probability `tail`.
+#[must_use]
+pub fn upper_quantile(tail: f64) -> f64 {
+    -Normal::standard().inverse_cdf(tail)
+}
+
+/// The `z` that a standard normal exceeds in absolute value with probability `level`.
+#[must_use]
+pub fn two_sided(level: f64) -> f64 {
+    upper_quantile(0.5 * level)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_the_tables() {
+        assert!((two_sided(0.05) - 1.959_963_984_540_054).abs() < 1e-9);
+        assert!((upper_quantile(1e-6) - 4.753_424_308_822_899).abs() < 1e-8);
+    }
+}

@@ -1,0 +1,106 @@
+//! Sums of draws, block by block.
+
+use crate::numeric::sum::Sum;
+
+/// Sums of `y` and `y²`, where `y` is a draw less a known shift, in units of a known scale.
+///
+/// The shift is the predicted mean, so that a small spread on a large mean loses no digits. Within
+/// a block the sums are plain; blocks are merged in the order of their addresses with compensated
+/// sums, so that the result does not depend on who drew which block.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tally {
+    /// How many draws.
+    pub draws: u64,
+    sum: Sum,
+    squares: Sum,
+    /// Draws that were not finite numbers.
+    pub not_finite: u64,
+}
+
+/// Mean and unbiased variance of the `y`s of a tally.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Moments2 {
+    /// `ȳ`.
+    pub mean: f64,
+    /// `s²`, with `n − 1` in the denominator; `None` below two draws.
+    pub variance: Option<f64>,
+}
+
+impl Tally {
+    /// The sums of one block, or a part of it.
+    #[must_use]
+    pub fn of(values: &[f64], shift: f64, scale: f64) -> Self {
+        let (mut sum, mut squares) = (0.0, 0.0);
+        let inverse = 1.0 / scale;
+        for value in values {
+            let y = (value - shift) * inverse;
+            sum += y;
+            squares += y * y;
+        }
+        let mut tally = Self { draws: values.len() as u64, ..Self::default() };
+        tally.sum.add(sum);
+        tally.squares.add(squares);
+        if !squares.is_finite() {
+            tally.not_finite = values.iter().filter(|x| !x.is_finite()).count() as u64;
+        }
+        tally
+    }
+
+    /// Adds the sums of the following block.
+    pub fn merge(&mut self, later: &Self) {
+        self.draws += later.draws;
+        self.not_finite += later.not_finite;
+        self.sum.merge(&later.sum);
+        self.squares.merge(&later.squares);
+    }
+
+    /// `mean of y²`: the variance about the shift; `None` without draws.
+    #[must_use]
+    pub fn mean_square(&self) -> Option<f64> {
+        (self.draws > 0).then(|| self.squares.value() / self.draws as f64)
+    }
+
+    /// Mean and variance of the `y`s; `None` without draws.
+    #[must_use]
+    pub fn moments(&self) -> Option<Moments2> {
+        let n = self.draws as f64;
+        if self.draws == 0 {
+            return None;
+        }
+        let mean = self.sum.value() / n;
+        let scatter = self.squares.value() - n * mean * mean;
+        let variance = (self.draws > 1).then(|| scatter.max(0.0) / (n - 1.0));
+        Some(Moments2 { mean, variance })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_merge_to_the_whole() {
+        let values: Vec<f64> = (0..1000).map(f64::from).collect();
+        let mut merged = Tally::default();
+        for block in values.chunks(64) {
+            merged.merge(&Tally::of(block, 499.5, 1.0));
+        }
+        let moments = merged.moments().expect("draws");
+        assert!(moments.mean.abs() < 1e-12);
+        // The variance of 0 … n − 1 is n(n + 1)/12.
+        assert!((moments.variance.expect("two draws") - 1000.0 * 1001.0 / 12.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn a_tiny_spread_on_a_large_mean_survives() {
+        let values = [1e9 + 1e-6, 1e9 - 1e-6];
+        let exact = (values[0] - values[1]).powi(2) / 2.0;
+        let variance = Tally::of(&values, 1e9, 1.0).moments().and_then(|m| m.variance);
+        assert!((variance.expect("two draws") / exact - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn draws_that_are_not_numbers_are_counted() {
+        assert_eq!(Tally::of(&[1.0, f64::NAN, f64::INFINITY], 0.0, 1.0).not_finite, 2);
+    }
+}

@@ -1,0 +1,307 @@
+//! A ray cut into panels on which everything is smooth.
+
+use crate::media::Medium;
+use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::sum::Sum;
+use crate::numeric::{Known, Span, roots};
+
+/// Nodes per panel unless the medium says that fewer do.
+const NODES: usize = 16;
+/// Above this many panels a medium's own number of nodes is used.
+const MANY: usize = 2000;
+/// Legendre coefficients of the two highest orders, relative to the largest value: a panel with
+/// larger ones is halved.
+const TAIL: f64 = 1e-13;
+/// Halvings of one panel at most.
+const HALVINGS: u32 = 40;
+
+/// The support of a medium cut into panels with Gauss–Legendre nodes, and σ_t at the nodes.
+///
+/// Panels end at every break of the medium. Between breaks they are halved until the interpolation
+/// polynomial through the nodes has no tail: until the Legendre coefficients
+/// `c_k = (2k + 1) Σ wᵢ f(tᵢ) P_k` of the two highest orders vanish to 1e-13 of the largest value.
+/// The quadrature error is then of the order of the square of that.
+#[derive(Clone)]
+pub struct Mesh {
+    medium: Medium,
+    rule: GaussLegendre,
+    tails: [Vec<f64>; 2],
+    panels: Vec<Span>,
+    t: Vec<f64>,
+    extinction: Vec<f64>,
+    adaptive: bool,
+    error: f64,
+}
+
+/// The nodes of one panel.
+#[derive(Debug, Clone, Copy)]
+pub struct Panel<'a> {
+    /// The panel's ends.
+    pub span: Span,
+    /// Distances of the nodes.
+    pub t: &'a [f64],
+    /// σ_t at the nodes.
+    pub extinction: &'a [f64],
+}
+
+impl Mesh {
+    /// Cuts the support of a medium and looks σ_t up at every node.
+    #[must_use]
+    pub fn new(medium: Medium) -> Self {
+        let support = medium.support();
+        let mut ends = medium.breaks();
+        ends.retain(|&t| support.contains_inside(t));
+        ends.extend([support.from, support.to]);
+        ends.sort_by(f64::total_cmp);
+        ends.dedup();
+        let many = ends.len() > MANY;
+        let nodes = if many { medium.panel_nodes().unwrap_or(NODES) } else { NODES };
+        let rule = GaussLegendre::new(nodes);
+        let tails = [legendre_row(&rule, nodes - 1), legendre_row(&rule, nodes - 2)];
+        let mut mesh = Self {
+            medium,
+            rule,
+            tails,
+            panels: Vec::new(),
+            t: Vec::new(),
+            extinction: Vec::new(),
+            adaptive: !many,
+            error: 0.0,
+        };
+        for span in ends.windows(2).map(|pair| Span::new(pair[0], pair[1])) {
+            mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()]);
+        }
+        mesh.error = mesh.measured_error();
+        mesh
+    }
+
+    /// The medium.
+    #[must_use]
+    pub fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    /// The support of the medium, which the panels cover.
+    #[must_use]
+    pub fn support(&self) -> Span {
+        self.medium.support()
+    }
+
+    /// The panels in ascending order.
+    pub fn panels(&self) -> impl DoubleEndedIterator<Item = Panel<'_>> + ExactSizeIterator {
+        let n = self.rule.nodes.len();
+        self.panels.iter().enumerate().map(move |(i, &span)| {
+            let nodes = i * n..(i + 1) * n;
+            Panel { span, t: &self.t[nodes.clone()], extinction: &self.extinction[nodes] }
+        })
+    }
+
+    /// A mesh that also ends panels at `cuts` and on which every function that `smooth` makes of a
+    /// panel's nodes is smooth.
+    ///
+    /// Media with thousands of breaks are only cut: their panels are short already.
+    #[must_use]
+    pub fn refined(
+        &self,
+        cuts: &[f64],
+        smooth: &dyn Fn(&Self, Panel<'_>) -> Vec<Vec<f64>>,
+    ) -> Self {
+        let mut cuts = cuts.to_vec();
+        cuts.sort_by(f64::total_cmp);
+        let mut fine = Self {
+            panels: Vec::with_capacity(self.panels.len()),
+            t: Vec::with_capacity(self.t.len()),
+            extinction: Vec::with_capacity(self.t.len()),
+            ..self.without_panels()
+        };
+        for panel in self.panels() {
+            let first = cuts.partition_point(|&cut| cut <= panel.span.from);
+            let last = cuts.partition_point(|&cut| cut < panel.span.to);
+            let inside = &cuts[first..last.max(first)];
+            if inside.is_empty() && !(self.adaptive && self.is_rough(&smooth(self, panel))) {
+                fine.keep(panel);
+                continue;
+            }
+            let mut ends = vec![panel.span.from];
+            ends.extend(inside);
+            ends.push(panel.span.to);
+            ends.dedup();
+            for pair in ends.windows(2) {
+                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth);
+            }
+        }
+        fine
+    }
+
+    fn without_panels(&self) -> Self {
+        Self {
+            medium: self.medium.clone(),
+            rule: self.rule.clone(),
+            tails: self.tails.clone(),
+            panels: Vec::new(),
+            t: Vec::new(),
+            extinction: Vec::new(),
+            adaptive: self.adaptive,
+            error: self.error,
+        }
+    }
+
+    fn keep(&mut self, panel: Panel<'_>) {
+        self.panels.push(panel.span);
+        self.t.extend_from_slice(panel.t);
+        self.extinction.extend_from_slice(panel.extinction);
+    }
+
+    /// Adds a panel, or its halves where a function on it is not smooth.
+    fn grow(
+        &mut self,
+        span: Span,
+        halvings: u32,
+        smooth: &dyn Fn(&Self, Panel<'_>) -> Vec<Vec<f64>>,
+    ) {
+        let t: Vec<f64> =
+            self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();
+        let extinction = self.medium.extinctions(&t);
+        let panel = Panel { span, t: &t, extinction: &extinction };
+        let middle = span.middle();
+        let divisible = span.contains_inside(middle) && halvings > 0;
+        if self.adaptive && divisible && self.is_rough(&smooth(self, panel)) {
+            self.grow(Span::new(span.from, middle), halvings - 1, smooth);
+            self.grow(Span::new(middle, span.to), halvings - 1, smooth);
+        } else {
+            self.keep(panel);
+        }
+    }
+
+    fn is_rough(&self, functions: &[Vec<f64>]) -> bool {
+        functions.iter().any(|f| {
+            let largest = f.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+            self.tails.iter().any(|row| dot(row, f).abs() > TAIL * largest)
+        })
+    }
+
+    /// `∫ f` over a panel, from values at its nodes.
+    #[must_use]
+    pub fn integral(&self, panel: Panel<'_>, f: &[f64]) -> f64 {
+        panel.span.length() * dot(&self.rule.weights, f)
+    }
+
+    /// `∫ f` from the panel's beginning to each of its nodes.
+    #[must_use]
+    pub fn running(&self, panel: Panel<'_>, f: &[f64]) -> Vec<f64> {
+        let length = panel.span.length();
+        self.rule.running.iter().map(|row| length * dot(row, f)).collect()
+    }
+
+    /// `∫ f(t, σ_t)` over the support.
+    pub fn integrate(&self, mut f: impl FnMut(f64, f64) -> f64) -> f64 {
+        let mut sum = Sum::default();
+        for panel in self.panels() {
+            let nodes = panel.t.iter().zip(panel.extinction);
+            let values: Vec<f64> = nodes.map(|(&t, &sigma)| f(t, sigma)).collect();
+            sum.add(self.integral(panel, &values));
+        }
+        sum.value()
+    }
+
+    /// A relative error bound for integrals on this mesh: how far `∫σ_t` by quadrature is from the
+    /// exact optical depth, and 1e-13 for what that does not show.
+    #[must_use]
+    pub fn relative_error(&self) -> f64 {
+        self.error
+    }
+
+    fn measured_error(&self) -> f64 {
+        let exact = self.medium.optical_depth(self.support()).value;
+        if exact == 0.0 {
+            return 1e-13;
+        }
+        1e-13 + ((self.integrate(|_, sigma| sigma) - exact) / exact).abs()
+    }
+
+    /// The distances at which `f(t, σ_t)` changes sign.
+    pub fn roots(&self, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let mut found = Vec::new();
+        let at = |t: f64| f(t, self.medium.extinction(t));
+        for panel in self.panels() {
+            let mut last = None;
+            for (&t, &sigma) in panel.t.iter().zip(panel.extinction) {
+                let value = f(t, sigma);
+                match last {
+                    Some((before, old)) if (old < 0.0) != (value < 0.0) => {
+                        found.push(roots::root(before, t, at));
+                    }
+                    _ => {}
+                }
+                last = Some((t, value));
+            }
+            if !self.adaptive {
+                continue;
+            }
+            // The gaps between the outer nodes and the ends, short of the jumps that sit there;
+            // thousands of panels have gaps too short to matter.
+            let edge = 1e-9 * panel.span.length();
+            let (first, end) = (panel.t[0], panel.t[panel.t.len() - 1]);
+            for (a, b) in [(panel.span.from + edge, first), (end, panel.span.to - edge)] {
+                if a < b && (at(a) < 0.0) != (at(b) < 0.0) {
+                    found.push(roots::root(a, b, at));
+                }
+            }
+        }
+        found
+    }
+
+    /// Where `f(t, σ_t)` is largest, and how large: the best node, then a search between its
+    /// neighbours. `None` on an empty support.
+    pub fn largest(&self, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
+        self.largest_in(self.support(), f)
+    }
+
+    /// The same over a part of the support that begins and ends with panels.
+    pub fn largest_in(&self, span: Span, f: impl Fn(f64, f64) -> f64) -> Option<(f64, f64)> {
+        let (from, to) =
+            (self.t.partition_point(|&t| t < span.from), self.t.partition_point(|&t| t <= span.to));
+        let best = (from..to)
+            .map(|i| (i, f(self.t[i], self.extinction[i])))
+            .max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (index, at_node) = best;
+        let panel = self.panels[index / self.rule.nodes.len()];
+        let edge = 1e-9 * panel.length();
+        let inside = Span::new(panel.from + edge, panel.to - edge);
+        let before = if index == 0 { inside.from } else { self.t[index - 1].max(inside.from) };
+        let after = self.t.get(index + 1).map_or(inside.to, |t| t.min(inside.to));
+        let at = |t: f64| f(t, self.medium.extinction(t));
+        let peak = roots::minimum(before, after, 1e-9 * panel.length(), |t| -at(t));
+        let candidates =
+            [(self.t[index], at_node), (peak, at(peak)), (before, at(before)), (after, at(after))];
+        candidates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// τ over the support.
+    #[must_use]
+    pub fn optical_depth(&self) -> Known {
+        self.medium.optical_depth(self.support())
+    }
+}
+
+/// The weights that turn node values into the Legendre coefficient of the given order on `[0, 1]`.
+fn legendre_row(rule: &GaussLegendre, order: usize) -> Vec<f64> {
+    let polynomial = |x: f64| {
+        let x = 2.0 * x - 1.0;
+        let (mut previous, mut value) = (1.0, x);
+        if order == 0 {
+            return 1.0;
+        }
+        for k in 2..=order {
+            let k = k as f64;
+            (previous, value) = (value, ((2.0 * k - 1.0) * x * value - (k - 1.0) * previous) / k);
+        }
+        value
+    };
+    let scale = 2.0 * order as f64 + 1.0;
+    rule.nodes.iter().zip(&rule.weights).map(|(&x, &w)| scale * w * polynomial(x)).collect()
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}

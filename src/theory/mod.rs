@@ -1,0 +1,21 @@
+//! What theory says of a draw: moments, costs, laws and optima, without drawing.
+//!
+//! Floor 3. Nothing here holds a generator of random numbers. All integrals run over one [`Mesh`]
+//! per medium and ray, on which σ_t is looked up once and shared by every σ̂, control and rule.
+
+pub mod count;
+pub mod curve;
+pub mod flight;
+pub mod mesh;
+pub mod moments;
+pub mod optimum;
+pub mod prediction;
+pub mod product;
+pub mod rule;
+pub mod volterra;
+
+pub use count::CountLaw;
+pub use mesh::Mesh;
+pub use moments::Moments;
+pub use prediction::{Channel, Law, Prediction};
+pub use rule::{Outcome, Rule};

@@ -1,0 +1,98 @@
+//! All that theory says of one experiment.
+
+use super::{CountLaw, Moments};
+use crate::numeric::Known;
+
+/// What theory says of an experiment before a draw is made.
+#[derive(Debug, Clone)]
+pub struct Prediction {
+    /// One entry per channel of the value.
+    pub channels: Vec<Channel>,
+    /// The number of lookups of one draw; `None` where no closed form is known.
+    pub lookups: Option<CountLaw>,
+    /// The whole law of the draw, where it is known.
+    pub law: Option<Law>,
+    /// The covariances of the channels, where there are several.
+    pub covariances: Vec<Covariance>,
+    /// The share of the ray on which the variance stays bounded, `w ≤ 2σ_t`; `None` where the
+    /// estimator has no variance introduction density.
+    pub stable_share: Option<f64>,
+}
+
+/// What theory says of one channel.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// The name, empty where there is one channel only.
+    pub name: String,
+    /// What the estimator is meant to find.
+    pub truth: Known,
+    /// What its draws are on average; equal to `truth` if it is unbiased.
+    pub mean: Known,
+    /// Its central moments; `None` where no closed form is known.
+    pub moments: Option<Moments>,
+    /// How many draws it takes to see the events that carry the variance, and those that carry
+    /// the fourth moment; below these, sample statistics mislead.
+    pub rare_event_sizes: [f64; 2],
+}
+
+impl Channel {
+    /// A single unbiased channel.
+    #[must_use]
+    pub fn unbiased(truth: Known, moments: Moments, rare_event_sizes: [f64; 2]) -> Self {
+        let name = String::new();
+        Self { name, truth, mean: truth, moments: Some(moments), rare_event_sizes }
+    }
+}
+
+/// The covariance of two channels, and of what measures it.
+#[derive(Debug, Clone, Copy)]
+pub struct Covariance {
+    /// The two channels.
+    pub pair: [usize; 2],
+    /// `E[(X₁ − T₁)(X₂ − T₂)]`.
+    pub value: f64,
+    /// `Var[(X₁ − T₁)(X₂ − T₂)]`.
+    pub variance: f64,
+}
+
+/// A law that is known as a whole.
+#[derive(Debug, Clone)]
+pub enum Law {
+    /// The draw takes the given values with the given probabilities, which sum to 1 or to a little
+    /// less (what is left is a tail without name).
+    Atoms(Vec<(f64, f64)>),
+    /// The draw is a distance with the given quantiles: `bins[i]` is where the CDF reaches
+    /// `(i + 1)/n` of the probability `1 − escape`; beyond the last lies the atom of the rays that
+    /// escape.
+    Distances {
+        /// Upper ends of the equally probable bins, except for the last, which ends at the ray's.
+        bins: Vec<f64>,
+        /// The end of the ray: the value of a draw that escapes.
+        end: f64,
+        /// The probability of escaping.
+        escape: f64,
+    },
+}
+
+impl Prediction {
+    /// An experiment with one unbiased channel.
+    #[must_use]
+    pub fn single(channel: Channel, lookups: CountLaw) -> Self {
+        Self {
+            channels: vec![channel],
+            lookups: Some(lookups),
+            law: None,
+            covariances: Vec::new(),
+            stable_share: None,
+        }
+    }
+
+    /// `1/(V · E[M])`, the efficiency per lookup, of the last channel; `None` where either is
+    /// unknown or zero.
+    #[must_use]
+    pub fn figure_of_merit(&self) -> Option<f64> {
+        let variance = self.channels.last()?.moments?.variance();
+        let cost = self.lookups?.mean;
+        (variance > 0.0 && cost > 0.0).then(|| 1.0 / (variance * cost))
+    }
+}

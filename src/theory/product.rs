@@ -1,0 +1,216 @@
+//! Product estimators: all moments and all costs.
+//!
+//! ```text
+//! X = T_c ∏ W(tᵢ),  tᵢ a Poisson process of rate σ̂ on the support, W independent
+//! E[X^k] = T_c^k exp(−∫ σ̂ (1 − E[W^k]) dt)
+//! ```
+//!
+//! k = 2 is Eq. 16 of L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased
+//! Light Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36
+//! (2017), with the variance introduction densities of its Eqs. 17–20.
+
+use super::mesh::Panel;
+use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule};
+use crate::media::{Control, Piecewise};
+use crate::numeric::sum::Sum;
+
+/// A product estimator on a ray: everything its moments depend on.
+#[derive(Clone, Copy)]
+pub struct Product<'a> {
+    /// The medium, cut into panels.
+    pub mesh: &'a Mesh,
+    /// σ̂.
+    pub sampling: &'a Piecewise,
+    /// σ_c.
+    pub control: &'a Control,
+    /// What happens at a collision.
+    pub rule: &'a dyn Rule,
+    /// The rate at which the walk also ends without a lookup, 1/length: that of a control which
+    /// is sampled instead of integrated.
+    pub killing: f64,
+}
+
+/// The integrals that moments and costs are made of.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Integrals {
+    /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4.
+    pub losses: [f64; 4],
+    /// `ln n(k) = ∫ σ̂ (ρ ln(ρ/q) − ρ + 1)`, `ρ = q |W|^k`, for k = 2 and 4.
+    pub rarity: [f64; 2],
+    /// `E[M]`, `E[M(M − 1)]`.
+    pub lookups: [f64; 2],
+    /// `∫σ̂`.
+    pub flown: f64,
+    /// The length on which `w ≤ 2σ_t`.
+    pub stable: f64,
+}
+
+/// σ̂ and the outcome at the nodes of one panel.
+struct Nodes {
+    sampling: Vec<f64>,
+    outcome: Vec<Outcome>,
+}
+
+impl<'a> Product<'a> {
+    /// A product estimator that ends at collisions only.
+    #[must_use]
+    pub fn new(
+        mesh: &'a Mesh,
+        sampling: &'a Piecewise,
+        control: &'a Control,
+        rule: &'a dyn Rule,
+    ) -> Self {
+        Self { mesh, sampling, control, rule, killing: 0.0 }
+    }
+
+    fn ratio(&self, t: f64, extinction: f64) -> f64 {
+        let residual = extinction - self.control.extinction(t);
+        // Where both vanish there are no collisions, and any finite ratio will do.
+        if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
+    }
+
+    fn nodes(&self, panel: Panel<'_>) -> Nodes {
+        let sampling = panel.t.iter().map(|&t| self.sampling.value(t)).collect();
+        let at = panel.t.iter().zip(panel.extinction);
+        let outcome = at.map(|(&t, &sigma)| self.rule.outcome(self.ratio(t, sigma))).collect();
+        Nodes { sampling, outcome }
+    }
+
+    /// The mesh on which this estimator's integrands are smooth: cut at the breaks of σ̂ and
+    /// control and where the ratio crosses a kink of the rule.
+    #[must_use]
+    pub fn mesh(&self, further_cuts: &[f64]) -> Mesh {
+        let mut cuts = further_cuts.to_vec();
+        cuts.extend(self.sampling.knots());
+        cuts.extend(self.control.breaks());
+        let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
+        let mut kinks = Vec::new();
+        for level in self.rule.kinks() {
+            kinks.extend(cut.roots(|t, sigma| {
+                sigma - self.control.extinction(t) - level * self.sampling.value(t)
+            }));
+        }
+        cut.refined(&kinks, &|mesh, panel| {
+            let nodes = self.nodes(panel);
+            let pairs = || nodes.sampling.iter().zip(&nodes.outcome);
+            let deaths: Vec<f64> =
+                pairs().map(|(s, o)| self.killing + s * (1.0 - o.survival)).collect();
+            let decay = mesh.running(panel, &deaths).iter().map(|k| (-k).exp()).collect();
+            vec![
+                pairs().map(|(s, o)| s * o.mean_loss(2)).collect(),
+                pairs().map(|(s, o)| s * o.mean_loss(4)).collect(),
+                decay,
+            ]
+        })
+    }
+
+    /// All integrals from the beginning of the support to each of `ends` (ascending; the mesh must
+    /// be cut there).
+    #[must_use]
+    pub fn integrals(&self, mesh: &Mesh, ends: &[f64]) -> Vec<Integrals> {
+        let mut total = Totals::default();
+        let mut found = Vec::with_capacity(ends.len());
+        let mut ends = ends.iter().peekable();
+        for panel in mesh.panels() {
+            while ends.next_if(|&&end| end <= panel.span.from).is_some() {
+                found.push(total.read());
+            }
+            total.add(mesh, panel, &self.nodes(panel), self.killing);
+        }
+        found.extend(ends.map(|_| total.read()));
+        found
+    }
+
+    /// Mean, moments, rarity, costs and stability of the estimate of `T` over the whole support.
+    #[must_use]
+    pub fn predict(&self) -> Prediction {
+        let mesh = self.mesh(&[]);
+        let all = self.integrals(&mesh, &[mesh.support().to])[0];
+        let truth = mesh.optical_depth().exp_neg();
+        let moments = Moments::of_product(truth.value, all.losses, mesh.relative_error());
+        let channel = Channel::unbiased(truth, moments, all.rarity.map(f64::exp));
+        let length = mesh.support().length();
+        let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
+        Prediction { stable_share, ..Prediction::single(channel, all.count()) }
+    }
+}
+
+impl Integrals {
+    /// The law of the number of lookups.
+    #[must_use]
+    pub fn count(&self) -> CountLaw {
+        let [mean, pairs] = self.lookups;
+        // A walk that nothing ends early makes Poisson many lookups.
+        if (mean - self.flown).abs() <= 1e-13 * self.flown {
+            return CountLaw::poisson(self.flown);
+        }
+        CountLaw { mean, variance: (pairs + mean - mean * mean).max(0.0), poisson: false }
+    }
+}
+
+/// Running sums over panels.
+#[derive(Default)]
+struct Totals {
+    losses: [Sum; 4],
+    rarity: [Sum; 2],
+    lookups: [Sum; 2],
+    flown: Sum,
+    deaths: Sum,
+    survivals: Sum,
+    stable: Sum,
+}
+
+impl Totals {
+    fn add(&mut self, mesh: &Mesh, panel: Panel<'_>, nodes: &Nodes, killing: f64) {
+        let over = |f: &dyn Fn(&Outcome) -> f64| -> Vec<f64> {
+            nodes.sampling.iter().zip(&nodes.outcome).map(|(s, o)| s * f(o)).collect()
+        };
+        for (k, sum) in (1..).zip(&mut self.losses) {
+            sum.add(mesh.integral(panel, &over(&|o| o.mean_loss(k))));
+            sum.add(killing * panel.span.length());
+        }
+        for (k, sum) in [2, 4].into_iter().zip(&mut self.rarity) {
+            sum.add(mesh.integral(panel, &over(&|o| rarity(o, k))));
+            sum.add(killing * panel.span.length());
+        }
+        let deaths: Vec<f64> =
+            over(&|o| 1.0 - o.survival).iter().map(|rate| rate + killing).collect();
+        let survivals = over(&|o| o.survival);
+        let (k0, a0) = (self.deaths.value(), self.survivals.value());
+        let alive: Vec<f64> =
+            mesh.running(panel, &deaths).iter().map(|k| (-(k0 + k)).exp()).collect();
+        let before: Vec<f64> = mesh.running(panel, &survivals).iter().map(|a| a0 + a).collect();
+        let first: Vec<f64> = nodes.sampling.iter().zip(&alive).map(|(s, e)| s * e).collect();
+        let second: Vec<f64> = first.iter().zip(&before).map(|(f, a)| 2.0 * f * a).collect();
+        self.lookups[0].add(mesh.integral(panel, &first));
+        self.lookups[1].add(mesh.integral(panel, &second));
+        self.flown.add(mesh.integral(panel, &nodes.sampling));
+        self.deaths.add(mesh.integral(panel, &deaths));
+        self.survivals.add(mesh.integral(panel, &survivals));
+        let introduced = over(&|o| o.mean_loss(2));
+        let bounded = introduced.iter().zip(panel.extinction);
+        let stable: Vec<f64> = bounded
+            .map(|(&w, &sigma)| f64::from(u8::from(w + killing <= 2.0 * sigma * (1.0 + 1e-12))))
+            .collect();
+        self.stable.add(mesh.integral(panel, &stable));
+    }
+
+    fn read(&self) -> Integrals {
+        Integrals {
+            losses: self.losses.map(|sum| sum.value()),
+            rarity: self.rarity.map(|sum| sum.value()),
+            lookups: self.lookups.map(|sum| sum.value()),
+            flown: self.flown.value(),
+            stable: self.stable.value(),
+        }
+    }
+}
+
+/// `ρ ln(ρ/q) − ρ + 1` with `ρ = q|W|^k`: the relative entropy, per collision, of the walks that
+/// carry `E[X^k]` against the walks that occur.
+fn rarity(outcome: &Outcome, k: i32) -> f64 {
+    let size = outcome.weight.abs();
+    let rho = outcome.survival * size.powi(k);
+    let entropy = if rho > 0.0 { rho * f64::from(k) * size.ln() } else { 0.0 };
+    entropy - rho + 1.0
+}

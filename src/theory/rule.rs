@@ -1,0 +1,32 @@
+//! What one tentative collision does to a particle.
+
+/// The law of the factor `W` at a tentative collision: the particle survives with probability
+/// `survival` and its weight is multiplied by `weight`; otherwise the walk ends with `X = 0`.
+///
+/// Unbiased where `survival · weight = 1 − r`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outcome {
+    /// `q_tran`, in `[0, 1]`.
+    pub survival: f64,
+    /// The factor of a survivor, `(1 − r)/q_tran`.
+    pub weight: f64,
+    /// `1 − weight`, formed without cancellation.
+    pub loss: f64,
+}
+
+impl Outcome {
+    /// `E[(1 − W)^k]`.
+    #[must_use]
+    pub fn mean_loss(&self, k: i32) -> f64 {
+        (1.0 - self.survival) + self.survival * self.loss.powi(k)
+    }
+}
+
+/// A product estimator, seen at one collision.
+pub trait Rule: Send + Sync {
+    /// What happens at a collision with ratio `r = (σ_t − σ_c)/σ̂`.
+    fn outcome(&self, ratio: f64) -> Outcome;
+
+    /// The ratios at which [`Rule::outcome`] or one of its derivatives jumps: panels end there.
+    fn kinks(&self) -> Vec<f64>;
+}
