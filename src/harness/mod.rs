@@ -7,15 +7,18 @@
 pub mod case;
 pub mod checks;
 pub mod curves;
+pub mod filter;
 pub mod judge;
 pub mod plan;
 pub mod record;
 pub mod run;
 pub mod scenario;
 pub mod source;
+pub mod suite;
 pub mod sweep;
 
 pub use case::Case;
+pub use filter::Filter;
 pub use plan::{Options, Plan};
 pub use record::Record;
 pub use source::{CaseError, Source};

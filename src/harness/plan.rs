@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::case::Case;
 use super::checks::{self, Kind, Limits, Statistic, Subject};
+use super::filter::Filter;
 use super::scenario::{Names, Prepared, Ready, Variation};
 use crate::estimators::Refusal;
 use crate::rng::{Address, name_hash};
@@ -25,11 +26,13 @@ pub struct Options {
     pub alpha: f64,
     /// Stop drawing after this many seconds.
     pub seconds: Option<f64>,
+    /// Only these experiments.
+    pub filter: Option<Filter>,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { seed: 1, draws: None, alpha: 1e-3, seconds: None }
+        Self { seed: 1, draws: None, alpha: 1e-3, seconds: None, filter: None }
     }
 }
 
@@ -95,8 +98,11 @@ impl<'a> Plan<'a> {
     /// Prepares every experiment of the cases.
     #[must_use]
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
-        let cases: Vec<PlannedCase> =
-            cases.par_iter().map(|case| plan_case(case, options)).collect();
+        let cases: Vec<PlannedCase> = cases
+            .par_iter()
+            .map(|case| plan_case(case, options))
+            .filter(|case| !case.experiments.is_empty())
+            .collect();
         let mut counts = [0_usize; 2];
         for planned in &cases {
             for experiment in &planned.experiments {
@@ -132,6 +138,11 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
             }
             _ => points.push((estimator, None)),
         }
+    }
+    if let Some(filter) = &options.filter {
+        points.retain(|&(estimator, variation)| {
+            filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
+        });
     }
     let draws = options.draws.or(case.draws).unwrap_or(DRAWS);
     let plan = |&(estimator, variation): &(usize, Variation)| {

@@ -48,6 +48,12 @@ pub enum CaseError {
 }
 
 impl CaseError {
+    /// How many mistakes it lists.
+    #[must_use]
+    pub fn mistakes(&self) -> usize {
+        if let Self::Faulty { faults, .. } = self { faults.len() } else { 1 }
+    }
+
     /// The error with the lines of the file it is about, a caret under each mistake.
     #[must_use]
     pub fn render(&self, colour: bool) -> String {

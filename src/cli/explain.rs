@@ -1,0 +1,42 @@
+//! `trueflight explain`: the manual page of anything in the catalogue.
+
+use clap::Args;
+use trueflight::harness::suite;
+
+use super::Console;
+use super::list::catalogues;
+use super::output;
+
+/// Arguments of `explain`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot
+    name: String,
+}
+
+/// Prints every page of that name; `console` has no say in it.
+pub fn main(arguments: &Arguments, _console: &Console) -> anyhow::Result<u8> {
+    let name = &arguments.name;
+    let mut found = Vec::new();
+    let mut names = Vec::new();
+    for (part, catalogue) in catalogues() {
+        for page in catalogue.pages {
+            if page.name() == *name {
+                found.push(format!("{name} ({part})\n\n{}\n", page.text().trim_end()));
+            }
+            names.push(page.name());
+        }
+    }
+    if let Some(source) = suite::find(name) {
+        found.push(format!("{name} (cases)\n\n{}\n", source.text.trim_end()));
+    }
+    if found.is_empty() {
+        names.extend(suite::suite().into_iter().map(|source| source.name));
+        let near = names.iter().filter(|known| known.contains(name.as_str()));
+        let near: Vec<&str> = near.map(String::as_str).collect();
+        let hint = if near.is_empty() { String::new() } else { format!(": {}", near.join(", ")) };
+        anyhow::bail!("nothing is called \"{name}\"; `trueflight list` shows the names{hint}");
+    }
+    output::print(&found.join("\n"))?;
+    Ok(0)
+}

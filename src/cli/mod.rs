@@ -1,0 +1,83 @@
+//! Arguments, exit codes, progress, and the only prints. Floor 7.
+//!
+//! | exit code | meaning |
+//! |---|---|
+//! | 0 | all pass |
+//! | 1 | at least one experiment fails |
+//! | 2 | usage, a bad case file, input or output |
+//! | 3 | nothing fails, but something is inconclusive |
+
+mod completions;
+mod explain;
+mod list;
+mod output;
+mod plan;
+mod predict;
+mod run;
+mod selection;
+
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand};
+
+/// Everything that went wrong before or beside the verdicts.
+pub const USAGE: u8 = 2;
+
+/// Prove that a light-transport estimator is fair: compare its mean, variance, cost and law with
+/// exact theory over millions of draws.
+#[derive(Debug, Parser)]
+#[command(name = "trueflight", version, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    #[command(flatten)]
+    console: Console,
+}
+
+/// What concerns the console, whatever the command.
+#[derive(Debug, Clone, Args)]
+pub struct Console {
+    /// When to use colours; `NO_COLOR` is honoured by `auto`
+    #[arg(long, global = true, value_enum, default_value_t, value_name = "WHEN")]
+    color: output::When,
+    /// No progress and no table, only errors
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Draw, judge, and write tables and plots: the main job
+    Run(run::Arguments),
+    /// Theory only, no draws: moments, costs, the best σ̂, what is refused
+    Predict(predict::Arguments),
+    /// What would run, what is refused, and why
+    Plan(plan::Arguments),
+    /// The catalogue: media, estimators, problems, checks, cases and more
+    List(list::Arguments),
+    /// The manual page of a medium, an estimator, a check, …
+    Explain(explain::Arguments),
+    /// Shell completions
+    Completions(completions::Arguments),
+}
+
+/// Runs the command and answers its exit code.
+pub fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let console = &cli.console;
+    let done = match &cli.command {
+        Command::Run(arguments) => run::main(arguments, console),
+        Command::Predict(arguments) => predict::main(arguments, console),
+        Command::Plan(arguments) => plan::main(arguments, console),
+        Command::List(arguments) => list::main(arguments, console),
+        Command::Explain(arguments) => explain::main(arguments, console),
+        Command::Completions(arguments) => completions::main(arguments),
+    };
+    match done {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            output::complain(&error);
+            ExitCode::from(USAGE)
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What goes to the console: results to stdout, the rest to stderr.
+
+use std::io::{ErrorKind, IsTerminal, Write};
+
+use clap::ValueEnum;
+use trueflight::harness::Record;
+use trueflight::report::console::{self, View};
+use trueflight::report::rows;
+
+use super::Console;
+
+/// When to use colours.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum When {
+    /// On a terminal, unless `NO_COLOR` is set
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+impl When {
+    /// Whether a stream gets colours.
+    pub fn colours(self, terminal: bool) -> bool {
+        let wished = std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
+        match self {
+            Self::Auto => terminal && wished,
+            Self::Always => true,
+            Self::Never => false,
+        }
+    }
+}
+
+/// How rows are printed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
+pub enum Format {
+    /// A table for people
+    #[default]
+    Table,
+    /// The columns of summary.csv
+    Csv,
+    /// The same as an array of objects
+    Json,
+}
+
+/// Prints a record's rows to stdout.
+pub fn print_record(
+    record: &Record,
+    view: View,
+    format: Format,
+    options: &Console,
+) -> anyhow::Result<()> {
+    let text = match format {
+        Format::Table if options.quiet => return Ok(()),
+        Format::Table => {
+            let colour = options.color.colours(std::io::stdout().is_terminal());
+            console::table(record, view, width(), colour)
+        }
+        Format::Csv => rows::csv(record)?,
+        Format::Json => rows::json(record)?,
+    };
+    print(&text)
+}
+
+/// Writes to stdout. A reader that has seen enough (`| head`) is no error.
+pub fn print(text: &str) -> anyhow::Result<()> {
+    match std::io::stdout().write_all(text.as_bytes()) {
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        other => Ok(other?),
+    }
+}
+
+/// Writes an error to stderr.
+pub fn complain(error: &anyhow::Error) {
+    // With stderr gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr(), "error: {error:#}");
+}
+
+/// The width of the terminal, or `COLUMNS`, or 120.
+fn width() -> usize {
+    let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
+    let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+    terminal.or(wished).unwrap_or(120)
+}

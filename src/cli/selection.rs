@@ -1,0 +1,107 @@
+//! Which cases, and how they are drawn.
+
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+
+use clap::Args;
+use trueflight::harness::case::Case;
+use trueflight::harness::source::CaseError;
+use trueflight::harness::{Filter, Options, Plan, suite};
+
+use super::Console;
+
+/// Options that all commands on cases share.
+#[derive(Debug, Clone, Args)]
+pub struct Selection {
+    /// Case files, folders of them, or names of built-in cases; without any, the built-in suite
+    #[arg(value_name = "CASES")]
+    cases: Vec<String>,
+    /// Only what matches: a case, an estimator, or `case:estimator`, with `*` and `?`
+    #[arg(long, value_name = "GLOB")]
+    filter: Option<String>,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6]
+    #[arg(long, value_name = "N", value_parser = draws)]
+    draws: Option<u64>,
+    /// Chance that a correct run shows any failure
+    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = alpha)]
+    alpha: f64,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+impl Selection {
+    /// Reads the cases; mistakes in files are shown in place.
+    pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
+        let mut cases = Vec::new();
+        let mut errors = Vec::new();
+        let built_in = if self.cases.is_empty() { suite::suite() } else { Vec::new() };
+        for source in &built_in {
+            Case::read(source).map_or_else(|error| errors.push(error), |case| cases.push(case));
+        }
+        for name in &self.cases {
+            let found = match suite::find(name) {
+                Some(source) if !Path::new(name).exists() => {
+                    Case::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
+                }
+                _ => Case::read_all(&[name]),
+            };
+            found.map_or_else(|found| errors.extend(found), |found| cases.extend(found));
+        }
+        if errors.is_empty() {
+            return Ok(cases);
+        }
+        let colour = console.color.colours(std::io::stderr().is_terminal());
+        let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
+        // With stderr gone there is nobody left to tell.
+        let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
+        let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
+        anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
+    }
+
+    /// The options of a plan.
+    pub fn options(&self, seconds: Option<f64>) -> anyhow::Result<Options> {
+        let filter = self.filter.as_deref().map(Filter::new).transpose()?;
+        Ok(Options { seed: self.seed, draws: self.draws, alpha: self.alpha, seconds, filter })
+    }
+
+    /// Plans the cases; a selection that keeps nothing is an error.
+    pub fn plan<'a>(&self, cases: &'a [Case], options: &Options) -> anyhow::Result<Plan<'a>> {
+        let plan = Plan::new(cases, options);
+        if plan.cases.is_empty() {
+            let filter = self.filter.as_deref().unwrap_or_default();
+            anyhow::bail!(
+                "--filter \"{filter}\" keeps none of the experiments; \
+                 `trueflight plan` lists what there is"
+            );
+        }
+        Ok(plan)
+    }
+
+    /// Calls `f` on as many threads as wished.
+    pub fn on_threads<T: Send>(
+        &self,
+        f: impl FnOnce() -> anyhow::Result<T> + Send,
+    ) -> anyhow::Result<T> {
+        let threads = self.threads.map_or(0, usize::from);
+        rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
+    }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
+fn draws(text: &str) -> Result<u64, String> {
+    match text.parse::<f64>() {
+        Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
+        _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),
+    }
+}
+
+fn alpha(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(alpha) if alpha > 0.0 && alpha < 1.0 => Ok(alpha),
+        _ => Err("it takes a probability above 0 and below 1, such as 1e-3".into()),
+    }
+}
