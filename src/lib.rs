@@ -1,4 +1,39 @@
-//! Trueflight.
+//! Trueflight proves that a light-transport estimator is fair.
+//!
+//! It drives null-collision Monte Carlo estimators of transmittance and free flight in
+//! heterogeneous media through millions of draws, compares every mean, variance, cost and law with
+//! what theory predicts, and says *pass*, *fail* or *inconclusive*.
+//!
+//! # The house
+//!
+//! A module uses only floors strictly below its own; modules on one floor do not know each other.
+//!
+//! ```text
+//! 7  cli            arguments, exit codes, progress, the only prints (in the binary)
+//! 6  report         record → artifacts: csv, svg, png, console
+//! 5  harness        case → plan → run → verdict → record: the only place where names become types
+//! 4  estimators     draws, one page each
+//! 3  theory         moments and costs in closed form; never draws a random number
+//! 2  problems       what is sought; each integral knows its truth
+//! 1  media   stats  neighbours that have never met
+//! 0  numeric geometry rng catalogue     know nothing of light
+//! ```
+//!
+//! # Invariants
+//!
+//! - `stats` has never heard of media; `media` has never heard of statistics.
+//! - `theory` contains no generator; `estimators` contain no tolerance; `report` does no arithmetic
+//!   beyond formatting and sees only the record.
+//! - An estimator is data: no interior mutability, one value serves every thread.
+//! - Every random number has an address (seed, experiment, block, lane). Thread count, shard and
+//!   machine are no part of it, and results merge in address order: the *results* part of a record
+//!   is byte-identical on any number of threads. A run limited by time is exempt, and says so.
+//! - What a draw computes (ln, exp, cos) comes from [`numeric::elementary`], never from the
+//!   platform's library.
+//! - No number is compared with a prediction more strictly than the prediction's own error bound.
+//! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
+//! - A check that cannot fail is a defect.
+
 pub mod catalogue;
 pub mod estimators;
 pub mod geometry;
@@ -6,6 +41,7 @@ pub mod harness;
 pub mod media;
 pub mod numeric;
 pub mod problems;
+pub mod report;
 pub mod rng;
 pub mod stats;
 pub mod theory;

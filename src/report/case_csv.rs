@@ -1,0 +1,78 @@
+//! `CASE.csv`, `CASE.theory.csv` and `CASE.anatomy.csv`: what the plots of a case are drawn from.
+//!
+//! Results only, without timing, so that the files are the same to the byte for any number of
+//! threads on any machine.
+
+use crate::harness::record::{Anatomy, CaseRecord, Record, Row, Sweep};
+use crate::report::number::exact;
+use crate::report::rows::{JoinedRow, columns, joined, table};
+use crate::report::{Artifact, Report, ReportError, case_path};
+
+/// The rows, the theory's curves and the profiles of each case.
+pub struct CaseCsv;
+
+impl Report for CaseCsv {
+    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
+        let rows = joined(record);
+        let mut artifacts = Vec::new();
+        for case in &record.results.cases {
+            let own = rows.iter().filter(|row| std::ptr::eq(row.case, case));
+            artifacts.push(artifact(case, "csv", case_rows(case, own)?));
+            if let Some(sweep) = &case.sweep {
+                artifacts.push(artifact(case, "theory.csv", theory(case, sweep)?));
+            }
+            if let Some(anatomy) = &case.anatomy {
+                artifacts.push(artifact(case, "anatomy.csv", profiles(case, anatomy)?));
+            }
+        }
+        Ok(artifacts)
+    }
+}
+
+fn artifact(case: &CaseRecord, ending: &str, text: String) -> Artifact {
+    Artifact { path: case_path(&case.name, ending), bytes: text.into_bytes() }
+}
+
+fn case_rows<'a>(
+    case: &CaseRecord,
+    rows: impl Iterator<Item = &'a JoinedRow<'a>>,
+) -> Result<String, ReportError> {
+    let untimed = columns().filter(|column| !column.timed);
+    let bars: [(&str, fn(&Row) -> Option<f64>); 2] = [
+        ("variance_deviation", |row| row.variance_deviation),
+        ("lookups_deviation", |row| row.lookups_deviation),
+    ];
+    let header = untimed.clone().map(|column| column.name).chain(bars.map(|(name, _)| name));
+    let lines = rows.map(|joined| {
+        let fields = untimed.clone().map(|column| (column.cell)(joined).csv());
+        fields.chain(bars.map(|(_, value)| value(joined.row).map(exact).unwrap_or_default()))
+    });
+    table(&case.name, header, lines)
+}
+
+fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
+    let header = ["estimator", "control", "x", "variance", "lookups", "fom"];
+    let lines = sweep.curves.iter().flat_map(|curve| {
+        curve.points.iter().map(|point| {
+            let words = [curve.estimator.clone(), curve.control.clone()];
+            let numbers = [point.x, point.variance, point.lookups, point.fom].map(exact);
+            words.into_iter().chain(numbers)
+        })
+    });
+    table(&case.name, header, lines)
+}
+
+fn profiles(case: &CaseRecord, anatomy: &Anatomy) -> Result<String, ReportError> {
+    let columns: [(&str, &[f64]); 7] = [
+        ("t", &anatomy.t),
+        ("extinction", &anatomy.extinction),
+        ("control", &anatomy.control),
+        ("residual", &anatomy.residual),
+        ("sampling", &anatomy.sampling),
+        ("transmittance", &anatomy.transmittance),
+        ("deviation", &anatomy.deviation),
+    ];
+    let lines = (0..anatomy.t.len())
+        .map(|i| columns.map(|(_, values)| values.get(i).copied().map(exact).unwrap_or_default()));
+    table(&case.name, columns.map(|(name, _)| name), lines)
+}

@@ -1,0 +1,199 @@
+//! Record → artifacts: a report is a pure function from what a run found to the bytes of files.
+//!
+//! Floor 6. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
+//! It is one file and one line in the list at the foot of this page.
+
+pub mod console;
+pub mod number;
+pub mod plots;
+pub mod rows;
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Component, Path, PathBuf};
+
+use crate::catalogue::Catalogue;
+use crate::harness::record::Record;
+
+/// A file that a report would have.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Artifact {
+    /// Where, below the folder of results.
+    pub path: PathBuf,
+    /// What.
+    pub bytes: Vec<u8>,
+}
+
+/// Renders files from a record.
+pub trait Report: Send + Sync {
+    /// The report's files.
+    ///
+    /// # Errors
+    ///
+    /// Where an encoder refuses the content.
+    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError>;
+}
+
+/// Why a report could not be rendered or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ReportError {
+    /// The csv encoder gave up.
+    #[error("cannot encode {name} as csv: {source}")]
+    Csv {
+        /// The file.
+        name: String,
+        /// The encoder's reason.
+        source: csv::Error,
+    },
+    /// The json encoder gave up.
+    #[error("cannot encode the rows as json: {0}")]
+    Json(#[from] serde_json::Error),
+    /// A drawing could not be painted.
+    #[error("cannot draw {figure}: {message}")]
+    Draw {
+        /// The figure.
+        figure: String,
+        /// The painter's reason.
+        message: String,
+    },
+    /// An artifact would leave the folder of results.
+    #[error("`{}` leads out of the results; name the case without `..` or a leading `/`", .0.display())]
+    Outside(PathBuf),
+    /// A folder could not be made.
+    #[error("cannot make the folder {}: {source}; give another with --out", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+    /// A file could not be written.
+    #[error("cannot write {}: {source}; free the place or give another with --out", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: io::Error,
+    },
+}
+
+/// Renders every report of the catalogue.
+///
+/// # Errors
+///
+/// The first error of any report.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|report| report.render(record)).collect();
+    Ok(rendered?.into_iter().flatten().collect())
+}
+
+/// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed, so that
+/// a killed run leaves no torn file.
+///
+/// # Errors
+///
+/// Where a path leads out of `out_dir`, or the system refuses a folder or a file.
+pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Result<(), ReportError> {
+    artifacts.iter().try_for_each(|artifact| write_one(artifact, out_dir))
+}
+
+fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
+    let inside = artifact.path.components().all(|part| matches!(part, Component::Normal(_)));
+    if !inside {
+        return Err(ReportError::Outside(artifact.path.clone()));
+    }
+    let path = out_dir.join(&artifact.path);
+    let folder = path.parent().unwrap_or(out_dir);
+    fs::create_dir_all(folder)
+        .map_err(|source| ReportError::Folder { path: folder.to_owned(), source })?;
+    replace(&path, folder, &artifact.bytes)
+        .map_err(|source| ReportError::Write { path: path.clone(), source })
+}
+
+fn replace(path: &Path, folder: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is private to its owner unless told otherwise; results are for everyone.
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o644))
+    };
+    let mut file = builder.prefix(".trueflight-").tempfile_in(folder)?;
+    file.write_all(bytes)?;
+    file.persist(path).map(drop).map_err(|error| error.error)
+}
+
+/// A case's file: its name, which may have folders, with an ending.
+#[must_use]
+pub fn case_path(case: &str, ending: &str) -> PathBuf {
+    PathBuf::from(format!("{case}.{ending}"))
+}
+
+/// Lists the reports: from one line each come the module and the rows below.
+macro_rules! reports {
+    ($($module:ident :: $Report:ident,)*) => {
+        $(pub mod $module;)*
+
+        /// Every page, in the order of registration.
+        pub const CATALOGUE: Catalogue =
+            Catalogue { name: "reports", pages: &[$($crate::page!($module)),*] };
+
+        /// Every report, in the same order.
+        pub const REPORTS: &[&dyn Report] = &[$(&$module::$Report),*];
+    };
+}
+
+reports! {
+    summary_csv::SummaryCsv,
+    case_csv::CaseCsv,
+    sweep_plot::SweepPlot,
+    anatomy_plot::AnatomyPlot,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn artifact(path: &str) -> Artifact {
+        Artifact { path: PathBuf::from(path), bytes: b"new".to_vec() }
+    }
+
+    #[test]
+    fn a_file_is_replaced_whole_and_nothing_else_is_left() {
+        let out = tempfile::tempdir().expect("a temporary folder");
+        let old = out.path().join("a/b.csv");
+        fs::create_dir_all(out.path().join("a")).expect("a folder");
+        fs::write(&old, "old and longer").expect("a file");
+        write(&[artifact("a/b.csv")], out.path()).expect("writes");
+        assert_eq!(fs::read(&old).expect("reads"), b"new");
+        assert_eq!(fs::read_dir(out.path().join("a")).expect("lists").count(), 1);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn results_are_readable_by_all() {
+        use std::os::unix::fs::PermissionsExt;
+        let out = tempfile::tempdir().expect("a temporary folder");
+        write(&[artifact("b.csv")], out.path()).expect("writes");
+        let mode = fs::metadata(out.path().join("b.csv")).expect("exists").permissions().mode();
+        assert_eq!(mode & 0o777, 0o644);
+    }
+
+    #[test]
+    fn a_path_out_of_the_results_is_refused() {
+        let out = tempfile::tempdir().expect("a temporary folder");
+        for path in ["../b.csv", "/b.csv", "a/../../b.csv"] {
+            let error = write(&[artifact(path)], out.path()).expect_err("must refuse");
+            assert!(matches!(error, ReportError::Outside(_)), "{error}");
+        }
+    }
+
+    #[test]
+    fn a_failure_names_the_path_and_the_cure() {
+        let out = tempfile::tempdir().expect("a temporary folder");
+        fs::write(out.path().join("a"), "a file where a folder must be").expect("a file");
+        let error = write(&[artifact("a/b.csv")], out.path()).expect_err("must fail").to_string();
+        assert!(error.contains("--out") && error.contains('a'), "{error}");
+    }
+}

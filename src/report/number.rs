@@ -1,0 +1,87 @@
+//! Numbers as text: exact for files, short for people.
+
+/// The shortest text that reads back as the same number, plain or with an exponent.
+#[must_use]
+pub fn exact(x: f64) -> String {
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
+}
+
+/// `digits` significant digits, with an exponent where plain notation would hide or pad them.
+#[must_use]
+pub fn short(x: f64, digits: usize) -> String {
+    if x == 0.0 || !x.is_finite() {
+        return format!("{x}");
+    }
+    // Rounded first, so that 999.96 counts as 1000.
+    let scientific = format!("{x:.*e}", digits.saturating_sub(1));
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let power: i32 = exponent.parse().unwrap_or(0);
+    let precision = i32::try_from(digits).unwrap_or(17) - 1 - power;
+    match usize::try_from(precision) {
+        Ok(places) if power >= -3 => trimmed(&format!("{x:.places$}")),
+        _ => format!("{}e{power}", trimmed(mantissa)),
+    }
+}
+
+/// A count in full below a million, with three places and an exponent beyond.
+#[must_use]
+pub fn count(n: u64) -> String {
+    if n < 1_000_000 { n.to_string() } else { short(n as f64, 4) }
+}
+
+/// Two places and a sign, for z-scores; an exponent where that would be wide.
+#[must_use]
+pub fn signed(z: f64) -> String {
+    if z.abs() < 1e4 || !z.is_finite() { format!("{z:+.2}") } else { format!("{z:+.1e}") }
+}
+
+fn trimmed(text: &str) -> String {
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_owned()
+    } else {
+        text.to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn exact_numbers_read_back_and_are_short() {
+        for x in [0.1, 1.0 / 3.0, 1e300, 5e-324, -2.5, 1e6, 123_456.789, 0.0] {
+            let text = exact(x);
+            assert_eq!(text.parse::<f64>().expect("reads back"), x);
+        }
+        assert_eq!(exact(1e300), "1e300");
+        assert_eq!(exact(0.25), "0.25");
+    }
+
+    #[test]
+    fn short_numbers_keep_their_digits() {
+        let cases = [
+            (0.123_456_7, 4, "0.1235"),
+            (0.001_234_56, 4, "0.001235"),
+            (0.000_123_456, 4, "1.235e-4"),
+            (1234.56, 4, "1235"),
+            (123_456.0, 4, "1.235e5"),
+            (999.96, 4, "1000"),
+            (2.0, 4, "2"),
+            (-0.5, 4, "-0.5"),
+            (0.0, 4, "0"),
+        ];
+        for (x, digits, text) in cases {
+            assert_eq!(short(x, digits), text);
+        }
+    }
+
+    #[test]
+    fn counts_and_scores() {
+        assert_eq!(count(999_999), "999999");
+        assert_eq!(count(1_048_576), "1.049e6");
+        assert_eq!(signed(-0.314), "-0.31");
+        assert_eq!(signed(2.0), "+2.00");
+        assert_eq!(signed(123_456.0), "+1.2e5");
+    }
+}

@@ -1,0 +1,81 @@
+//! Legends, outside of the data: a table of series under a figure, and a line of keys over a panel.
+
+use plotters::style::RGBAColor;
+
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::sheet::{Align, Sheet, Spot};
+use crate::report::plots::style::{DARK, GREY, Marker};
+
+/// The height of one line of a legend.
+pub const LINE: f64 = 22.0;
+const SAMPLE: f64 = 44.0;
+const SIZE: f64 = 13.5;
+const GAP: f64 = 26.0;
+
+/// What a legend says of one look.
+#[derive(Debug, Clone)]
+pub struct Entry {
+    /// The words.
+    pub label: String,
+    /// The line: dashes and width; `None` for none.
+    pub line: Option<(&'static [f64], f64)>,
+    /// The marker; `None` for none.
+    pub marker: Option<Marker>,
+    /// The colour of both.
+    pub colour: RGBAColor,
+}
+
+impl Entry {
+    fn draw(&self, sheet: &mut Sheet, [x, y]: Spot, words: &str) {
+        if let Some((dash, width)) = self.line {
+            sheet.dashed(vec![[x, y], [x + SAMPLE - 8.0, y]], dash, width, self.colour);
+        }
+        if let Some(marker) = self.marker {
+            marker.draw(sheet, [x + SAMPLE / 2.0 - 4.0, y], 4.6, self.colour);
+        }
+        sheet.text([x + SAMPLE, y], words, SIZE, DARK, Align::Start);
+    }
+}
+
+/// How many columns and lines the entries take in this width, and how wide a column is.
+fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, usize, f64) {
+    let widest = entries.iter().map(|e| face.width(&e.label, SIZE)).fold(0.0, f64::max);
+    let column = (widest + SAMPLE + GAP).clamp(1.0, width);
+    let most = (1..=8_u8).take_while(|&n| f64::from(n) * column <= width).count().max(1);
+    let lines = entries.len().div_ceil(most).max(1);
+    (entries.len().div_ceil(lines), lines, column)
+}
+
+/// The height of a legend of this width.
+#[must_use]
+pub fn height(face: &Typeface, entries: &[Entry], width: f64) -> f64 {
+    if entries.is_empty() { 0.0 } else { layout(face, entries, width).1 as f64 * LINE }
+}
+
+/// Draws the entries in columns, read downwards, with the first line's middle at the place.
+pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry], width: f64) {
+    let (_, lines, column) = layout(face, entries, width);
+    for (i, entry) in entries.iter().enumerate() {
+        let at = [x + (i / lines) as f64 * column, y + (i % lines) as f64 * LINE];
+        entry.draw(sheet, at, &fit(face, &entry.label, SIZE, column - SAMPLE));
+    }
+}
+
+/// Draws markers with words in one line that ends at the place.
+pub fn keys(
+    face: &Typeface,
+    sheet: &mut Sheet,
+    [right, y]: Spot,
+    keys: &[(Option<Marker>, String)],
+) {
+    let mut x = right;
+    for (marker, words) in keys.iter().rev() {
+        sheet.text([x, y], words, 12.5, GREY, Align::End);
+        x -= face.width(words, 12.5) + 10.0;
+        if let Some(marker) = marker {
+            marker.draw(sheet, [x, y], 4.2, GREY);
+            x -= 8.0;
+        }
+        x -= 10.0;
+    }
+}

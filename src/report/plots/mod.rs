@@ -1,0 +1,36 @@
+//! What the plots are drawn with.
+//!
+//! A figure is composed as a [`Sheet`], a list of shapes that knows nothing of file formats, and
+//! the sheet is then painted twice: as SVG and as PNG. The two therefore show the same drawing.
+
+pub mod axis;
+pub mod font;
+pub mod legend;
+pub mod paint;
+pub mod panel;
+pub mod series;
+pub mod sheet;
+pub mod style;
+pub mod z_panel;
+
+use crate::report::{Artifact, ReportError, case_path};
+
+pub use axis::Axis;
+pub use panel::Panel;
+pub use sheet::Sheet;
+
+/// The figure of a case in both formats, as `CASE.svg` and `CASE.png` for the ending `""`, or
+/// `CASE.anatomy.svg` and so on for the ending `"anatomy."`.
+///
+/// # Errors
+///
+/// Where a backend gives up.
+pub fn artifacts(case: &str, ending: &str, sheet: &Sheet) -> Result<Vec<Artifact>, ReportError> {
+    let wrong = |message| ReportError::Draw { figure: format!("{case} {ending}"), message };
+    let svg = paint::svg(sheet).map_err(wrong)?;
+    let png = paint::png(sheet).map_err(wrong)?;
+    Ok(vec![
+        Artifact { path: case_path(case, &format!("{ending}svg")), bytes: svg.into_bytes() },
+        Artifact { path: case_path(case, &format!("{ending}png")), bytes: png },
+    ])
+}

@@ -1,0 +1,182 @@
+//! Paints a sheet with a backend of plotters, as SVG and as PNG.
+
+use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle,
+};
+
+use crate::report::plots::font::{FAMILY, Typeface};
+use crate::report::plots::sheet::{Align, Label, Shape, Sheet, Spot};
+
+/// Backends take whole numbers: an SVG counts in tenths of a pixel.
+const SVG_UNITS: u32 = 10;
+/// A PNG is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
+const PNG_UNITS: u32 = 3;
+
+/// The sheet as an SVG document.
+///
+/// # Errors
+///
+/// In words, where the backend gives up.
+pub fn svg(sheet: &Sheet) -> Result<String, String> {
+    let (mut text, units) = (String::new(), f64::from(SVG_UNITS));
+    let size = pixels(sheet, SVG_UNITS);
+    let mut backend = SVGBackend::with_string(&mut text, size);
+    paint(sheet, &mut backend, units, |backend, label| {
+        let style = text_style(label, units);
+        backend.draw_text(&label.text, &style, whole(label.at, units)).map_err(in_words)
+    })?;
+    drop(backend);
+    let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
+    let shown = format!("width=\"{}\" height=\"{}\"", size.0 / SVG_UNITS, size.1 / SVG_UNITS);
+    Ok(text.replacen(&drawn, &shown, 1))
+}
+
+/// The sheet as the bytes of a PNG file.
+///
+/// # Errors
+///
+/// In words, where the backend or the encoder gives up.
+pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
+    let face = Typeface::load().map_err(in_words)?;
+    let (units, (width, height)) = (f64::from(PNG_UNITS), pixels(sheet, PNG_UNITS));
+    let mut fine = vec![255; width as usize * height as usize * 3];
+    let mut backend = BitMapBackend::with_buffer(&mut fine, (width, height));
+    paint(sheet, &mut backend, units, |backend, label| {
+        let mut answer = Ok(());
+        write(&face, label, units, |at, colour| {
+            if let Err(error) = backend.draw_pixel(at, colour.to_backend_color()) {
+                answer = Err(in_words(error));
+            }
+        });
+        answer
+    })?;
+    drop(backend);
+    encode(&halved(&fine, width as usize), width / 2, height / 2).map_err(in_words)
+}
+
+fn paint<B: DrawingBackend>(
+    sheet: &Sheet,
+    backend: &mut B,
+    units: f64,
+    mut text: impl FnMut(&mut B, &Label) -> Result<(), String>,
+) -> Result<(), String> {
+    let white = ShapeStyle::from(&plotters::style::WHITE).filled();
+    let far = whole([sheet.width, sheet.height], units);
+    backend.draw_rect((0, 0), far, &white, true).map_err(in_words)?;
+    for shape in &sheet.shapes {
+        match shape {
+            Shape::Path { points, width, colour } => {
+                let stroke_width = natural(width * units).max(1);
+                let style = ShapeStyle { color: *colour, filled: false, stroke_width };
+                backend.draw_path(distinct(points, units), &style).map_err(in_words)?;
+            }
+            Shape::Area { points, colour } => {
+                let corners = points.iter().map(|&point| whole(point, units));
+                backend.fill_polygon(corners, colour).map_err(in_words)?;
+            }
+            Shape::Disc { at, radius, colour } => {
+                let radius = natural(radius * units);
+                backend.draw_circle(whole(*at, units), radius, colour, true).map_err(in_words)?;
+            }
+            Shape::Text(label) => text(backend, label)?,
+        }
+    }
+    backend.present().map_err(in_words)
+}
+
+/// A path without repeated points, which have no direction for a thick line to follow.
+fn distinct(points: &[Spot], units: f64) -> Vec<(i32, i32)> {
+    let mut path: Vec<_> = points.iter().map(|&point| whole(point, units)).collect();
+    path.dedup();
+    if let [(x, y)] = path[..] {
+        path.push((x + 1, y));
+    }
+    path
+}
+
+fn text_style(label: &Label, units: f64) -> TextStyle<'_> {
+    let h_pos = match label.align {
+        Align::Start => HPos::Left,
+        Align::Middle => HPos::Center,
+        Align::End => HPos::Right,
+    };
+    // The backend writes size / 1.24 into the file, taking sizes for line heights.
+    let size = label.size * units * 1.24;
+    let font = FontDesc::new(FontFamily::Name(FAMILY), size, FontStyle::Normal);
+    let turned = if label.upward { FontTransform::Rotate270 } else { FontTransform::None };
+    TextStyle::from(font.transform(turned)).color(&label.colour).pos(Pos::new(h_pos, VPos::Center))
+}
+
+/// Letters by the typeface itself: plotters' own text ignores side bearings, which spoils spacing
+/// and puts the hat of σ̂ beside it.
+fn write(face: &Typeface, label: &Label, units: f64, mut ink: impl FnMut((i32, i32), RGBAColor)) {
+    let em = label.size * units;
+    let share = match label.align {
+        Align::Start => 0.0,
+        Align::Middle => 0.5,
+        Align::End => 1.0,
+    };
+    let back = face.width(&label.text, em) * share / units;
+    let [x, y] = label.at;
+    let from = if label.upward { [x, y + back] } else { [x - back, y] };
+    let (x0, y0) = whole(from, units);
+    let colour = label.colour;
+    face.rasterise(&label.text, em, |along, down, coverage| {
+        let at = if label.upward { (x0 + down, y0 - along) } else { (x0 + along, y0 + down) };
+        ink(at, colour.mix(coverage.clamp(0.0, 1.0)));
+    });
+}
+
+fn halved(fine: &[u8], width: usize) -> Vec<u8> {
+    let row = width * 3;
+    let mut coarse = Vec::with_capacity(fine.len() / 4);
+    for pair in fine.chunks_exact(2 * row) {
+        let (upper, lower) = pair.split_at(row);
+        for (up, low) in upper.chunks_exact(6).zip(lower.chunks_exact(6)) {
+            for channel in 0..3 {
+                let four = [up[channel], up[channel + 3], low[channel], low[channel + 3]];
+                let sum: u16 = four.map(u16::from).iter().sum();
+                coarse.push(u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX));
+            }
+        }
+    }
+    coarse
+}
+
+fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::Best);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(rgb)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// The size in units, even so that it can be halved.
+fn pixels(sheet: &Sheet, units: u32) -> (u32, u32) {
+    let even = |length: f64| natural(length / 2.0).max(1) * 2 * units;
+    (even(sheet.width), even(sheet.height))
+}
+
+fn whole(at: Spot, units: f64) -> (i32, i32) {
+    // Saturates far outside of any sheet; figures clip to their panels long before.
+    #[expect(clippy::cast_possible_truncation)]
+    let round = |x: f64| (x * units).round() as i32;
+    (round(at[0]), round(at[1]))
+}
+
+fn natural(x: f64) -> u32 {
+    // Saturates at zero and at the largest, which no figure has.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let n = x.round() as u32;
+    n
+}
+
+fn in_words(error: impl std::fmt::Display) -> String {
+    error.to_string()
+}

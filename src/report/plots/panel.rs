@@ -1,0 +1,229 @@
+//! One coordinate system of a figure: frame, grid, titles, and what is drawn inside.
+
+use plotters::style::RGBAColor;
+
+use crate::report::plots::Axis;
+use crate::report::plots::sheet::{Align, Sheet, Spot};
+use crate::report::plots::style::{DARK, FAINT, Marker};
+
+/// The size of labels on ticks.
+const TICK: f64 = 13.0;
+/// The size of titles of axes and panels.
+const TITLE: f64 = 14.5;
+
+/// A rectangle of the sheet with two axes.
+#[derive(Debug, Clone)]
+pub struct Panel {
+    /// The sheet's `x` at the left edge.
+    pub left: f64,
+    /// The sheet's `y` at the upper edge.
+    pub top: f64,
+    /// The sheet's `x` at the right edge.
+    pub right: f64,
+    /// The sheet's `y` at the lower edge.
+    pub bottom: f64,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+}
+
+impl Panel {
+    /// Where a point stands on the sheet, inside the panel or not.
+    #[must_use]
+    pub fn spot(&self, x: f64, y: f64) -> Option<Spot> {
+        Some([self.across(x)?, self.down(y)?])
+    }
+
+    /// Where a value of the horizontal axis stands on the sheet.
+    #[must_use]
+    pub fn across(&self, x: f64) -> Option<f64> {
+        Some(self.left + (self.right - self.left) * self.x.place(x)?)
+    }
+
+    /// Where a value of the vertical axis stands on the sheet.
+    #[must_use]
+    pub fn down(&self, y: f64) -> Option<f64> {
+        Some(self.bottom - (self.bottom - self.top) * self.y.place(y)?)
+    }
+
+    /// Whether a spot lies in the panel.
+    #[must_use]
+    pub fn holds(&self, [x, y]: Spot) -> bool {
+        (self.left - 0.5..=self.right + 0.5).contains(&x)
+            && (self.top - 0.5..=self.bottom + 0.5).contains(&y)
+    }
+
+    /// Draws what lies behind the data: the grid.
+    pub fn grid(&self, sheet: &mut Sheet) {
+        for tick in self.x.ticks(7).iter().filter(|tick| !tick.label.is_empty()) {
+            if let Some(x) = self.across(tick.at) {
+                sheet.path(vec![[x, self.top], [x, self.bottom]], 1.0, FAINT);
+            }
+        }
+        for tick in self.y.ticks(6).iter().filter(|tick| !tick.label.is_empty()) {
+            if let Some(y) = self.down(tick.at) {
+                sheet.path(vec![[self.left, y], [self.right, y]], 1.0, FAINT);
+            }
+        }
+    }
+
+    /// Draws what lies before the data: frame, ticks, labels and titles.
+    pub fn frame(&self, sheet: &mut Sheet, head: &str) {
+        let [left, top, right, bottom] = [self.left, self.top, self.right, self.bottom];
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+        for side in corners.windows(2) {
+            sheet.path(side.to_vec(), 1.0, DARK);
+        }
+        for tick in self.x.ticks(7) {
+            let Some(x) = self.across(tick.at) else { continue };
+            let length = if tick.label.is_empty() { 3.0 } else { 6.0 };
+            sheet.path(vec![[x, bottom], [x, bottom - length]], 1.0, DARK);
+            sheet.text([x, bottom + 15.0], tick.label, TICK, DARK, Align::Middle);
+        }
+        for tick in self.y.ticks(6) {
+            let Some(y) = self.down(tick.at) else { continue };
+            let length = if tick.label.is_empty() { 3.0 } else { 6.0 };
+            sheet.path(vec![[left, y], [left + length, y]], 1.0, DARK);
+            sheet.text([left - 8.0, y], tick.label, TICK, DARK, Align::End);
+        }
+        let [middle, centre] = [left.midpoint(right), top.midpoint(bottom)];
+        sheet.text([middle, bottom + 38.0], &self.x.title, TITLE, DARK, Align::Middle);
+        sheet.upward([left - 66.0, centre], &self.y.title, TITLE, DARK);
+        sheet.text([left, top - 15.0], head, TITLE, DARK, Align::Start);
+    }
+
+    /// Draws a line through points, cut off at the panel's edges and open where a point has no
+    /// place.
+    pub fn line(
+        &self,
+        sheet: &mut Sheet,
+        points: impl IntoIterator<Item = (f64, f64)>,
+        (dash, width, colour): (&[f64], f64, RGBAColor),
+    ) {
+        let mut run: Vec<Spot> = Vec::new();
+        let mut last = None;
+        for (x, y) in points {
+            let next = self.spot(x, y);
+            let inside = last.zip(next).and_then(|(from, to)| self.clipped(from, to));
+            if let Some([from, to]) = inside {
+                if run.last() != Some(&from) {
+                    sheet.dashed(std::mem::take(&mut run), dash, width, colour);
+                    run.push(from);
+                }
+                run.push(to);
+            }
+            last = next;
+        }
+        sheet.dashed(run, dash, width, colour);
+    }
+
+    /// Fills the stretch between two lines, cut off at the panel's upper and lower edges.
+    pub fn band(
+        &self,
+        sheet: &mut Sheet,
+        bounds: impl IntoIterator<Item = (f64, f64, f64)>,
+        colour: RGBAColor,
+    ) {
+        let (mut upper, mut lower) = (Vec::new(), Vec::new());
+        for (x, low, high) in bounds {
+            if let (Some(x), Some(low), Some(high)) =
+                (self.across(x), self.down(low), self.down(high))
+            {
+                let x = x.clamp(self.left, self.right);
+                upper.push([x, high.clamp(self.top, self.bottom)]);
+                lower.push([x, low.clamp(self.top, self.bottom)]);
+            }
+        }
+        upper.extend(lower.into_iter().rev());
+        sheet.area(upper, colour);
+    }
+
+    /// Draws a marker, if its place is in the panel.
+    pub fn point(&self, sheet: &mut Sheet, at: Spot, marker: Marker, size: f64, colour: RGBAColor) {
+        if self.holds(at) {
+            marker.draw(sheet, at, size, colour);
+        }
+    }
+
+    /// Draws a vertical error bar at the sheet's `x`, with caps of this width where its ends lie in
+    /// the panel; one whose lower end has no place on the axis goes down to the edge.
+    pub fn bar(
+        &self,
+        sheet: &mut Sheet,
+        x: f64,
+        (low, high): (f64, f64),
+        (cap, width, colour): (f64, f64, RGBAColor),
+    ) {
+        let Some(upper) = self.down(high) else { return };
+        let lower = self.down(low).unwrap_or(self.bottom + 1.0);
+        let Some(stroke) = self.clipped([x, lower], [x, upper]) else { return };
+        sheet.path(stroke.to_vec(), width, colour);
+        for y in [lower, upper].into_iter().filter(|&y| self.holds([x, y])) {
+            sheet.path(vec![[x - cap, y], [x + cap, y]], width, colour);
+        }
+    }
+
+    /// The part of a stroke inside the panel (Y.-D. Liang and B. A. Barsky, "A New Concept and
+    /// Method for Line Clipping", 1984).
+    fn clipped(&self, from: Spot, to: Spot) -> Option<[Spot; 2]> {
+        let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
+        let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+        for (speed, room) in [
+            (-dx, from[0] - self.left),
+            (dx, self.right - from[0]),
+            (-dy, from[1] - self.top),
+            (dy, self.bottom - from[1]),
+        ] {
+            if speed == 0.0 {
+                if room < 0.0 {
+                    return None;
+                }
+            } else if speed < 0.0 {
+                enter = enter.max(room / speed);
+            } else {
+                leave = leave.min(room / speed);
+            }
+        }
+        let at = |s: f64| if s == 1.0 { to } else { [from[0] + s * dx, from[1] + s * dy] };
+        (enter <= leave).then(|| [at(enter), at(leave)])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::plots::sheet::Shape;
+
+    fn panel() -> Panel {
+        let axis = |log| Axis { title: String::new(), log, low: 1.0, high: 10.0 };
+        Panel { left: 0.0, top: 0.0, right: 90.0, bottom: 90.0, x: axis(false), y: axis(true) }
+    }
+
+    #[test]
+    fn lines_end_at_the_edge_and_break_where_there_is_no_place() {
+        let mut sheet = Sheet::new(90.0, 90.0);
+        let points = [(1.0, 1.0), (5.5, 100.0), (6.0, 0.0), (7.0, 2.0), (8.0, 2.0)];
+        panel().line(&mut sheet, points, (&[], 1.0, DARK));
+        let paths: Vec<_> = sheet
+            .shapes
+            .iter()
+            .map(|shape| match shape {
+                Shape::Path { points, .. } => points.clone(),
+                _ => Vec::new(),
+            })
+            .collect();
+        assert_eq!(paths.len(), 2);
+        assert_eq!(paths[0], [[0.0, 90.0], [22.5, 0.0]]);
+        assert!(sheet.shapes.len() == 2);
+    }
+
+    #[test]
+    fn an_error_bar_down_to_zero_reaches_the_edge_of_a_logarithmic_panel() {
+        let mut sheet = Sheet::new(90.0, 90.0);
+        panel().bar(&mut sheet, 45.0, (0.0, 10.0), (3.0, 1.0, DARK));
+        let Shape::Path { points, .. } = &sheet.shapes[0] else { panic!("a path") };
+        assert_eq!(points, &[[45.0, 90.0], [45.0, 0.0]]);
+        assert_eq!(sheet.shapes.len(), 2);
+    }
+}

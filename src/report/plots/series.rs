@@ -1,0 +1,153 @@
+//! The series of a sweep: which rows and which curve belong together.
+
+use crate::harness::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
+use crate::report::plots::legend::Entry;
+use crate::report::plots::style::Style;
+
+/// One estimator along the sweep, one channel of its value.
+pub struct Series<'a> {
+    /// The estimator, and what tells it from its neighbours.
+    pub label: String,
+    /// How it looks.
+    pub style: Style,
+    /// Its rows.
+    pub rows: Vec<&'a Row>,
+    /// What theory says, if it says anything.
+    pub curve: Option<&'a Curve>,
+}
+
+impl Series<'_> {
+    /// Whether it is drawn once, outside of the sweep.
+    #[must_use]
+    pub fn is_fixed(&self) -> bool {
+        self.rows.iter().all(|row| row.swept.is_none())
+    }
+
+    /// Theory's line, through the curve's points, or through the rows' own predictions where there
+    /// is no curve.
+    #[must_use]
+    pub fn theory(
+        &self,
+        of_point: fn(&CurvePoint) -> f64,
+        of_row: fn(&Row) -> Option<f64>,
+    ) -> Vec<(f64, f64)> {
+        match self.curve.filter(|curve| !curve.points.is_empty()) {
+            Some(curve) => curve.points.iter().map(|point| (point.x, of_point(point))).collect(),
+            None => self.rows.iter().filter_map(|row| Some((row.swept?, of_row(row)?))).collect(),
+        }
+    }
+
+    /// The entry of the legend.
+    #[must_use]
+    pub fn entry(&self) -> Entry {
+        let Style { colour, dash, marker } = self.style;
+        let once = if self.is_fixed() { " (not swept)" } else { "" };
+        let measured = self.rows.iter().any(|row| row.draws.is_some());
+        Entry {
+            label: format!("{}{once}", self.label),
+            line: Some((dash, 2.0)),
+            marker: measured.then_some(marker),
+            colour,
+        }
+    }
+
+    /// What the plots cannot show of it, in words.
+    #[must_use]
+    pub fn note(&self) -> Option<String> {
+        let count = |test: fn(&Row) -> bool| self.rows.iter().filter(|row| test(row)).count();
+        let refused = count(|row| row.verdict == Some(Verdict::Refused));
+        let exact = count(|row| row.variance.or(row.predicted_variance) == Some(0.0));
+        let all = self.rows.len();
+        let mut notes = Vec::new();
+        if refused > 0 {
+            notes.push(format!("refused at {refused} of {all}"));
+        }
+        if exact > 0 {
+            notes.push("variance 0, which a logarithmic axis cannot show".to_owned());
+        }
+        (!notes.is_empty()).then(|| format!("{}: {}", self.label, notes.join("; ")))
+    }
+}
+
+/// What tells the series of one case apart: the estimator, the channel, and which of the
+/// experiments with the same two at the same value of the sweep it is. The control does not, for it
+/// may be what is swept.
+type Key<'a> = (&'a str, &'a str, usize);
+
+/// The series of a case, in the order of its rows; a curve without rows is a series, too.
+#[must_use]
+pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
+    let mut groups: Vec<(Key, Vec<&Row>)> = Vec::new();
+    for row in &case.rows {
+        let same = |other: &&&Row| {
+            other.estimator == row.estimator
+                && other.channel == row.channel
+                && other.swept == row.swept
+        };
+        let earlier = groups.iter().flat_map(|(_, rows)| rows).filter(same).count();
+        let key = (row.estimator.as_str(), row.channel.as_str(), earlier);
+        match groups.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, rows)) => rows.push(row),
+            None => groups.push((key, vec![row])),
+        }
+    }
+    let curves = |estimator: &str| -> Vec<&Curve> {
+        sweep.curves.iter().filter(|curve| curve.estimator == estimator).collect()
+    };
+    for curve in &sweep.curves {
+        let twin = curves(&curve.estimator).iter().position(|c| std::ptr::eq(*c, curve));
+        let nth = twin.unwrap_or(0);
+        if !groups.iter().any(|((estimator, _, n), _)| *estimator == curve.estimator && *n == nth) {
+            groups.push(((&curve.estimator, "", nth), Vec::new()));
+        }
+    }
+    let series = groups.into_iter().enumerate().map(|(i, ((estimator, channel, nth), rows))| {
+        let curve = curves(estimator).get(nth).copied();
+        let label = label(estimator, channel, &rows, curve);
+        Series { label, style: Style::of(i), rows, curve }
+    });
+    series.collect()
+}
+
+fn label(estimator: &str, channel: &str, rows: &[&Row], curve: Option<&Curve>) -> String {
+    let first = rows.first().map(|row| row.control.as_str());
+    let constant = rows.iter().all(|row| Some(row.control.as_str()) == first);
+    let control = if constant { first.or(curve.map(|c| c.control.as_str())) } else { None };
+    let parts = [estimator, control.unwrap_or_default(), channel];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(estimator: &str, control: &str, swept: Option<f64>) -> Row {
+        let (estimator, control) = (estimator.to_owned(), control.to_owned());
+        Row { estimator, control, swept, ..Row::default() }
+    }
+
+    fn case(rows: Vec<Row>) -> CaseRecord {
+        let [name, title, problem, medium] = [const { String::new() }; 4];
+        CaseRecord { name, title, problem, medium, rows, sweep: None, anatomy: None }
+    }
+
+    #[test]
+    fn twins_are_kept_apart_and_swept_controls_together() {
+        let empty = String::new;
+        let sweep =
+            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
+        let twins = case(vec![
+            row("residual", "constant 1", Some(1.0)),
+            row("residual", "constant 2", Some(1.0)),
+            row("residual", "constant 1", Some(2.0)),
+            row("residual", "constant 2", Some(2.0)),
+            row("regular", "", None),
+        ]);
+        let labels: Vec<_> = collect(&twins, &sweep).into_iter().map(|s| s.label).collect();
+        assert_eq!(labels, ["residual, constant 1", "residual, constant 2", "regular"]);
+        let swept =
+            case(vec![row("r", "constant 1", Some(1.0)), row("r", "constant 2", Some(2.0))]);
+        let series = collect(&swept, &sweep);
+        assert_eq!((series.len(), series[0].label.as_str()), (1, "r"));
+    }
+}

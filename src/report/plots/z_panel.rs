@@ -1,0 +1,100 @@
+//! The panel of z-scores: how far means, variances and lookups are from theory.
+
+use plotters::style::RGBAColor;
+
+use crate::harness::record::{Row, Sweep};
+use crate::report::number::short;
+use crate::report::plots::font::Typeface;
+use crate::report::plots::legend;
+use crate::report::plots::series::Series;
+use crate::report::plots::style::{GREY, Marker, ink};
+use crate::report::plots::{Axis, Panel, Sheet};
+
+/// Between these, 95 % of the scores of a correct estimator lie.
+const USUAL: f64 = 1.96;
+const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
+const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
+
+type Score = (Marker, &'static str, fn(&Row) -> Option<f64>);
+
+const SCORES: [Score; 3] = [
+    (Marker::Disc, "mean", |row| row.z_mean),
+    (Marker::Square, "variance", |row| row.z_variance),
+    (Marker::Diamond, "lookups", |row| row.z_lookups),
+];
+
+/// Draws the scores of the series into a panel, whose vertical axis is chosen here.
+pub fn draw(
+    face: &Typeface,
+    sheet: &mut Sheet,
+    mut panel: Panel,
+    series: &[Series],
+    sweep: &Sweep,
+) {
+    let scores = series.iter().flat_map(|one| &one.rows).flat_map(|row| SCORES.map(|s| s.2(row)));
+    let largest = scores.flatten().map(f64::abs).filter(|z| z.is_finite()).fold(0.0, f64::max);
+    // Far outliers of a failed check would flatten all others: they become arrows at the edge.
+    let usual = 1.3 * sweep.z_limit.unwrap_or(3.0).max(USUAL);
+    let edge = (1.1 * largest).clamp(usual, 3.0 * usual);
+    let title = "z, in standard errors".to_owned();
+    panel.y = Axis { title, log: false, low: -edge, high: edge };
+    let ends = [panel.x.low, panel.x.high];
+    panel.band(sheet, ends.map(|x| (x, -USUAL, USUAL)), BAND);
+    panel.grid(sheet);
+    panel.line(sheet, ends.map(|x| (x, 0.0)), (&[], 1.0, GREY));
+    for limit in sweep.z_limit.into_iter().flat_map(|z| [-z, z]) {
+        panel.line(sheet, ends.map(|x| (x, limit)), (&[8.0, 4.0], 1.3, LIMIT));
+    }
+    let beyond = points(sheet, &panel, series);
+    panel.frame(sheet, "(d) Agreement with theory");
+    let mut keys: Vec<_> = SCORES.map(|(marker, name, _)| (Some(marker), name.to_owned())).into();
+    if beyond {
+        keys.push((Some(Marker::Up), "beyond".to_owned()));
+    }
+    let [right, top] = [panel.right, panel.top];
+    legend::keys(face, sheet, [right, top - 15.0], &keys);
+    let limit = sweep.z_limit.map(|z| format!(", dashes: fails beyond ±{}", short(z, 3)));
+    let words = format!("band: ±{USUAL}{}", limit.unwrap_or_default());
+    legend::keys(face, sheet, [right, panel.bottom + 38.0], &[(None, words)]);
+}
+
+/// Draws the points side by side, so that none hides another, and says whether any is off the axis.
+fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
+    let slots = (series.len() * SCORES.len()) as f64;
+    let step = (0.8 * gap(panel, series) / slots.max(1.0)).min(4.0);
+    let mut beyond = false;
+    let mut slot = 0.0;
+    for one in series {
+        for (marker, _, score) in SCORES {
+            let shift = (slot - (slots - 1.0) / 2.0) * step;
+            slot += 1.0;
+            for row in &one.rows {
+                let swept = row.swept.map_or(Some(panel.right - 13.0), |x| panel.across(x));
+                let (Some(x), Some(z)) = (swept, score(row)) else { continue };
+                let Some(y) = panel.down(z) else { continue };
+                let at = [(x + shift).clamp(panel.left + 4.0, panel.right - 4.0), y];
+                if panel.holds(at) {
+                    panel.point(sheet, at, marker, 3.6, one.style.colour);
+                    continue;
+                }
+                beyond = true;
+                let (arrow, y) = if z > 0.0 {
+                    (Marker::Up, panel.top + 7.0)
+                } else {
+                    (Marker::Down, panel.bottom - 7.0)
+                };
+                panel.point(sheet, [at[0], y], arrow, 4.6, one.style.colour);
+            }
+        }
+    }
+    beyond
+}
+
+/// The smallest distance on the sheet between two values of the sweep.
+fn gap(panel: &Panel, series: &[Series]) -> f64 {
+    let swept = series.iter().flat_map(|one| &one.rows).filter_map(|row| panel.across(row.swept?));
+    let mut places: Vec<f64> = swept.collect();
+    places.sort_by(f64::total_cmp);
+    let steps = places.windows(2).map(|pair| pair[1] - pair[0]).filter(|step| *step > 0.5);
+    steps.fold(60.0, f64::min)
+}

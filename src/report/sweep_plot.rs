@@ -1,0 +1,216 @@
+//! `CASE.svg` and `CASE.png`: variance, cost, efficiency and z-scores along a sweep, theory as
+//! lines and measurements as points with error bars.
+
+use plotters::style::Color;
+
+use crate::harness::record::{CaseRecord, CurvePoint, Record, Row, Sweep};
+use crate::report::number::{count, short};
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::legend::{self, LINE};
+use crate::report::plots::series::{Series, collect};
+use crate::report::plots::sheet::Align;
+use crate::report::plots::style::{DARK, GREY, Marker, ink};
+use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
+use crate::report::{Artifact, Report, ReportError};
+
+const WIDTH: f64 = 1200.0;
+const TOP: f64 = 104.0;
+const PANEL: [f64; 2] = [490.0, 290.0];
+const PITCH: [f64; 2] = [600.0, 374.0];
+const LEFT: f64 = 92.0;
+
+/// Four panels for each case with a sweep.
+pub struct SweepPlot;
+
+impl Report for SweepPlot {
+    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
+        let mut artifacts = Vec::new();
+        for case in &record.results.cases {
+            if let Some(sweep) = &case.sweep {
+                let sheet = figure(case, sweep, record.results.seed)?;
+                artifacts.extend(plots::artifacts(&case.name, "", &sheet)?);
+            }
+        }
+        Ok(artifacts)
+    }
+}
+
+/// What one panel shows: as measured, with its deviation, and in theory for rows and curves.
+struct Quantity {
+    head: &'static str,
+    title: &'static str,
+    measured: fn(&Row) -> Option<f64>,
+    deviation: fn(&Row) -> Option<f64>,
+    predicted: fn(&Row) -> Option<f64>,
+    theory: fn(&CurvePoint) -> f64,
+}
+
+const QUANTITIES: [Quantity; 3] = [
+    Quantity {
+        head: "(a) Variance of one draw",
+        title: "variance V",
+        measured: |row| row.variance,
+        deviation: |row| row.variance_deviation,
+        predicted: |row| row.predicted_variance,
+        theory: |point| point.variance,
+    },
+    Quantity {
+        head: "(b) Cost",
+        title: "lookups per draw N",
+        measured: |row| row.lookups_per_draw,
+        deviation: |row| row.lookups_deviation,
+        predicted: |row| row.predicted_lookups,
+        theory: |point| point.lookups,
+    },
+    Quantity {
+        head: "(c) Efficiency",
+        title: "figure of merit 1/(V·N)",
+        measured: |row| row.fom,
+        deviation: |_| None,
+        predicted: |row| row.predicted_fom,
+        theory: |point| point.fom,
+    },
+];
+
+fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
+    let face = Typeface::load().map_err(|error| ReportError::Draw {
+        figure: case.name.clone(),
+        message: error.to_string(),
+    })?;
+    let series = collect(case, sweep);
+    let entries: Vec<_> = series.iter().map(Series::entry).collect();
+    let notes: Vec<_> = series.iter().filter_map(Series::note).collect();
+    let span = WIDTH - LEFT - 18.0;
+    let below = TOP + 2.0 * PITCH[1];
+    let legend = legend::height(&face, &entries, span);
+    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0 + 4.0);
+    let mut title = |y: f64, text: &str, size: f64, colour| {
+        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
+    };
+    title(30.0, &case.title, 20.0, DARK);
+    title(57.0, &subtitle(case, seed), 13.0, GREY);
+    let x = x_axis(sweep, &series);
+    for (i, quantity) in QUANTITIES.iter().enumerate() {
+        let panel = place(i, &x, y_axis(quantity, &series));
+        draw(&mut sheet, &panel, quantity, &series);
+        if i == 2 && optima(&mut sheet, &panel, &series) {
+            let key = [(Some(Marker::Star), "predicted optimum".to_owned())];
+            legend::keys(&face, &mut sheet, [panel.right, panel.top - 15.0], &key);
+        }
+    }
+    z_panel::draw(&face, &mut sheet, place(3, &x, x.clone()), &series, sweep);
+    legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
+    for (i, note) in notes.iter().enumerate() {
+        let at = [LEFT, below + legend + i as f64 * 19.0 - LINE / 2.0 + 4.0];
+        sheet.text(at, fit(&face, note, 12.5, span), 12.5, GREY, Align::Start);
+    }
+    Ok(sheet)
+}
+
+fn subtitle(case: &CaseRecord, seed: u64) -> String {
+    let mut parts = vec![case.name.clone(), case.problem.clone(), case.medium.clone()];
+    let truths: Vec<f64> = case.rows.iter().filter_map(|row| row.truth).collect();
+    if let [first, rest @ ..] = &truths[..] {
+        if rest.iter().all(|truth| truth == first) {
+            parts.push(format!("truth {}", short(*first, 6)));
+        }
+    }
+    let draws: Vec<u64> = case.rows.iter().filter_map(|row| row.draws).collect();
+    if let (Some(&least), Some(&most)) = (draws.iter().min(), draws.iter().max()) {
+        let to = if least < most { format!(" to {}", count(most)) } else { String::new() };
+        parts.push(format!("{}{to} draws", count(least)));
+        parts.push(format!("seed {seed}"));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join("  ·  ")
+}
+
+fn place(index: usize, x: &Axis, y: Axis) -> Panel {
+    let left = LEFT + (index % 2) as f64 * PITCH[0];
+    let top = TOP + (index / 2) as f64 * PITCH[1];
+    Panel { left, top, right: left + PANEL[0], bottom: top + PANEL[1], x: x.clone(), y }
+}
+
+fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
+    let swept = series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.swept));
+    let curves = sweep.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.x));
+    // Estimators that are not swept stand at the right edge and need a place of their own.
+    let margin = if series.iter().any(Series::is_fixed) { 0.07 } else { 0.04 };
+    let shown = swept.chain(curves).filter(|&x| !sweep.log || x > 0.0);
+    Axis::around(sweep.axis.clone(), sweep.log, margin, shown)
+}
+
+/// A range with every measured point, and of theory what lies within four decades of them: the
+/// variance of some estimators has a pole.
+fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
+    let rows = || series.iter().flat_map(|one| &one.rows);
+    let positive = |value: &f64| *value > 0.0 && value.is_finite();
+    let mut shown: Vec<f64> =
+        rows().filter_map(|row| (quantity.measured)(row)).filter(positive).collect();
+    let mut theory: Vec<f64> = series
+        .iter()
+        .flat_map(|one| one.theory(quantity.theory, quantity.predicted))
+        .map(|(_, y)| y)
+        .chain(rows().filter_map(|row| (quantity.predicted)(row)))
+        .filter(positive)
+        .collect();
+    theory.sort_by(f64::total_cmp);
+    let middle = theory.get(theory.len() / 2).copied();
+    let low = shown.iter().copied().reduce(f64::min).or(middle).unwrap_or(1.0);
+    let high = shown.iter().copied().reduce(f64::max).or(middle).unwrap_or(1.0);
+    theory.retain(|&y| y >= low * 1e-4 && y <= high * 1e4);
+    shown.extend(theory);
+    Axis::around(quantity.title, true, 0.06, shown)
+}
+
+fn draw(sheet: &mut Sheet, panel: &Panel, quantity: &Quantity, series: &[Series]) {
+    panel.grid(sheet);
+    for one in series {
+        let look = (one.style.dash, 2.0, one.style.colour);
+        panel.line(sheet, one.theory(quantity.theory, quantity.predicted), look);
+        for row in one.rows.iter().filter(|row| row.swept.is_none()) {
+            if let Some(y) = (quantity.predicted)(row).or((quantity.measured)(row)) {
+                let across = [panel.x.low, panel.x.high].map(|x| (x, y));
+                panel.line(sheet, across, (one.style.dash, 1.6, one.style.colour));
+            }
+        }
+    }
+    let mut edge = panel.right;
+    for one in series {
+        for row in &one.rows {
+            let x = match row.swept {
+                Some(swept) => panel.across(swept),
+                None => Some(edge - 9.0),
+            };
+            let place = |value: f64| Some([x?, panel.down(value)?]);
+            let measured = (quantity.measured)(row).and_then(|v| Some((v, place(v)?)));
+            let Some((value, spot)) = measured else { continue };
+            if row.swept.is_none() {
+                edge -= 13.0;
+            }
+            if let Some(deviation) = (quantity.deviation)(row) {
+                let ends = (value - deviation, value + deviation);
+                panel.bar(sheet, spot[0], ends, (4.5, 1.4, one.style.colour));
+            }
+            panel.point(sheet, spot, one.style.marker, 4.6, one.style.colour);
+        }
+    }
+    panel.frame(sheet, quantity.head);
+}
+
+/// Marks the predicted optima with a star and a thin line down to the axis.
+fn optima(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
+    let mut any = false;
+    for one in series {
+        let Some(best) = one.curve.and_then(|curve| curve.optimum) else { continue };
+        let Some(spot) = panel.spot(best.x, best.fom).filter(|&spot| panel.holds(spot)) else {
+            continue;
+        };
+        let drop = vec![spot, [spot[0], panel.bottom]];
+        sheet.dashed(drop, &[1.5, 3.0], 1.2, one.style.colour.mix(0.8));
+        Marker::Star.draw(sheet, spot, 9.0, ink(0x22, 0x22, 0x22));
+        Marker::Star.draw(sheet, spot, 6.5, one.style.colour);
+        any = true;
+    }
+    any
+}
