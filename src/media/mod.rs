@@ -177,4 +177,5 @@ media! {
     constant::Constant,
     piecewise_constant::PiecewiseConstant,
     piecewise_linear::PiecewiseLinear,
+    exponential::Exponential,
 }
