@@ -178,4 +178,5 @@ media! {
     piecewise_constant::PiecewiseConstant,
     piecewise_linear::PiecewiseLinear,
     exponential::Exponential,
+    gaussian::Gaussian,
 }
