@@ -179,4 +179,5 @@ media! {
     piecewise_linear::PiecewiseLinear,
     exponential::Exponential,
     gaussian::Gaussian,
+    sines::Sines,
 }
