@@ -180,4 +180,5 @@ media! {
     exponential::Exponential,
     gaussian::Gaussian,
     sines::Sines,
+    eq21::Eq21,
 }
