@@ -284,6 +284,22 @@ impl<'a> Settings<'a> {
         None
     }
 
+    /// A list of points or vectors `[[x, y, z], …]` that must be there.
+    pub fn triples(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
+        let wanted = "a list of triples of finite numbers [[x, y, z], …]";
+        let entry = self.required(key, wanted)?;
+        let Value::Array(items) = &entry.node.value else {
+            self.wrong(entry, wanted);
+            return None;
+        };
+        let (key, key_span) = (&entry.key, &entry.key_span);
+        let triples = items.iter().map(|node| {
+            let item = Entry { key: key.clone(), key_span: key_span.clone(), node: node.clone() };
+            self.triple_of(&item, Domain::Finite, "three finite numbers [x, y, z] each")
+        });
+        triples.collect::<Vec<_>>().into_iter().collect()
+    }
+
     fn triple_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<[f64; 3]> {
         let list = self.list_of(entry, domain, wanted)?;
         let triple = <[f64; 3]>::try_from(list);
@@ -514,6 +530,21 @@ mod tests {
         assert_eq!(faults[0].message, "`extinction` is -1");
         assert_eq!(faults[1].message, "`length` is missing");
         assert!(faults[2].help.starts_with("did you mean `length`?"));
+    }
+
+    #[test]
+    fn a_list_of_triples_refuses_a_pair() {
+        let list = |items: Vec<Value>| {
+            let nodes = items.into_iter().map(|value| Node { value, span: 7..8 }).collect();
+            Value::Array(nodes)
+        };
+        let numbers = |n: usize| list(vec![Value::Number(1.0); n]);
+        let node = Node { value: list(vec![numbers(3), numbers(2)]), span: 5..9 };
+        let table = [Entry { key: "vectors".into(), key_span: 0..3, node }];
+        let faults = RefCell::default();
+        let settings = Settings::new(&table, Path::new("."), &faults);
+        assert_eq!(settings.triples("vectors"), None);
+        assert_eq!(faults.into_inner().len(), 1);
     }
 
     #[test]

@@ -19,6 +19,15 @@ impl Aabb {
         Point(std::array::from_fn(|i| p.0[i].max(self.low.0[i]).min(self.high.0[i])))
     }
 
+    /// The values that `p·direction` takes in the box.
+    #[must_use]
+    pub fn reach(&self, direction: Point) -> Span {
+        (0..3).fold(Span::empty(0.0), |reach, i| {
+            let (a, b) = (self.low.0[i] * direction.0[i], self.high.0[i] * direction.0[i]);
+            Span::new(reach.from + a.min(b), reach.to + a.max(b))
+        })
+    }
+
     /// The part shared with another box; `None` where they do not meet.
     #[must_use]
     pub fn intersect(&self, other: &Self) -> Option<Self> {
@@ -139,5 +148,11 @@ mod tests {
         assert_eq!(cube.clip(&ray([0.5, 0.5, -1.0], [0.0, 0.0, 2.0], 9.0)), Span::new(1.0, 2.0));
         assert!(cube.clip(&ray([0.5, 2.0, -1.0], [0.0, 0.0, 1.0], 9.0)).is_empty());
         assert!(cube.clip(&ray([0.5, 0.5, 3.0], [0.0, 0.0, 1.0], 9.0)).is_empty());
+    }
+
+    #[test]
+    fn a_box_reaches_between_its_corners() {
+        let cube = Aabb { low: Point([0.0, -1.0, 2.0]), high: Point([1.0, 1.0, 3.0]) };
+        assert_eq!(cube.reach(Point([2.0, -1.0, 1.0])), Span::new(1.0, 6.0));
     }
 }

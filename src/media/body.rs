@@ -138,6 +138,15 @@ fn read_ray(settings: &Settings) -> Option<Ray> {
     ray
 }
 
+/// Reads `axis`, the direction in which a plane-parallel medium varies; the z axis without the key.
+pub(super) fn read_axis(settings: &Settings) -> Option<Point> {
+    let axis = Point(settings.triple_or("axis", [0.0, 0.0, 1.0])?).normalised();
+    if axis.is_none() {
+        settings.fault("axis", "`axis` is the zero vector", "it takes any other vector");
+    }
+    axis
+}
+
 /// Reads `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }` of a volume that has
 /// no bounds of its own; without the key the volume fills all of space.
 pub(super) fn read_bounds(settings: &Settings) -> Option<Bounds> {

@@ -191,4 +191,8 @@ media! {
     constant::Constant,
     piecewise_constant::PiecewiseConstant,
     piecewise_linear::PiecewiseLinear,
+    exponential::Exponential,
+    gaussian::Gaussian,
+    sines::Sines,
+    eq21::Eq21,
 }

@@ -81,13 +81,9 @@ impl Layers {
     /// Reads the pieces by the given function, then `axis` and `bounds`.
     pub fn read(settings: &Settings, pieces: fn(&Settings) -> Option<Piecewise>) -> Option<Self> {
         let pieces = pieces(settings);
-        let axis = settings.triple_or("axis", [0.0, 0.0, 1.0]);
+        let axis = body::read_axis(settings);
         let bounds = body::read_bounds(settings);
-        let Some(axis) = Point(axis?).normalised() else {
-            settings.fault("axis", "`axis` is the zero vector", "it takes any other vector");
-            return None;
-        };
-        Some(Self { pieces: pieces?, axis, bounds: bounds? })
+        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds? })
     }
 
     /// `σ_t` at the height of `p`.
@@ -99,11 +95,7 @@ impl Layers {
     /// The largest value at any height that the box reaches.
     #[must_use]
     pub fn majorant(&self, within: &Aabb) -> f64 {
-        let reach = (0..3).map(|i| {
-            let (a, b) = (within.low.0[i] * self.axis.0[i], within.high.0[i] * self.axis.0[i]);
-            Span::new(a.min(b), a.max(b))
-        });
-        let span = reach.fold(Span::empty(0.0), |s, r| Span::new(s.from + r.from, s.to + r.to));
+        let span = within.reach(self.axis);
         self.pieces.on(span).corner_values().fold(0.0, f64::max)
     }
 
