@@ -8,6 +8,8 @@
 //! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
 
 pub mod body;
+pub mod cells;
+pub mod lattice;
 pub mod medium;
 pub mod piecewise;
 
@@ -181,4 +183,5 @@ media! {
     gaussian::Gaussian,
     sines::Sines,
     eq21::Eq21,
+    noise::Noise,
 }
