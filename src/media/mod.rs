@@ -9,9 +9,11 @@
 
 pub mod body;
 pub mod cells;
+pub mod grid_file;
 pub mod lattice;
 pub mod medium;
 pub mod piecewise;
+pub mod voxels;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
@@ -184,4 +186,5 @@ media! {
     sines::Sines,
     eq21::Eq21,
     noise::Noise,
+    grid::Grid,
 }
