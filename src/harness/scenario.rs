@@ -368,6 +368,7 @@ fn whole(points: f64) -> usize {
     points as usize
 }
 
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
 fn read_if<T: ?Sized>(
     settings: &Settings,
     key: &'static str,
