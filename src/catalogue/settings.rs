@@ -360,21 +360,17 @@ impl<'a> Settings<'a> {
     }
 
     fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
-        match &entry.node.value {
-            Value::Text(text) => {
-                let word = words.iter().find(|word| *word == text).copied();
-                if word.is_none() {
-                    let message = format!("`{}` is \"{text}\"", entry.key);
-                    let help = suggestion(text, words, wanted);
-                    self.fault_at(entry.node.span.clone(), &entry.key, message, help);
-                }
-                word
-            }
-            _ => {
-                self.wrong(entry, wanted);
-                None
-            }
+        let Value::Text(text) = &entry.node.value else {
+            self.wrong(entry, wanted);
+            return None;
+        };
+        let word = words.iter().find(|word| *word == text).copied();
+        if word.is_none() {
+            let message = format!("`{}` is \"{text}\"", entry.key);
+            let help = suggestion(text, words, wanted);
+            self.fault_at(entry.node.span.clone(), &entry.key, message, help);
         }
+        word
     }
 
     /// `true` or `false`, or `default` where the key is absent.

@@ -163,6 +163,7 @@ pub(super) fn read_expect(settings: &Settings) -> Option<bool> {
     settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
 }
 
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
 fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
     match settings.table_if("sweep") {
         Some(sweep) => SweepAxis::read(&sweep).map(Some),

@@ -52,7 +52,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let t = raw[0];
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is stated in `error`.
-    let [m1, m2, m3, m4] = std::array::from_fn(|k| raw[k] / t.powi(k as i32 + 1));
+    let [m1, m2, m3, m4] = std::array::from_fn(|k| raw[k] / power(t, k + 1));
     let central = [
         m2 - m1 * m1,
         m3 - 3.0 * m2 * m1 + 2.0 * m1.powi(3),
@@ -90,16 +90,14 @@ fn sweep(
     let mut at_nodes = vec![[0.0; 4]; n];
     let mut before = [0.0; 4];
     for k in 1..=4 {
-        let power = k as i32;
-        let rate: Vec<f64> =
-            ratio.iter().map(|r| sampling * (1.0 - (1.0 - r).powi(power))).collect();
+        let rate: Vec<f64> = ratio.iter().map(|r| sampling * (1.0 - power(1.0 - r, k))).collect();
         let total = mesh.integral(panel, &rate);
         let so_far = mesh.running(panel, &rate);
         // exp(+∫) from the panel's beginning to a node multiplies the integrand's exp(−∫).
         let weighted: Vec<f64> = (0..n)
             .map(|i| {
                 let g = source.moment(k, v[i], &at_nodes[i]);
-                sampling * (1.0 - ratio[i]).powi(power) * g * (-so_far[i]).exp()
+                sampling * power(1.0 - ratio[i], k) * g * (-so_far[i]).exp()
             })
             .collect();
         let inside = mesh.integral(panel, &weighted);
@@ -111,6 +109,12 @@ fn sweep(
         }
     }
     before
+}
+
+/// `x^k` for small k.
+#[must_use]
+pub fn power(x: f64, k: usize) -> f64 {
+    std::iter::repeat_n(x, k).product()
 }
 
 /// `C(k, j)` for k ≤ 4.

@@ -19,6 +19,7 @@ pub struct Mean;
 
 impl Mean {
     /// Reads `{}`.
+    #[must_use]
     pub fn read(_: &Settings, _: &Body) -> Option<Self> {
         Some(Self)
     }

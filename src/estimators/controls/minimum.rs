@@ -20,6 +20,7 @@ pub struct Minimum;
 
 impl Minimum {
     /// Reads `{}`.
+    #[must_use]
     pub fn read(_: &Settings, _: &Body) -> Option<Self> {
         Some(Self)
     }

@@ -13,6 +13,7 @@ pub struct None;
 
 impl None {
     /// Reads `{}`.
+    #[must_use]
     pub fn read(_: &Settings, _: &Body) -> Option<Self> {
         Some(Self)
     }
