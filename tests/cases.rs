@@ -1,0 +1,57 @@
+//! Every case file of the repository can be read, planned and drawn, and is not refuted.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::{judged, none, options, shipped};
+use trueflight::harness::record::Verdict;
+use trueflight::harness::{Plan, suite};
+
+#[test]
+fn every_case_draws_and_none_is_refuted() {
+    let cases = shipped();
+    assert!(!cases.is_empty());
+    let record = judged(&cases, &options(1, 10_000));
+    let mut wrong = Vec::new();
+    for case in &record.results.cases {
+        for row in &case.rows {
+            let drawn = row.mean.is_some_and(f64::is_finite);
+            match row.verdict {
+                Some(Verdict::Fail) => {
+                    wrong.push(format!("{}, {}: {}", case.name, row.estimator, row.reason));
+                }
+                Some(Verdict::Refused) if !row.reason.is_empty() => {}
+                Some(_) if drawn => {}
+                other => wrong.push(format!("{}, {}: {other:?}", case.name, row.estimator)),
+            }
+        }
+        let refused = case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused));
+        if refused {
+            wrong.push(format!("{}: every experiment is refused", case.name));
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn no_two_cases_or_experiments_share_a_name() {
+    let cases = shipped();
+    let names: BTreeSet<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    assert_eq!(names.len(), cases.len(), "two case files have one name");
+    let titles: BTreeSet<&str> = cases.iter().map(|case| case.title.as_str()).collect();
+    assert_eq!(titles.len(), cases.len(), "two case files have one title");
+    let plan = Plan::new(&cases, &options(1, 1_000));
+    let mut addresses = BTreeSet::new();
+    for (case, planned) in plan.experiments() {
+        let is_new = addresses.insert(planned.address.experiment);
+        assert!(is_new, "{}: two experiments share their random numbers", case.case.name);
+    }
+}
+
+#[test]
+fn the_binary_holds_every_case_file() {
+    let files: BTreeSet<String> = shipped().into_iter().map(|case| case.name).collect();
+    let built_in: BTreeSet<String> = suite::suite().into_iter().map(|source| source.name).collect();
+    assert_eq!(files, built_in);
+}
