@@ -112,19 +112,15 @@ impl<P: Estimated> Scenario<P> {
         expect_biased: bool,
         swept: Option<What>,
     ) -> Option<Box<dyn AnyScenario>> {
-        // Without a field nothing about it can be read, but unknown keys should not be blamed.
-        let Some(body) = body else {
-            for key in ["estimators", "sampling", "control", "distances", "ray", "span"] {
-                settings.entry(key);
-            }
-            return None;
-        };
-        let problem = P::read(&body, settings);
-        let sampling = read_if(settings, "sampling", &body, sampling::read);
-        let control = read_if(settings, "control", &body, controls::read);
-        let shared = settings.has("sampling") || swept == Some(What::Sampling);
+        let body = body.as_ref();
+        let problem = P::read(body, settings);
+        let sampling = read_if(settings, "sampling", body, sampling::read);
+        let control = read_if(settings, "control", body, controls::read);
+        // A sweep that could not be read may have been one of σ̂.
+        let unread = settings.has("sweep") && swept.is_none();
+        let shared = settings.has("sampling") || swept == Some(What::Sampling) || unread;
         let estimators = settings.tables("estimators").map(|tables| {
-            let read = |table: &Settings| Written::read(table, &body, expect_biased, shared);
+            let read = |table: &Settings| Written::read(table, body, expect_biased, shared);
             tables.iter().map(read).collect::<Vec<_>>()
         });
         let estimators = estimators?;
@@ -142,7 +138,7 @@ impl<P: Estimated> Scenario<P> {
             sampling: sampling?,
             control: control?,
             written: written?,
-            body,
+            body: body?.clone(),
         }))
     }
 
@@ -221,7 +217,13 @@ impl<P: Estimated> Scenario<P> {
             _ => 1.0,
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
-        Ok(Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control))
+        let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
+        let controlled = setup.control_transmittance;
+        if controlled.is_finite() && controlled >= FAINTEST {
+            return Ok(setup);
+        }
+        let needs = "a control with T_c between 1e-300 and infinity";
+        Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")))
     }
 
     fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
@@ -349,7 +351,7 @@ const MOST_LOOKUPS: f64 = 1e6;
 fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
     for channel in &ready.prediction.channels {
         let truth = channel.truth.value;
-        if !truth.is_finite() || truth < FAINTEST && truth != 0.0 || truth == 0.0 {
+        if !(truth.is_finite() && truth >= FAINTEST) {
             let needs = "an answer between 1e-300 and infinity";
             return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
         }
@@ -372,8 +374,8 @@ fn whole(points: f64) -> usize {
 fn read_if<T: ?Sized>(
     settings: &Settings,
     key: &'static str,
-    body: &Body,
-    read: fn(&Settings, &Body) -> Option<Box<T>>,
+    body: Option<&Body>,
+    read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
 ) -> Option<Option<Box<T>>> {
     match settings.table_if(key) {
         Some(table) => read(&table, body).map(Some),
@@ -383,7 +385,12 @@ fn read_if<T: ?Sized>(
 }
 
 impl<P: Estimated> Written<P> {
-    fn read(table: &Settings, body: &Body, expect_biased: bool, shared: bool) -> Option<Self> {
+    fn read(
+        table: &Settings,
+        body: Option<&Body>,
+        expect_biased: bool,
+        shared: bool,
+    ) -> Option<Self> {
         let names: Vec<String> = P::CATALOGUE.pages.iter().map(Page::name).collect();
         let (index, settings) = table.choice(&names)?;
         let entry = P::read_estimator(index, &settings);

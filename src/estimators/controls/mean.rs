@@ -20,7 +20,7 @@ pub struct Mean;
 impl Mean {
     /// Reads `{}`.
     #[must_use]
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

@@ -21,7 +21,7 @@ pub struct Minimum;
 impl Minimum {
     /// Reads `{}`.
     #[must_use]
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

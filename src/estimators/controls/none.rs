@@ -14,7 +14,7 @@ pub struct None;
 impl None {
     /// Reads `{}`.
     #[must_use]
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }
