@@ -27,7 +27,7 @@ fn experiments(record: &Record) -> Vec<(&str, &Row)> {
                     && (&next.estimator, &next.control, next.swept)
                         == (&row.estimator, &row.control, row.swept)
             };
-            let last = case.rows.get(i + 1).filter(same).is_none();
+            let last = case.rows.get(i + 1).as_ref().is_none_or(|next| !same(next));
             let fair = !row.reason.contains("bias");
             if last && fair && row.verdict != Some(Verdict::Refused) {
                 found.push((case.name.as_str(), row));

@@ -154,7 +154,8 @@ fn an_unknown_key_is_shown_in_its_line_with_a_caret() {
     let message = message(&GOOD.replace("extinction", "extincton"));
     assert_says(&message, &["`extincton`", "did you mean `extinction`?", "case.toml:3:"]);
     let lines: Vec<&str> = message.lines().collect();
-    let line = lines.iter().position(|line| line.contains("medium.constant.extincton = 0.5"));
+    // Of the two mistakes, what is missing and what is unknown, the second is at the key.
+    let line = lines.iter().rposition(|line| line.contains("medium.constant.extincton = 0.5"));
     let line = line.expect("the line of the file");
     let key = lines[line].find("extincton").expect("the key");
     let under: Vec<char> = lines[line + 1].chars().collect();

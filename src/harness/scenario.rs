@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::case::read_expect;
 use super::sweep::What;
-use crate::catalogue::{Page, Settings};
+use super::written::{Written, read_if};
+use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
 use crate::estimators::{
     Estimated, Experiment, Portrait, Refusal, Setup, Site, controls, sampling,
@@ -83,15 +83,6 @@ pub struct Ready {
     pub experiment: Box<dyn Experiment>,
     /// What theory says. For a forced experiment the moments are void and removed.
     pub prediction: Prediction,
-}
-
-/// An estimator as written.
-struct Written<P> {
-    name: String,
-    entry: Box<dyn Entry<P>>,
-    sampling: Option<Box<dyn sampling::Recipe>>,
-    control: Option<Box<dyn controls::Recipe>>,
-    expect_biased: bool,
 }
 
 /// A problem of known type.
@@ -368,64 +359,4 @@ fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a checked count
 fn whole(points: f64) -> usize {
     points as usize
-}
-
-#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
-fn read_if<T: ?Sized>(
-    settings: &Settings,
-    key: &'static str,
-    body: Option<&Body>,
-    read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
-) -> Option<Option<Box<T>>> {
-    match settings.table_if(key) {
-        Some(table) => read(&table, body).map(Some),
-        None if settings.has(key) => None,
-        None => Some(None),
-    }
-}
-
-impl<P: Estimated> Written<P> {
-    fn read(
-        table: &Settings,
-        body: Option<&Body>,
-        expect_biased: bool,
-        shared: bool,
-    ) -> Option<Self> {
-        let names: Vec<String> = P::CATALOGUE.pages.iter().map(Page::name).collect();
-        let (index, settings) = table.choice(&names)?;
-        let entry = P::read_estimator(index, &settings);
-        let own_expect =
-            if settings.has("expect") { read_expect(&settings) } else { Some(expect_biased) };
-        let Some(entry) = entry else {
-            // The page's own mistakes are listed; what it would have taken is not known.
-            settings.entry("sampling");
-            settings.entry("control");
-            settings.close();
-            return None;
-        };
-        let inputs = entry.inputs();
-        let sampling = if inputs.sampling {
-            read_if(&settings, "sampling", body, sampling::read)
-        } else {
-            Some(None)
-        };
-        let control = if inputs.control {
-            read_if(&settings, "control", body, controls::read)
-        } else {
-            Some(None)
-        };
-        if inputs.sampling && !settings.has("sampling") && !shared {
-            let message = format!("`{}` has no sampling extinction", names[index]);
-            let help = "add `sampling.constant.value = …` to it or to the problem, or sweep it";
-            settings.fault_at(settings.span.clone(), "", message, help);
-        }
-        settings.close();
-        Some(Self {
-            name: names[index].clone(),
-            entry,
-            sampling: sampling?,
-            control: control?,
-            expect_biased: own_expect?,
-        })
-    }
 }
