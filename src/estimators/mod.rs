@@ -62,8 +62,10 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// it.
     fn read(settings: &Settings) -> Option<Self>;
 
-    /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none.
-    fn label(&self) -> String {
+    /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none. Without
+    /// `albedo` the albedo is left out: it is swept.
+    fn label(&self, albedo: bool) -> String {
+        let _ = albedo;
         String::new()
     }
 

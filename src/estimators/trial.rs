@@ -51,7 +51,7 @@ pub trait Entry<P: Problem>: Send + Sync {
     /// See [`Estimator::INPUTS`].
     fn inputs(&self) -> Inputs;
     /// See [`Estimator::label`].
-    fn label(&self) -> String;
+    fn label(&self, albedo: bool) -> String;
     /// See [`Estimator::with_albedo`].
     fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>>;
     /// See [`Estimator::default_control`].
@@ -75,8 +75,8 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
         E::INPUTS
     }
 
-    fn label(&self) -> String {
-        Estimator::label(self)
+    fn label(&self, albedo: bool) -> String {
+        Estimator::label(self, albedo)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>> {

@@ -37,13 +37,7 @@ pub fn sweep(case: &Case, z_limit: Option<f64>) -> Option<Sweep> {
                 let at = best.sampling;
                 point(case, estimator, Some((What::Sampling, at)), at)
             });
-            // An estimator named after the swept quantity has one name per point.
-            let estimator = if axis.what == What::Albedo {
-                names.estimator.split(", a=").next().unwrap_or_default().to_owned() + ")"
-            } else {
-                names.estimator
-            };
-            Curve { estimator, control: names.control, points, optimum }
+            Curve { estimator: names.estimator, control: names.control, points, optimum }
         })
         .collect();
     Some(Sweep {

@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
 use super::plan::{Plan, Planned};
@@ -90,7 +91,8 @@ fn units<'p>(plan: &'p Plan) -> Vec<Unit<'p>> {
 }
 
 fn draw_block(unit: &Unit) -> Drawn {
-    let begin = Instant::now();
+    // Processor time, not wall time: other processes do not count.
+    let begin = ThreadTime::now();
     let planned = unit.planned;
     let Ok(ready) = &planned.outcome else { return Drawn::default() };
     let prediction = &ready.prediction;

@@ -262,9 +262,8 @@ impl<P: Estimated> AnyScenario for Scenario<P> {
 
     fn names(&self, estimator: usize, variation: Variation) -> Names {
         let written = &self.written[estimator];
-        let label = self
-            .varied_entry(estimator, variation)
-            .map_or_else(|| written.entry.label(), |entry| entry.label());
+        let swept_albedo = matches!(variation, Some((What::Albedo, _)));
+        let label = written.entry.label(!swept_albedo);
         let name = if label.is_empty() {
             written.name.clone()
         } else {

@@ -8,9 +8,13 @@
 //! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
 
 pub mod body;
+pub mod cells;
 pub mod control;
+pub mod grid_file;
+pub mod lattice;
 pub mod medium;
 pub mod piecewise;
+pub mod voxels;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
@@ -195,4 +199,6 @@ media! {
     gaussian::Gaussian,
     sines::Sines,
     eq21::Eq21,
+    noise::Noise,
+    grid::Grid,
 }

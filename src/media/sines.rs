@@ -43,7 +43,7 @@ pub struct Waves {
     base: f64,
     /// `base − Σ|amplitude| ≥ 0`.
     trough: f64,
-    waves: Vec<Wave>,
+    parts: Vec<Wave>,
 }
 
 struct Wave {
@@ -63,16 +63,16 @@ impl Wave {
 }
 
 impl Waves {
-    fn new(base: f64, waves: Vec<Wave>) -> Self {
-        let trough = base - waves.iter().map(|wave| wave.amplitude.abs()).sum::<f64>();
-        Self { base, trough, waves }
+    fn new(base: f64, parts: Vec<Wave>) -> Self {
+        let trough = base - parts.iter().map(|wave| wave.amplitude.abs()).sum::<f64>();
+        Self { base, trough, parts }
     }
 }
 
 impl Extinction for Waves {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        self.waves.iter().fold(L::splat(self.trough), |sum, wave| sum + wave.raised(t))
+        self.parts.iter().fold(L::splat(self.trough), |sum, wave| sum + wave.raised(t))
     }
 }
 
@@ -93,7 +93,7 @@ impl OpticalDepth for Waves {
     fn optical_depth(&self, span: Span) -> Known {
         let (length, middle) = (span.length(), span.middle());
         let (mut mean, mut error) = (self.base, 4.0 * self.base);
-        for Wave { amplitude, frequency, phase } in &self.waves {
+        for Wave { amplitude, frequency, phase } in &self.parts {
             let swing = sinc(0.5 * frequency * length);
             mean += amplitude * (frequency * middle + phase).sin() * swing;
             error += amplitude.abs() * (2.0 * (frequency * middle).abs() + phase.abs());
@@ -102,7 +102,7 @@ impl OpticalDepth for Waves {
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {
-        let fastest = self.waves.iter().fold(0.0f64, |f, wave| f.max(wave.frequency.abs()));
+        let fastest = self.parts.iter().fold(0.0f64, |f, wave| f.max(wave.frequency.abs()));
         let half_periods = (fastest * span.length() / PI).ceil();
         let at = |n: f64| span.from + span.length() * (n / half_periods);
         std::iter::successors(Some(1.0), |n| Some(n + 1.0))

@@ -21,6 +21,86 @@ const PI_1: f64 = 3.141_592_653_468_251_2;
 const PI_2: f64 = 1.215_420_101_260_793_2e-10;
 const PI_3: f64 = 4.044_532_497_591_901e-21;
 
+/// `2/(2n + 3)`: `ln` after its first term.
+const LN: [f64; 11] = [
+    2.0 / 3.0,
+    2.0 / 5.0,
+    2.0 / 7.0,
+    2.0 / 9.0,
+    2.0 / 11.0,
+    2.0 / 13.0,
+    2.0 / 15.0,
+    2.0 / 17.0,
+    2.0 / 19.0,
+    2.0 / 21.0,
+    2.0 / 23.0,
+];
+
+/// `1/(n + 2)!`: `exp` after its first two terms.
+const EXP: [f64; 12] = [
+    0.5,
+    1.0 / 6.0,
+    1.0 / 24.0,
+    1.0 / 120.0,
+    1.0 / 720.0,
+    1.0 / 5_040.0,
+    1.0 / 40_320.0,
+    1.0 / 362_880.0,
+    1.0 / 3_628_800.0,
+    1.0 / 39_916_800.0,
+    1.0 / 479_001_600.0,
+    1.0 / 6_227_020_800.0,
+];
+
+/// `(−1)^{n+1}/(2n + 2)!`: `cos` after its first term.
+const COS: [f64; 10] = [
+    -0.5,
+    1.0 / 24.0,
+    -1.0 / 720.0,
+    1.0 / 40_320.0,
+    -1.0 / 3_628_800.0,
+    1.0 / 479_001_600.0,
+    -1.0 / 87_178_291_200.0,
+    1.0 / 20_922_789_888_000.0,
+    -1.0 / 6_402_373_705_728_000.0,
+    1.0 / 2_432_902_008_176_640_000.0,
+];
+
+/// `(−1)^{n+1}/(2n + 3)!`: `sin` after its first term.
+const SIN: [f64; 10] = [
+    -1.0 / 6.0,
+    1.0 / 120.0,
+    -1.0 / 5_040.0,
+    1.0 / 362_880.0,
+    -1.0 / 39_916_800.0,
+    1.0 / 6_227_020_800.0,
+    -1.0 / 1_307_674_368_000.0,
+    1.0 / 355_687_428_096_000.0,
+    -1.0 / 121_645_100_408_832_000.0,
+    1.0 / 51_090_942_171_709_440_000.0,
+];
+
+/// `Σ cₙ xⁿ`: Horner's rule on the even and on the odd terms apart, so that the processor works on
+/// both at once; the order of operations, and so every bit, is fixed by this page.
+#[inline(always)]
+fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
+    let square = x * x;
+    let last_even = (N - 1) & !1;
+    let last_odd = N - 1 - (N & 1);
+    let (mut even, mut odd) = (c[last_even], c[last_odd]);
+    let mut n = last_even;
+    while n >= 2 {
+        n -= 2;
+        even = even * square + c[n];
+    }
+    let mut n = last_odd;
+    while n >= 3 {
+        n -= 2;
+        odd = odd * square + c[n];
+    }
+    even + x * odd
+}
+
 /// Natural logarithm of a positive, normal double.
 ///
 /// ```text
@@ -37,17 +117,7 @@ pub fn ln(x: f64) -> f64 {
     let m = f64::from_bits(bits.wrapping_sub((k as u64) << 52));
     let s = (m - 1.0) / (m + 1.0);
     let z = s * s;
-    let mut p = 2.0 / 23.0;
-    p = p * z + 2.0 / 21.0;
-    p = p * z + 2.0 / 19.0;
-    p = p * z + 2.0 / 17.0;
-    p = p * z + 2.0 / 15.0;
-    p = p * z + 2.0 / 13.0;
-    p = p * z + 2.0 / 11.0;
-    p = p * z + 2.0 / 9.0;
-    p = p * z + 2.0 / 7.0;
-    p = p * z + 2.0 / 5.0;
-    p = p * z + 2.0 / 3.0;
+    let p = polynomial(z, &LN);
     // 2s + s·z·p keeps the rounding of the correction far below that of 2s.
     let k = k as f64;
     k * LN_2_HIGH + (2.0 * s + (s * z * p + k * LN_2_LOW))
@@ -70,19 +140,7 @@ pub fn exp(x: f64) -> f64 {
     }
     let k = (x * std::f64::consts::LOG2_E + ROUNDER) - ROUNDER;
     let f = (x - k * LN_2_HIGH) - k * LN_2_LOW;
-    let mut p = 1.0 / 6_227_020_800.0;
-    p = p * f + 1.0 / 479_001_600.0;
-    p = p * f + 1.0 / 39_916_800.0;
-    p = p * f + 1.0 / 3_628_800.0;
-    p = p * f + 1.0 / 362_880.0;
-    p = p * f + 1.0 / 40_320.0;
-    p = p * f + 1.0 / 5_040.0;
-    p = p * f + 1.0 / 720.0;
-    p = p * f + 1.0 / 120.0;
-    p = p * f + 1.0 / 24.0;
-    p = p * f + 1.0 / 6.0;
-    p = p * f + 0.5;
-    p = p * f * f + f;
+    let p = polynomial(f, &EXP) * f * f + f;
     // 2^k in two steps: k = 1024 has no double of its own.
     let half = (k * 0.5 + ROUNDER) - ROUNDER;
     let two = |n: f64| f64::from_bits(((n as i64 + 1023) as u64) << 52);
@@ -109,16 +167,7 @@ fn reduce_by_pi(x: f64) -> (f64, f64) {
 pub fn cos(x: f64) -> f64 {
     let (f, sign) = reduce_by_pi(x);
     let z = f * f;
-    let mut p = 1.0 / 2_432_902_008_176_640_000.0;
-    p = p * z - 1.0 / 6_402_373_705_728_000.0;
-    p = p * z + 1.0 / 20_922_789_888_000.0;
-    p = p * z - 1.0 / 87_178_291_200.0;
-    p = p * z + 1.0 / 479_001_600.0;
-    p = p * z - 1.0 / 3_628_800.0;
-    p = p * z + 1.0 / 40_320.0;
-    p = p * z - 1.0 / 720.0;
-    p = p * z + 1.0 / 24.0;
-    p = p * z - 0.5;
+    let p = polynomial(z, &COS);
     sign * (1.0 + p * z)
 }
 
@@ -132,16 +181,7 @@ pub fn cos(x: f64) -> f64 {
 pub fn sin(x: f64) -> f64 {
     let (f, sign) = reduce_by_pi(x);
     let z = f * f;
-    let mut p = 1.0 / 51_090_942_171_709_440_000.0;
-    p = p * z - 1.0 / 121_645_100_408_832_000.0;
-    p = p * z + 1.0 / 355_687_428_096_000.0;
-    p = p * z - 1.0 / 1_307_674_368_000.0;
-    p = p * z + 1.0 / 6_227_020_800.0;
-    p = p * z - 1.0 / 39_916_800.0;
-    p = p * z + 1.0 / 362_880.0;
-    p = p * z - 1.0 / 5_040.0;
-    p = p * z + 1.0 / 120.0;
-    p = p * z - 1.0 / 6.0;
+    let p = polynomial(z, &SIN);
     sign * (f + f * z * p)
 }
 

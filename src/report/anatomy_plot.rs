@@ -49,12 +49,12 @@ fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
     let upper = medium(&mut sheet, anatomy);
     legend::draw(&face, &mut sheet, [LEGEND, 116.0], &upper, 220.0);
     let lower = transmittance(&mut sheet, anatomy);
-    legend::draw(&face, &mut sheet, [LEGEND, 506.0], &lower, 220.0);
+    legend::draw(&face, &mut sheet, [LEGEND, 518.0], &lower, 220.0);
     Ok(sheet)
 }
 
 fn panel(anatomy: &Anatomy, [top, bottom]: [f64; 2], y: Axis) -> Panel {
-    let x = Axis::around("distance t along the ray [length]", false, 0.0, anatomy.t.clone());
+    let x = Axis::around("distance t along the ray [length]", false, 0.015, anatomy.t.clone());
     Panel { left: LEFT, top, right: RIGHT, bottom, x, y }
 }
 
@@ -64,15 +64,15 @@ type Profile<'a> = (&'static str, &'a [f64], &'static [f64], f64, RGBAColor);
 /// The upper panel: extinctions, where they were explored, and where the first walk collided.
 fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
     let profiles: [Profile; 4] = [
-        ("σ\u{302} sampling", &anatomy.sampling, &[9.0, 4.0], 2.0, COLOURS[2]),
-        ("σ_c control", &anatomy.control, &[], 2.0, COLOURS[0]),
-        ("σ_t − σ_c residual", &anatomy.residual, &[2.5, 3.0], 2.0, COLOURS[1]),
-        ("σ_t extinction", &anatomy.extinction, &[], 2.4, DARK),
+        ("sampling σ\u{302}", &anatomy.sampling, &[9.0, 4.0], 2.0, COLOURS[2]),
+        ("control", &anatomy.control, &[], 2.0, COLOURS[0]),
+        ("residual", &anatomy.residual, &[2.5, 3.0], 2.0, COLOURS[1]),
+        ("extinction σₜ", &anatomy.extinction, &[], 2.4, DARK),
     ];
     let dots = anatomy.explorers.iter().chain(&anatomy.collisions).map(|dot| dot[1]);
     let values = profiles.iter().flat_map(|profile| profile.1).copied().chain(dots);
     let y = Axis::around("extinction [1/length]", false, 0.06, values.chain([0.0]));
-    let panel = panel(anatomy, [104.0, 426.0], y);
+    let panel = panel(anatomy, [104.0, 420.0], y);
     panel.grid(sheet);
     panel.line(sheet, [panel.x.low, panel.x.high].map(|x| (x, 0.0)), (&[], 1.0, GREY));
     let mut entries = Vec::new();
@@ -103,7 +103,7 @@ fn medium(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
 
 /// The lower panel: the exact transmittance, how draws scatter about it, and what was measured.
 fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
-    let panel = panel(anatomy, [494.0, 816.0], transmittance_axis(anatomy));
+    let panel = panel(anatomy, [506.0, 822.0], transmittance_axis(anatomy));
     let blue = COLOURS[6];
     panel.band(sheet, spread(anatomy), blue.mix(0.22));
     panel.grid(sheet);
@@ -139,9 +139,9 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
         entries.push(entry("single draws", solid(1.0), None, COLOURS[2].mix(0.75)));
     }
     if !anatomy.measured.is_empty() {
-        entries.push(entry("mean of draws, ± 1", None, Some(Marker::Disc), red));
-        entries.push(entry("deviation (thin), ± 1", None, None, red));
-        entries.push(entry("standard error (thick)", None, None, red));
+        entries.push(entry("mean of draws", None, Some(Marker::Disc), red));
+        entries.push(entry("± 1 standard error", solid(2.8), None, red));
+        entries.push(entry("± 1 measured deviation", solid(1.2), None, red));
     }
     entries
 }

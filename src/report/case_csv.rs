@@ -33,12 +33,15 @@ fn artifact(case: &CaseRecord, ending: &str, text: String) -> Artifact {
     Artifact { path: case_path(&case.name, ending), bytes: text.into_bytes() }
 }
 
+/// A column of deviations, for error bars.
+type Bar = (&'static str, fn(&Row) -> Option<f64>);
+
 fn case_rows<'a>(
     case: &CaseRecord,
     rows: impl Iterator<Item = &'a JoinedRow<'a>>,
 ) -> Result<String, ReportError> {
     let untimed = columns().filter(|column| !column.timed);
-    let bars: [(&str, fn(&Row) -> Option<f64>); 2] = [
+    let bars: [Bar; 2] = [
         ("variance_deviation", |row| row.variance_deviation),
         ("lookups_deviation", |row| row.lookups_deviation),
     ];

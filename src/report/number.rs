@@ -7,9 +7,20 @@ pub fn exact(x: f64) -> String {
     if scientific.len() < plain.len() { scientific } else { plain }
 }
 
-/// `digits` significant digits, with an exponent where plain notation would hide or pad them.
+/// At most `digits` significant digits, with an exponent where plain notation would hide or pad
+/// them.
 #[must_use]
 pub fn short(x: f64, digits: usize) -> String {
+    let text = fixed(x, digits);
+    match text.split_once('e') {
+        Some((mantissa, exponent)) => format!("{}e{exponent}", trimmed(mantissa)),
+        None => trimmed(&text),
+    }
+}
+
+/// Exactly `digits` significant digits, for columns; otherwise as [`short`].
+#[must_use]
+pub fn fixed(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
     }
@@ -19,8 +30,8 @@ pub fn short(x: f64, digits: usize) -> String {
     let power: i32 = exponent.parse().unwrap_or(0);
     let precision = i32::try_from(digits).unwrap_or(17) - 1 - power;
     match usize::try_from(precision) {
-        Ok(places) if power >= -3 => trimmed(&format!("{x:.places$}")),
-        _ => format!("{}e{power}", trimmed(mantissa)),
+        Ok(places) if power >= -3 => format!("{x:.places$}"),
+        _ => format!("{mantissa}e{power}"),
     }
 }
 
@@ -74,6 +85,8 @@ mod tests {
         for (x, digits, text) in cases {
             assert_eq!(short(x, digits), text);
         }
+        assert_eq!(fixed(2.0, 4), "2.000");
+        assert_eq!(fixed(2e-7, 4), "2.000e-7");
     }
 
     #[test]

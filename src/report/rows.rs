@@ -5,7 +5,7 @@
 
 use serde::ser::{Serialize, Serializer};
 
-use crate::harness::record::{CaseRecord, Record, Row};
+use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::number::exact;
 
@@ -23,7 +23,7 @@ pub struct JoinedRow<'a> {
 }
 
 impl JoinedRow<'_> {
-    /// Nanoseconds of processor time for one lookup of σ_t; `None` where nothing was looked up.
+    /// Nanoseconds of processor time for one lookup of `σ_t`; `None` where nothing was looked up.
     #[must_use]
     pub fn ns_per_lookup(&self) -> Option<f64> {
         let lookups = self.row.draws? as f64 * self.row.lookups_per_draw?;
@@ -50,6 +50,8 @@ pub fn joined(record: &Record) -> Vec<JoinedRow<'_>> {
 pub enum Cell {
     /// Words; empty where there are none.
     Text(String),
+    /// A word of a fixed list, if there is one.
+    Word(Option<&'static str>),
     /// A number, if it is known.
     Number(Option<f64>),
     /// A count, if it is known.
@@ -62,6 +64,7 @@ impl Cell {
     pub fn csv(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),
+            Self::Word(word) => word.unwrap_or_default().to_owned(),
             Self::Number(number) => number.map(exact).unwrap_or_default(),
             Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
         }
@@ -72,6 +75,7 @@ impl Serialize for Cell {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::Text(text) => serializer.serialize_str(text),
+            Self::Word(word) => word.serialize(serializer),
             Self::Number(number) => number.serialize(serializer),
             Self::Count(count) => count.serialize(serializer),
         }
@@ -98,7 +102,7 @@ macro_rules! columns {
     };
 }
 
-use Cell::{Count, Number, Text};
+use Cell::{Count, Number, Text, Word};
 
 const RESULTS: &[Column] = columns! {
     case = |joined| Text(joined.case.name.clone());
@@ -132,7 +136,7 @@ const TIMED: &[Column] = columns! { timed
 };
 
 const VERDICTS: &[Column] = columns! {
-    verdict = |joined| Text(joined.row.verdict.map(|v| v.word().to_owned()).unwrap_or_default());
+    verdict = |joined| Word(joined.row.verdict.map(Verdict::word));
     reason = |joined| Text(joined.row.reason.clone());
     sampling_kind = |joined| Text(joined.row.sampling_kind.clone());
     swept = |joined| Number(joined.row.swept);

@@ -79,11 +79,12 @@ fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportEr
     })?;
     let series = collect(case, sweep);
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
-    let notes: Vec<_> = series.iter().filter_map(Series::note).collect();
+    let mut notes = vec![z_panel::note(sweep)];
+    notes.extend(series.iter().filter_map(Series::note));
     let span = WIDTH - LEFT - 18.0;
     let below = TOP + 2.0 * PITCH[1];
     let legend = legend::height(&face, &entries, span);
-    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0 + 4.0);
+    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0 - 6.0);
     let mut title = |y: f64, text: &str, size: f64, colour| {
         sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
     };
@@ -110,10 +111,10 @@ fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportEr
 fn subtitle(case: &CaseRecord, seed: u64) -> String {
     let mut parts = vec![case.name.clone(), case.problem.clone(), case.medium.clone()];
     let truths: Vec<f64> = case.rows.iter().filter_map(|row| row.truth).collect();
-    if let [first, rest @ ..] = &truths[..] {
-        if rest.iter().all(|truth| truth == first) {
-            parts.push(format!("truth {}", short(*first, 6)));
-        }
+    if let [first, rest @ ..] = &truths[..]
+        && rest.iter().all(|truth| truth == first)
+    {
+        parts.push(format!("truth {}", short(*first, 6)));
     }
     let draws: Vec<u64> = case.rows.iter().filter_map(|row| row.draws).collect();
     if let (Some(&least), Some(&most)) = (draws.iter().min(), draws.iter().max()) {

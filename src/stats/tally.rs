@@ -93,7 +93,7 @@ mod tests {
 
     #[test]
     fn a_tiny_spread_on_a_large_mean_survives() {
-        let values = [1e9 + 1e-6, 1e9 - 1e-6];
+        let values: [f64; 2] = [1e9 + 1e-6, 1e9 - 1e-6];
         let exact = (values[0] - values[1]).powi(2) / 2.0;
         let variance = Tally::of(&values, 1e9, 1.0).moments().and_then(|m| m.variance);
         assert!((variance.expect("two draws") / exact - 1.0).abs() < 1e-12);

@@ -44,6 +44,23 @@ pub struct Panel<'a> {
     pub extinction: &'a [f64],
 }
 
+/// What a caller integrates: functions at the nodes of a panel, which must be smooth there.
+pub type Functions<'f> = dyn Fn(&Mesh, Panel<'_>) -> Vec<Vec<f64>> + 'f;
+
+/// The size of a function on a panel or one that holds it, and of its highest coefficients.
+#[derive(Debug, Clone, Copy)]
+struct Tail {
+    scale: f64,
+    size: f64,
+}
+
+fn is_rough(tails: &[Tail], parent: &[Tail]) -> bool {
+    tails.iter().enumerate().any(|(i, tail)| {
+        let shrinks = parent.get(i).is_none_or(|before| tail.size < 0.5 * before.size);
+        tail.size > TAIL * tail.scale && shrinks
+    })
+}
+
 impl Mesh {
     /// Cuts the support of a medium and looks σ_t up at every node.
     #[must_use]
@@ -69,7 +86,7 @@ impl Mesh {
             error: 0.0,
         };
         for span in ends.windows(2).map(|pair| Span::new(pair[0], pair[1])) {
-            mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()]);
+            mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()], &[]);
         }
         mesh.error = mesh.measured_error();
         mesh
@@ -101,11 +118,7 @@ impl Mesh {
     ///
     /// Media with thousands of breaks are only cut: their panels are short already.
     #[must_use]
-    pub fn refined(
-        &self,
-        cuts: &[f64],
-        smooth: &dyn Fn(&Self, Panel<'_>) -> Vec<Vec<f64>>,
-    ) -> Self {
+    pub fn refined(&self, cuts: &[f64], smooth: &Functions<'_>) -> Self {
         let mut cuts = cuts.to_vec();
         cuts.sort_by(f64::total_cmp);
         let mut fine = Self {
@@ -118,7 +131,9 @@ impl Mesh {
             let first = cuts.partition_point(|&cut| cut <= panel.span.from);
             let last = cuts.partition_point(|&cut| cut < panel.span.to);
             let inside = &cuts[first..last.max(first)];
-            if inside.is_empty() && !(self.adaptive && self.is_rough(&smooth(self, panel))) {
+            let smooth_enough =
+                || !self.adaptive || !is_rough(&self.tails(&smooth(self, panel), &[]), &[]);
+            if inside.is_empty() && smooth_enough() {
                 fine.keep(panel);
                 continue;
             }
@@ -127,7 +142,7 @@ impl Mesh {
             ends.push(panel.span.to);
             ends.dedup();
             for pair in ends.windows(2) {
-                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth);
+                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth, &[]);
             }
         }
         fine
@@ -153,31 +168,32 @@ impl Mesh {
     }
 
     /// Adds a panel, or its halves where a function on it is not smooth.
-    fn grow(
-        &mut self,
-        span: Span,
-        halvings: u32,
-        smooth: &dyn Fn(&Self, Panel<'_>) -> Vec<Vec<f64>>,
-    ) {
+    ///
+    /// `parent` holds the tails of the panel that this one is a half of. A tail that halving does
+    /// not shrink is rounding noise, and no reason to go on.
+    fn grow(&mut self, span: Span, halvings: u32, smooth: &Functions<'_>, parent: &[Tail]) {
         let t: Vec<f64> =
             self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();
         let extinction = self.medium.extinctions(&t);
         let panel = Panel { span, t: &t, extinction: &extinction };
         let middle = span.middle();
-        let divisible = span.contains_inside(middle) && halvings > 0;
-        if self.adaptive && divisible && self.is_rough(&smooth(self, panel)) {
-            self.grow(Span::new(span.from, middle), halvings - 1, smooth);
-            self.grow(Span::new(middle, span.to), halvings - 1, smooth);
+        let divisible = self.adaptive && span.contains_inside(middle) && halvings > 0;
+        let tails = if divisible { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
+        if is_rough(&tails, parent) {
+            self.grow(Span::new(span.from, middle), halvings - 1, smooth, &tails);
+            self.grow(Span::new(middle, span.to), halvings - 1, smooth, &tails);
         } else {
             self.keep(panel);
         }
     }
 
-    fn is_rough(&self, functions: &[Vec<f64>]) -> bool {
-        functions.iter().any(|f| {
+    fn tails(&self, functions: &[Vec<f64>], parent: &[Tail]) -> Vec<Tail> {
+        let tail = |(i, f): (usize, &Vec<f64>)| {
             let largest = f.iter().fold(0.0f64, |m, x| m.max(x.abs()));
-            self.tails.iter().any(|row| dot(row, f).abs() > TAIL * largest)
-        })
+            let size = self.tails.iter().map(|row| dot(row, f).abs()).fold(0.0, f64::max);
+            Tail { scale: parent.get(i).map_or(largest, |tail| tail.scale.max(largest)), size }
+        };
+        functions.iter().enumerate().map(tail).collect()
     }
 
     /// `∫ f` over a panel, from values at its nodes.

@@ -56,7 +56,7 @@ impl Estimator<Transmittance> for RayMarching {
         Some(Self { steps: u32::try_from(steps?).ok()?, jitter: jitter? })
     }
 
-    fn label(&self) -> String {
+    fn label(&self, _: bool) -> String {
         let jitter = if self.jitter { ", jittered" } else { "" };
         format!("{} steps{jitter}", self.steps)
     }

@@ -70,12 +70,16 @@ impl Estimator<Transmittance> for SingleParticle {
         Some(Self { rule })
     }
 
-    fn label(&self) -> String {
-        match self.rule {
-            Single::Terminating => "terminating".into(),
-            Single::Clamped => "clamped".into(),
-            Single::NonTerminating { albedo } => format!("non-terminating, a={albedo}"),
-            Single::Adaptive { albedo } => format!("adaptive, a={albedo}"),
+    fn label(&self, albedo: bool) -> String {
+        let (rule, value) = match self.rule {
+            Single::Terminating => ("terminating", None),
+            Single::Clamped => ("clamped", None),
+            Single::NonTerminating { albedo } => ("non-terminating", Some(albedo)),
+            Single::Adaptive { albedo } => ("adaptive", Some(albedo)),
+        };
+        match value.filter(|_| albedo) {
+            Some(value) => format!("{rule}, a={value}"),
+            None => rule.to_owned(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! The typeface of the plots: a subset of DejaVu Sans with Greek, superscripts and signs.
+//! The typeface of the plots: a subset of `DejaVu` Sans with Greek, superscripts and signs.
 //!
 //! It is part of the program, so that plots look the same on machines without fonts. The licence
 //! stands beside it in `dejavu-sans.LICENSE.txt`.

@@ -20,7 +20,7 @@ impl Series<'_> {
     /// Whether it is drawn once, outside of the sweep.
     #[must_use]
     pub fn is_fixed(&self) -> bool {
-        self.rows.iter().all(|row| row.swept.is_none())
+        self.curve.is_none() && self.rows.iter().all(|row| row.swept.is_none())
     }
 
     /// Theory's line, through the curve's points, or through the rows' own predictions where there

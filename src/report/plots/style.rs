@@ -133,7 +133,7 @@ impl Marker {
 fn ring(at: Spot, corners: u32, turn: f64, even: f64, odd: f64) -> Vec<Spot> {
     let corner = |i: u32| {
         let angle = std::f64::consts::TAU * (turn + f64::from(i) / f64::from(corners));
-        let size = if i % 2 == 0 { even } else { odd };
+        let size = if i.is_multiple_of(2) { even } else { odd };
         [at[0] + size * angle.sin(), at[1] - size * angle.cos()]
     };
     (0..corners).map(corner).collect()

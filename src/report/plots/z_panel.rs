@@ -35,7 +35,7 @@ pub fn draw(
     let largest = scores.flatten().map(f64::abs).filter(|z| z.is_finite()).fold(0.0, f64::max);
     // Far outliers of a failed check would flatten all others: they become arrows at the edge.
     let usual = 1.3 * sweep.z_limit.unwrap_or(3.0).max(USUAL);
-    let edge = (1.1 * largest).clamp(usual, 3.0 * usual);
+    let edge = (1.1 * largest).clamp(usual, 2.0 * usual);
     let title = "z, in standard errors".to_owned();
     panel.y = Axis { title, log: false, low: -edge, high: edge };
     let ends = [panel.x.low, panel.x.high];
@@ -53,26 +53,37 @@ pub fn draw(
     }
     let [right, top] = [panel.right, panel.top];
     legend::keys(face, sheet, [right, top - 15.0], &keys);
-    let limit = sweep.z_limit.map(|z| format!(", dashes: fails beyond ±{}", short(z, 3)));
-    let words = format!("band: ±{USUAL}{}", limit.unwrap_or_default());
-    legend::keys(face, sheet, [right, panel.bottom + 38.0], &[(None, words)]);
+}
+
+/// What the band and the dashes mean, in words.
+#[must_use]
+pub fn note(sweep: &Sweep) -> String {
+    let band = format!("(d): 95 % of the scores of a correct estimator lie in the band, ±{USUAL}");
+    let limit =
+        sweep.z_limit.map(|z| format!("; beyond the dashes, ±{}, a check fails", short(z, 3)));
+    band + &limit.unwrap_or_default()
 }
 
 /// Draws the points side by side, so that none hides another, and says whether any is off the axis.
 fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
-    let slots = (series.len() * SCORES.len()) as f64;
+    let swept = series.iter().filter(|one| !one.is_fixed()).count();
+    let slots = (swept * SCORES.len()) as f64;
     let step = (0.8 * gap(panel, series) / slots.max(1.0)).min(4.0);
     let mut beyond = false;
-    let mut slot = 0.0;
+    let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
+        let fixed = one.is_fixed();
         for (marker, _, score) in SCORES {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
-            slot += 1.0;
+            slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
-                let swept = row.swept.map_or(Some(panel.right - 13.0), |x| panel.across(x));
-                let (Some(x), Some(z)) = (swept, score(row)) else { continue };
-                let Some(y) = panel.down(z) else { continue };
-                let at = [(x + shift).clamp(panel.left + 4.0, panel.right - 4.0), y];
+                // What is not swept has a place of its own at the right edge, as in other panels.
+                let place =
+                    row.swept.map_or(Some(edge), |swept| Some(panel.across(swept)? + shift));
+                let (Some(x), Some(z)) = (place, score(row)) else { continue };
+                // An infinite score has no place on the axis, but is all the more beyond it.
+                let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };
+                let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
                     panel.point(sheet, at, marker, 3.6, one.style.colour);
                     continue;
@@ -85,6 +96,9 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 };
                 panel.point(sheet, [at[0], y], arrow, 4.6, one.style.colour);
             }
+        }
+        if fixed {
+            edge -= 13.0;
         }
     }
     beyond

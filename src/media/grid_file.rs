@@ -1,0 +1,243 @@
+//! Voxel grids in files: Mitsuba's `.vol` and `NumPy`'s `.npy`.
+//!
+//! ```text
+//! .vol   "VOL", version 3 (1 byte), then little-endian: type 1 (i32), nx ny nz channels (i32),
+//!        low and high corner of the box (6 f32), samples (f32), x fastest, then y, then z
+//! .npy   float32 or float64 of shape (nz, ny, nx) in C order: x fastest, as in .vol
+//! ```
+//!
+//! The `.vol` layout is that of the `gridvolume` plugin of Mitsuba 3 (W. Jakob et al., *Mitsuba 3
+//! renderer*, 2022); channels other than 1 and versions other than 3 are refused. A grid has at
+//! most 2²⁷ samples, and every sample is finite and not negative.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::Path;
+
+use crate::geometry::{Aabb, Point};
+
+/// The samples of a grid, x fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Samples {
+    /// How many samples stand along x, y and z.
+    pub size: [usize; 3],
+    /// `values[(z·ny + y)·nx + x]`.
+    pub values: Vec<f64>,
+    /// The corners of the box that the file gives, whether or not they are those of a box.
+    pub bounds: Option<Aabb>,
+}
+
+/// What is wrong with a file, and what would be right.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unreadable {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+/// The largest number of samples, 1 GiB of doubles.
+pub const MOST_SAMPLES: u64 = 1 << 27;
+
+fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Unreadable> {
+    Err(Unreadable { message: message.into(), help: help.into() })
+}
+
+/// Reads a `.vol` or `.npy` file, by its ending.
+///
+/// # Errors
+///
+/// Whatever keeps the file from being a grid of finite, non-negative samples.
+pub fn read(path: &Path) -> Result<Samples, Unreadable> {
+    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+    let reader: fn(File) -> Result<Samples, Unreadable> = match ending {
+        "vol" => read_vol,
+        "npy" => read_npy,
+        _ => return wrong("the file is neither .vol nor .npy", "convert it to one of the two"),
+    };
+    let file = match File::open(path) {
+        Ok(file) => file,
+        Err(error) => {
+            return wrong(error.to_string(), "the name is relative to the case file's folder");
+        }
+    };
+    let samples = reader(file)?;
+    match samples.values.iter().position(|x| !(x.is_finite() && *x >= 0.0)) {
+        None => Ok(samples),
+        Some(index) => {
+            let [nx, ny, _] = samples.size;
+            let (x, y, z) = (index % nx, index / nx % ny, index / nx / ny);
+            let message = format!("sample ({x}, {y}, {z}) is {}", samples.values[index]);
+            wrong(message, "an extinction is finite and not negative")
+        }
+    }
+}
+
+/// The three sizes as indices, if they make a grid of a size that fits.
+fn sizes(size: [u64; 3]) -> Result<[usize; 3], Unreadable> {
+    let [x, y, z] = size;
+    let count = size.iter().try_fold(1u64, |product, &n| product.checked_mul(n));
+    let fits = count.is_some_and(|count| (1..=MOST_SAMPLES).contains(&count));
+    match size.map(usize::try_from) {
+        [Ok(x), Ok(y), Ok(z)] if fits => Ok([x, y, z]),
+        _ => wrong(
+            format!("the file holds {x} × {y} × {z} samples"),
+            format!("a grid has from 1 to {MOST_SAMPLES} samples"),
+        ),
+    }
+}
+
+fn read_vol(file: File) -> Result<Samples, Unreadable> {
+    let mut header = [0; 48];
+    let mut reader = BufReader::new(file);
+    if reader.read_exact(&mut header).is_err() {
+        return wrong("the file ends within its header of 48 bytes", "write the file anew");
+    }
+    if &header[..3] != b"VOL" || header[3] != 3 {
+        return wrong("the file does not begin with `VOL` and version 3", "write it by Mitsuba 3");
+    }
+    let word = |n: usize| std::array::from_fn::<u8, 4, _>(|i| header[4 + 4 * n + i]);
+    let integer = |n| i32::from_le_bytes(word(n));
+    if integer(0) != 1 {
+        return wrong(
+            format!("the samples have the type {}", integer(0)),
+            "type 1 is read: float32",
+        );
+    }
+    if integer(4) != 1 {
+        return wrong(format!("the file has {} channels", integer(4)), "one channel is read");
+    }
+    // A negative size becomes 0, which is refused.
+    let size = sizes([1, 2, 3].map(|n| u64::try_from(integer(n)).unwrap_or(0)))?;
+    let corner = |n: usize| Point([0, 1, 2].map(|i| f64::from(f32::from_le_bytes(word(n + i)))));
+    let bounds = Aabb { low: corner(5), high: corner(8) };
+    let wanted = 4 * size.iter().product::<usize>();
+    let mut bytes = Vec::new();
+    // One byte more than wanted shows that a file is too long.
+    let rest = reader.take(wanted as u64 + 1).read_to_end(&mut bytes);
+    if rest.is_err() || bytes.len() != wanted {
+        let than = if bytes.len() < wanted { "shorter" } else { "longer" };
+        let message = format!("the file is {than} than its {wanted} bytes of samples");
+        return wrong(
+            message,
+            "write the file anew, with nothing but the samples after the header",
+        );
+    }
+    let (words, _) = bytes.as_chunks::<4>();
+    let values = words.iter().map(|&word| f64::from(f32::from_le_bytes(word))).collect();
+    Ok(Samples { size, values, bounds: Some(bounds) })
+}
+
+fn read_npy(file: File) -> Result<Samples, Unreadable> {
+    let cure = "save a float32 or float64 array of shape (nz, ny, nx) by numpy.save";
+    let npy = match npyz::NpyFile::new(BufReader::new(file)) {
+        Ok(npy) => npy,
+        Err(error) => return wrong(format!("the header cannot be read: {error}"), cure),
+    };
+    let &[nz, ny, nx] = npy.shape() else {
+        return wrong(format!("the array has {} dimensions, not 3", npy.shape().len()), cure);
+    };
+    if npy.order() != npyz::Order::C {
+        return wrong("the array is in Fortran order", "save numpy.ascontiguousarray of it");
+    }
+    let size = sizes([nx, ny, nz])?;
+    let kind = npy.dtype().descr();
+    let values = match npy.try_data::<f64>() {
+        Ok(data) => data.collect::<Result<Vec<f64>, _>>(),
+        Err(npy) => match npy.try_data::<f32>() {
+            Ok(data) => data.map(|x| x.map(f64::from)).collect(),
+            Err(_) => return wrong(format!("the samples have the type {kind}"), cure),
+        },
+    };
+    match values {
+        Ok(values) => Ok(Samples { size, values, bounds: None }),
+        Err(error) => wrong(format!("the samples end too early: {error}"), cure),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use npyz::WriterBuilder;
+
+    fn vol(size: [i32; 3], kind: i32, channels: i32, values: &[f32]) -> Vec<u8> {
+        let mut bytes = b"VOL\x03".to_vec();
+        let integers = [kind, size[0], size[1], size[2], channels];
+        bytes.extend(integers.iter().flat_map(|n| n.to_le_bytes()));
+        let corners = [0.0f32, 0.0, 0.0, 1.0, 2.0, 3.0];
+        bytes.extend(corners.iter().chain(values).flat_map(|x| x.to_le_bytes()));
+        bytes
+    }
+
+    fn written(name: &str, bytes: &[u8]) -> Result<Samples, Unreadable> {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join(name);
+        std::fs::write(&path, bytes).expect("written");
+        read(&path)
+    }
+
+    #[test]
+    fn a_vol_file_is_read() {
+        let samples = written("a.vol", &vol([2, 1, 1], 1, 1, &[0.5, 1.0])).expect("a grid");
+        assert_eq!((samples.size, samples.values), ([2, 1, 1], vec![0.5, 1.0]));
+        assert_eq!(samples.bounds.map(|b| b.high), Some(Point([1.0, 2.0, 3.0])));
+    }
+
+    #[test]
+    fn bad_vol_files_are_refused() {
+        let good = vol([2, 1, 1], 1, 1, &[0.5, 1.0]);
+        let long = [&good[..], &[0]].concat();
+        let cases = [
+            (good[..20].to_vec(), "header"),
+            (good[..52].to_vec(), "shorter"),
+            (long, "longer"),
+            ([b"VOX", &good[3..]].concat(), "VOL"),
+            (vol([2, 1, 1], 2, 1, &[0.5, 1.0]), "type 2"),
+            (vol([2, 1, 1], 1, 3, &[0.5, 1.0]), "3 channels"),
+            (vol([-2, 1, 1], 1, 1, &[0.5, 1.0]), "0 × 1 × 1"),
+            (vol([i32::MAX, i32::MAX, i32::MAX], 1, 1, &[]), "samples"),
+            (vol([2, 1, 1], 1, 1, &[0.5, f32::NAN]), "(1, 0, 0) is NaN"),
+            (vol([1, 2, 1], 1, 1, &[0.5, -1.0]), "(0, 1, 0) is -1"),
+        ];
+        for (bytes, words) in cases {
+            let error = written("a.vol", &bytes).expect_err(words);
+            assert!(error.message.contains(words), "{error:?} lacks {words}");
+        }
+    }
+
+    fn npy(shape: &[u64], order: npyz::Order, values: &[f32]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        let options = npyz::WriteOptions::new().default_dtype().shape(shape).order(order);
+        let mut writer = options.writer(&mut bytes).begin_nd().expect("a header");
+        writer.extend(values.iter().copied()).expect("room");
+        writer.finish().expect("written");
+        bytes
+    }
+
+    #[test]
+    fn an_npy_file_is_read_with_x_fastest() {
+        let bytes = npy(&[1, 2, 3], npyz::Order::C, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        let samples = written("a.npy", &bytes).expect("a grid");
+        assert_eq!(samples.size, [3, 2, 1]);
+        assert_eq!(samples.values, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+    }
+
+    #[test]
+    fn bad_npy_files_are_refused() {
+        let cases = [
+            (npy(&[4], npyz::Order::C, &[1.0; 4]), "1 dimensions"),
+            (npy(&[1, 2, 2], npyz::Order::Fortran, &[1.0; 4]), "Fortran"),
+            (npy(&[1, 2, 2], npyz::Order::C, &[f32::INFINITY; 4]), "(0, 0, 0) is inf"),
+            (b"no such thing".to_vec(), "header"),
+        ];
+        for (bytes, words) in cases {
+            let error = written("a.npy", &bytes).expect_err(words);
+            assert!(error.message.contains(words), "{error:?} lacks {words}");
+        }
+        let whole = npy(&[1, 2, 2], npyz::Order::C, &[1.0; 4]);
+        let error = written("a.npy", &whole[..whole.len() - 3]).expect_err("truncated");
+        assert!(error.message.contains("too early"));
+        assert!(written("a.raw", &whole).is_err());
+        assert!(read(Path::new("nowhere.vol")).is_err());
+    }
+}

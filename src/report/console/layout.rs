@@ -1,0 +1,255 @@
+//! Columns that fit a screen: alignment, elision, wrapping and colour. Knows nothing of records.
+
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+/// Between two columns.
+const GAP: &str = "  ";
+/// A name is cut to this width before any column leaves, and no further until all have left.
+const COMFORTABLE: usize = 24;
+const SHORTEST: usize = 10;
+
+/// How wide and how colourful the screen is.
+#[derive(Debug, Clone, Copy)]
+pub struct Pen {
+    /// Columns of the screen.
+    pub width: usize,
+    /// Whether it shows colours.
+    pub colour: bool,
+}
+
+/// A colour or weight of text.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Paint {
+    /// As is.
+    Plain,
+    /// Headings.
+    Bold,
+    /// What matters less.
+    Dim,
+    /// Good.
+    Green,
+    /// Bad.
+    Red,
+    /// In doubt.
+    Yellow,
+}
+
+impl Pen {
+    /// The text in a colour, if the screen shows colours.
+    #[must_use]
+    pub fn paint(self, paint: Paint, text: &str) -> String {
+        let code = match paint {
+            Paint::Plain => return text.to_owned(),
+            Paint::Bold => "1",
+            Paint::Dim => "2",
+            Paint::Green => "32",
+            Paint::Red => "1;31",
+            Paint::Yellow => "33",
+        };
+        if self.colour { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
+    }
+}
+
+/// One field of a table.
+#[derive(Debug, Clone)]
+pub struct Field {
+    /// What it says.
+    pub text: String,
+    /// In which colour.
+    pub paint: Paint,
+}
+
+impl Field {
+    /// A field without colour.
+    #[must_use]
+    pub fn plain(text: String) -> Self {
+        Self { text, paint: Paint::Plain }
+    }
+}
+
+/// A column of a table.
+#[derive(Debug, Clone)]
+pub struct Column {
+    /// Its heading.
+    pub head: &'static str,
+    /// Whether its fields end at the same place, as numbers do.
+    pub right: bool,
+    /// Columns of the highest rank leave first; rank 0 stays.
+    pub rank: u8,
+    /// Its fields, one to a row.
+    pub fields: Vec<Field>,
+}
+
+impl Column {
+    fn width(&self) -> usize {
+        let fields = self.fields.iter().map(|field| width(&field.text)).max().unwrap_or(0);
+        fields.max(width(self.head))
+    }
+}
+
+/// A table.
+#[derive(Debug, Clone)]
+pub struct Grid {
+    /// Its columns; the first holds the names.
+    pub columns: Vec<Column>,
+}
+
+impl Grid {
+    /// The width of its lines.
+    #[must_use]
+    pub fn width(&self) -> usize {
+        let gaps = GAP.len() * self.columns.len().saturating_sub(1);
+        self.columns.iter().map(Column::width).sum::<usize>() + gaps
+    }
+
+    /// Makes it fit: shortens names somewhat, then lets columns go, then shortens names for good.
+    pub fn fit(&mut self, width: usize) {
+        self.columns.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
+        self.shorten(width, COMFORTABLE);
+        while self.width() > width {
+            let ranks = self.columns.iter().map(|column| column.rank);
+            let Some(highest) = ranks.max().filter(|&rank| rank > 0) else { break };
+            self.columns.retain(|column| column.rank != highest);
+        }
+        self.shorten(width, SHORTEST);
+        for column in &mut self.columns {
+            for field in column.fields.iter_mut().filter(|field| field.text.is_empty()) {
+                // Unknown, in a column where others are known.
+                *field = Field { text: "–".to_owned(), paint: Paint::Dim };
+            }
+        }
+    }
+
+    fn shorten(&mut self, limit: usize, least: usize) {
+        let excess = self.width().saturating_sub(limit);
+        if let Some(names) = self.columns.first_mut().filter(|_| excess > 0) {
+            let room = names.width().saturating_sub(excess).max(least);
+            for field in &mut names.fields {
+                field.text = middle_elided(&field.text, room);
+            }
+        }
+    }
+
+    /// Adds a column of words at the right.
+    pub fn push(&mut self, head: &'static str, fields: Vec<Field>) {
+        self.columns.push(Column { head, right: false, rank: 0, fields });
+    }
+
+    /// The lines, with headings.
+    #[must_use]
+    pub fn render(&self, pen: Pen) -> String {
+        let rows = self.columns.iter().map(|column| column.fields.len()).max().unwrap_or(0);
+        let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
+        let mut text = String::new();
+        let mut line = |field: &dyn Fn(&Column) -> Field| {
+            let mut line = String::new();
+            for (i, (column, &wide)) in self.columns.iter().zip(&widths).enumerate() {
+                let field = field(column);
+                let pad = " ".repeat(wide.saturating_sub(width(&field.text)));
+                let shown = pen.paint(field.paint, &field.text);
+                line.push_str(if i == 0 { "" } else { GAP });
+                line.push_str(&if column.right { pad + &shown } else { shown + &pad });
+            }
+            text.push_str(line.trim_end());
+            text.push('\n');
+        };
+        line(&|column| Field { text: column.head.to_owned(), paint: Paint::Dim });
+        for row in 0..rows {
+            line(&|column| {
+                let field = column.fields.get(row).cloned();
+                field.unwrap_or_else(|| Field::plain(String::new()))
+            });
+        }
+        text
+    }
+}
+
+/// The columns of the screen that a text takes.
+#[must_use]
+pub fn width(text: &str) -> usize {
+    text.width()
+}
+
+/// The text cut at its end to a width, with an ellipsis.
+#[must_use]
+pub fn end_elided(text: &str, room: usize) -> String {
+    if width(text) <= room {
+        return text.to_owned();
+    }
+    let kept = head(text, room.saturating_sub(1));
+    format!("{}…", kept.trim_end())
+}
+
+/// The text with its middle cut out, so that its beginning and its end stay readable.
+#[must_use]
+pub fn middle_elided(text: &str, room: usize) -> String {
+    if width(text) <= room {
+        return text.to_owned();
+    }
+    let room = room.saturating_sub(1);
+    let front = head(text, room.div_ceil(2));
+    let reversed: String = text.chars().rev().collect();
+    let back: String = head(&reversed, room / 2).chars().rev().collect();
+    format!("{front}…{back}")
+}
+
+fn head(text: &str, room: usize) -> String {
+    let mut used = 0;
+    let fits = |c: &char| {
+        used += c.width().unwrap_or(0);
+        used <= room
+    };
+    text.chars().take_while(fits).collect()
+}
+
+/// The text in lines of at most this width, broken between words.
+#[must_use]
+pub fn wrapped(text: &str, room: usize) -> Vec<String> {
+    let mut lines = vec![String::new()];
+    for word in text.split_whitespace() {
+        let last = lines.len() - 1;
+        let line = &mut lines[last];
+        if line.is_empty() {
+            line.push_str(word);
+        } else if width(line) + 1 + width(word) <= room {
+            line.push(' ');
+            line.push_str(word);
+        } else {
+            lines.push(word.to_owned());
+        }
+    }
+    lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn elision_keeps_to_the_width() {
+        assert_eq!(middle_elided("single(non-terminating)", 11), "singl…ting)");
+        assert_eq!(end_elided("a reason with words", 9), "a reason…");
+        assert_eq!(width("σ\u{302}"), 1);
+    }
+
+    #[test]
+    fn columns_leave_by_rank() {
+        let column = |head, rank, text: &str| Column {
+            head,
+            right: true,
+            rank,
+            fields: vec![Field::plain(text.to_owned())],
+        };
+        let mut grid = Grid {
+            columns: vec![column("name", 0, "x"), column("b", 2, "12345678"), column("c", 1, "1")],
+        };
+        grid.fit(12);
+        let heads: Vec<_> = grid.columns.iter().map(|column| column.head).collect();
+        assert_eq!(heads, ["name", "c"]);
+    }
+
+    #[test]
+    fn words_are_never_broken() {
+        assert_eq!(wrapped("one two three", 7), ["one two", "three"]);
+    }
+}

@@ -1,0 +1,163 @@
+//! Which columns each view of the table has, and what stands in them.
+
+use crate::harness::record::{CaseRecord, Row, Verdict};
+use crate::report::console::View;
+use crate::report::console::layout::{Column, Field, Paint};
+use crate::report::number::{count, fixed, short, signed};
+
+/// A column: its heading, whether it is of numbers, its rank, its text.
+type Spec = (&'static str, bool, u8, fn(&Row) -> String);
+
+const ESTIMATOR: Spec = ("estimator", false, 0, |row| row.estimator.clone());
+const CHANNEL: Spec = ("channel", false, 1, |row| row.channel.clone());
+const CONTROL: Spec = ("control", false, 3, |row| row.control.clone());
+const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
+const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
+const SAMPLING: Spec = ("σ\u{302}", true, 1, |row| match row.sampling {
+    Some(sampling) => short(sampling, 4),
+    None => row.sampling_kind.clone(),
+});
+
+const RUN: &[Spec] = &[
+    ("mean", true, 6, |row| digits(row.mean, 6)),
+    ("z", true, 1, |row| score(row.z_mean)),
+    ("s²/V", true, 5, ratio),
+    ("z_V", true, 2, |row| score(row.z_variance)),
+    ("lookups", true, 7, |row| digits(row.lookups_per_draw, 4)),
+    ("z_N", true, 4, |row| score(row.z_lookups)),
+    ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
+    ("FoM", true, 8, |row| digits(row.fom, 4)),
+];
+
+const PREDICT: &[Spec] = &[
+    ("variance", true, 1, |row| digits(row.predicted_variance, 4)),
+    ("skewness", true, 9, |row| digits(row.predicted_skewness, 3)),
+    ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
+    ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
+    ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
+    ("best σ\u{302}", true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
+    ("best FoM", true, 7, |row| digits(row.best_fom, 4)),
+];
+
+const PLAN: &[Spec] = &[("lookups", true, 2, |row| digits(row.predicted_lookups, 4))];
+
+/// The columns of a case, empty ones and all.
+#[must_use]
+pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
+    let mut specs = vec![ESTIMATOR, SAMPLING];
+    if let Some(head) = swept_apart(case) {
+        specs.push((head, true, 1, |row| row.swept.map(|x| short(x, 4)).unwrap_or_default()));
+    }
+    specs.extend([CONTROL, CHANNEL]);
+    // What all rows share stands over the table.
+    if view != View::Predict && shared(case, |row| row.draws).is_none() {
+        specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
+    }
+    if view != View::Plan && shared(case, |row| row.truth).is_none() {
+        specs.push(TRUTH);
+    }
+    specs.extend(match view {
+        View::Run => RUN,
+        View::Predict => PREDICT,
+        View::Plan => PLAN,
+    });
+    let column = |(head, right, rank, text): Spec| {
+        let fields = case.rows.iter().map(|row| Field::plain(text(row))).collect();
+        Column { head, right, rank, fields }
+    };
+    let mut columns: Vec<Column> = specs.into_iter().map(column).collect();
+    let head = if view == View::Run { "verdict" } else { "status" };
+    let fields = case.rows.iter().map(|row| status(row, view)).collect();
+    columns.push(Column { head, right: false, rank: 0, fields });
+    columns
+}
+
+/// The heading of the swept quantity where it is not the sampling extinction itself.
+fn swept_apart(case: &CaseRecord) -> Option<&'static str> {
+    match case.sweep.as_ref()?.what.as_str() {
+        "sampling" => None,
+        "sampling-scale" => Some("σ\u{302} scale"),
+        "albedo" => Some("albedo"),
+        "points" => Some("points"),
+        _ => Some("swept"),
+    }
+}
+
+/// A value that at least two rows have and none has differently.
+pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> Option<T> {
+    let mut known = case.rows.iter().filter_map(value);
+    let first = known.next()?;
+    let mut others = known.peekable();
+    others.peek()?;
+    others.all(|other| other == first).then_some(first)
+}
+
+/// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
+#[must_use]
+pub fn places(case: &CaseRecord, rows: &[&Row]) -> String {
+    let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(short(row.swept?, 4))).collect();
+    let mut channels: Vec<_> = rows.iter().map(|row| row.channel.clone()).collect();
+    channels.retain(|channel| !channel.is_empty());
+    for list in [&mut swept, &mut channels] {
+        list.dedup();
+    }
+    let mut parts = Vec::new();
+    if !swept.is_empty() {
+        let name = swept_apart(case).unwrap_or("σ\u{302}");
+        parts.push(format!("{name} {}", swept.join(", ")));
+    }
+    if !channels.is_empty() {
+        parts.push(channels.join(", "));
+    }
+    parts.join("; ")
+}
+
+/// Whether a row is planned but neither drawn nor refused, for a reason.
+#[must_use]
+pub fn is_skipped(row: &Row, view: View) -> bool {
+    view == View::Plan && row.verdict.is_none() && row.draws.is_none() && !row.reason.is_empty()
+}
+
+/// The word for what became of a row.
+#[must_use]
+pub fn status(row: &Row, view: View) -> Field {
+    match row.verdict {
+        Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
+        None if is_skipped(row, view) => Field { text: "skipped".to_owned(), paint: Paint::Dim },
+        None => Field::plain(String::new()),
+    }
+}
+
+/// The colour of a verdict.
+#[must_use]
+pub fn paint(verdict: Verdict) -> Paint {
+    match verdict {
+        Verdict::Pass => Paint::Green,
+        Verdict::Fail => Paint::Red,
+        Verdict::Inconclusive => Paint::Yellow,
+        Verdict::Underpowered | Verdict::Refused => Paint::Dim,
+    }
+}
+
+fn digits(value: Option<f64>, digits: usize) -> String {
+    value.map(|value| fixed(value, digits)).unwrap_or_default()
+}
+
+fn score(value: Option<f64>) -> String {
+    value.map(signed).unwrap_or_default()
+}
+
+fn percent(share: f64) -> String {
+    format!("{} %", short(100.0 * share, 3))
+}
+
+/// The measured variance over the predicted one.
+fn ratio(row: &Row) -> String {
+    match (row.variance, row.predicted_variance) {
+        (Some(measured), Some(predicted)) if predicted > 0.0 => {
+            format!("{:.3}", measured / predicted)
+        }
+        _ => String::new(),
+    }
+}
