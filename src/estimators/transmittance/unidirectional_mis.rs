@@ -22,14 +22,14 @@ use crate::numeric::elementary;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
-use crate::theory::volterra::{self, Source, binomial, power};
+use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct UnidirectionalMis;
 
 impl Source for UnidirectionalMis {
-    fn moment(&self, k: usize, v: f64, lower: &[f64; 4]) -> f64 {
+    fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
         let u = v / (1.0 + v);
         let mixed = (1..k).map(|j| binomial(k, j) * power(u, k - j) * lower[j - 1]);
         v * power(2.0 * u, k) + (1.0 - v) * power(u, k) + mixed.sum::<f64>()
