@@ -11,7 +11,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trueflight::harness::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;
 
-const DRAWS: u64 = 60_000;
+const DRAWS: u64 = 50_000;
 /// The band holds all but a thousandth: half of it on either side.
 const OUTSIDE: f64 = 1e-3;
 
@@ -82,4 +82,18 @@ fn z_scores_of_all_cases_have_mean_square_one() {
     wrong.extend(judge("variances", &scores(|row| row.z_variance, adequate)));
     wrong.extend(judge("lookups", &scores(|row| row.z_lookups, |_| true)));
     none(&wrong);
+}
+
+#[test]
+fn wrong_variances_and_a_single_outlier_are_seen() {
+    let scores = |scale: f64| -> Vec<(String, f64)> {
+        let quantile = |i: u32| normal::upper_quantile((f64::from(i) + 0.5) / 400.0);
+        (0..400).map(|i| (String::new(), scale * quantile(i))).collect()
+    };
+    assert!(judge("scores", &scores(1.0)).is_empty());
+    assert_eq!(judge("scores", &scores(1.15)).len(), 1, "variances 1.3 times as large");
+    assert_eq!(judge("scores", &scores(0.85)).len(), 1, "variances 1.4 times too small");
+    let mut outlier = scores(1.0);
+    outlier[0].1 = 7.0;
+    assert_eq!(judge("scores", &outlier).len(), 1, "one z-score of 7");
 }

@@ -185,7 +185,7 @@ fn address(seed: u64, case: &str, names: &Names, variation: Variation, twins: us
     let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
     let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
     if twins > 0 {
-        name += &format!("|{twins}");
+        name = format!("{name}|{twins}");
     }
     Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
 }
