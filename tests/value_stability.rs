@@ -60,6 +60,25 @@ fn cases() -> Vec<Case> {
             estimators = [{ woodcock = {} }, { double.control.mean = {} }]",
         ),
         case(
+            "noise",
+            "title = \"a volume whose lookups hash\"
+            [problem.transmittance]
+            volume.noise = { extinction = 1.2, octaves = 3, seed = 5 }
+            ray = { origin = [0.3, 0.7, -0.4], direction = [0.6, 0.5, 0.4], length = 5 }
+            sampling.constant.value = 1.3
+            estimators = [{ woodcock = {} }, { ratio = {} }]",
+        ),
+        case(
+            "grid",
+            "title = \"a volume whose lookups interpolate\"
+            [problem.transmittance]
+            volume.grid = { random = { size = [5, 5, 5], seed = 7 },
+                            bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }
+            ray = { origin = [-1, 0.4, 0.9], direction = [4.2, 2.2, 1.9], length = 9 }
+            sampling.constant.value = 1.1
+            estimators = [{ woodcock = {} }, { ratio = {} }]",
+        ),
+        case(
             "flight",
             "title = \"free flights\"
             [problem.free-flight]

@@ -80,7 +80,7 @@ impl Case {
                 "free-flight" => Scenario::<FreeFlight>::read,
                 _ => Scenario::<TransmittanceCurve>::read,
             };
-            let scenario = read(&settings, body, biased, swept);
+            let scenario = read(&settings, body.as_ref(), biased, swept);
             settings.close();
             Some((names[index].clone(), scenario?, sweep?))
         });

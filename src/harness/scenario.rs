@@ -99,11 +99,10 @@ impl<P: Estimated> Scenario<P> {
     /// Reads what follows the field: σ̂ and control for all, and the estimators.
     pub fn read(
         settings: &Settings,
-        body: Option<Body>,
+        body: Option<&Body>,
         expect_biased: bool,
         swept: Option<What>,
     ) -> Option<Box<dyn AnyScenario>> {
-        let body = body.as_ref();
         let problem = P::read(body, settings);
         let sampling = read_if(settings, "sampling", body, sampling::read);
         let control = read_if(settings, "control", body, controls::read);
