@@ -64,8 +64,9 @@ fn no_two_cases_or_experiments_share_a_name() {
 }
 
 #[test]
-fn the_binary_holds_every_case_file() {
+fn the_built_in_suite_is_a_choice_of_the_case_files() {
     let files: BTreeSet<String> = shipped().into_iter().map(|case| case.name).collect();
     let built_in: BTreeSet<String> = suite::suite().into_iter().map(|source| source.name).collect();
-    assert_eq!(files, built_in);
+    assert!(!built_in.is_empty());
+    assert!(built_in.is_subset(&files), "{:?}", built_in.difference(&files));
 }

@@ -146,10 +146,13 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
     }
     let draws = options.draws.or(case.draws).unwrap_or(DRAWS);
     let plan = |&(estimator, variation): &(usize, Variation)| {
-        let names = case.scenario.names(estimator, variation);
+        let mut names = case.scenario.names(estimator, variation);
         // Two estimators may be called the same, as where each has a field of its own as control.
         let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
         let address = address(options.seed, &case.name, &names, variation, twins);
+        if twins > 0 {
+            names.estimator = format!("{} #{}", names.estimator, twins + 1);
+        }
         let Prepared { outcome, expect_biased } =
             case.scenario.prepare(estimator, variation, address);
         let mut planned = Planned {
