@@ -45,3 +45,8 @@ pub mod report;
 pub mod rng;
 pub mod stats;
 pub mod theory;
+
+/// The examples of the README are compiled and run with the documentation's.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
