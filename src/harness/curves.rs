@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::case::Case;
+use super::plan::pilot_address;
 use super::record::{Curve, CurvePoint, Sweep};
 use super::scenario::Variation;
 use super::sweep::{SweepAxis, What};
@@ -14,18 +15,18 @@ const POINTS: usize = 48;
 
 /// The lines of a case with a sweep.
 #[must_use]
-pub fn sweep(case: &Case, z_limit: Option<f64>) -> Option<Sweep> {
+pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
     let axis = case.sweep.as_ref()?;
     let swept = (0..case.scenario.estimators()).filter(|&i| case.scenario.depends_on(i, axis.what));
     let swept: Vec<usize> = swept.collect();
-    let best = if axis.what == What::Sampling { best_of_each(case) } else { Vec::new() };
+    let best = if axis.what == What::Sampling { best_of_each(case, seed) } else { Vec::new() };
     let x = abscissae(axis);
     let curves = swept
         .par_iter()
         .map(|&estimator| {
             let points: Vec<CurvePoint> = x
                 .par_iter()
-                .filter_map(|&x| point(case, estimator, Some((axis.what, x)), x))
+                .filter_map(|&x| point(case, seed, estimator, Some((axis.what, x)), x))
                 .collect();
             let names =
                 case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
@@ -35,7 +36,7 @@ pub fn sweep(case: &Case, z_limit: Option<f64>) -> Option<Sweep> {
             };
             let optimum = best.get(estimator).copied().flatten().filter(inside).and_then(|best| {
                 let at = best.sampling;
-                point(case, estimator, Some((What::Sampling, at)), at)
+                point(case, seed, estimator, Some((What::Sampling, at)), at)
             });
             Curve { estimator: names.estimator, control: names.control, points, optimum }
         })
@@ -51,7 +52,7 @@ pub fn sweep(case: &Case, z_limit: Option<f64>) -> Option<Sweep> {
 
 /// The best constant σ̂ of each estimator; `None` for those that take none of the case's.
 #[must_use]
-pub fn best_of_each(case: &Case) -> Vec<Option<Optimum>> {
+pub fn best_of_each(case: &Case, seed: u64) -> Vec<Option<Optimum>> {
     let scenario = &case.scenario;
     (0..scenario.estimators())
         .into_par_iter()
@@ -59,15 +60,23 @@ pub fn best_of_each(case: &Case) -> Vec<Option<Optimum>> {
             if !scenario.depends_on(estimator, What::SamplingScale) {
                 return None;
             }
+            let pilots = pilot_address(seed, case, estimator);
             best_constant(scenario.natural_scale(estimator, None), |sampling| {
-                scenario.predict(estimator, Some((What::Sampling, sampling)))
+                scenario.predict(estimator, Some((What::Sampling, sampling)), pilots)
             })
         })
         .collect()
 }
 
-fn point(case: &Case, estimator: usize, variation: Variation, x: f64) -> Option<CurvePoint> {
-    let prediction: Prediction = case.scenario.predict(estimator, variation)?;
+fn point(
+    case: &Case,
+    seed: u64,
+    estimator: usize,
+    variation: Variation,
+    x: f64,
+) -> Option<CurvePoint> {
+    let prediction: Prediction =
+        case.scenario.predict(estimator, variation, pilot_address(seed, case, estimator))?;
     let variance = prediction.channels.last()?.moments?.variance();
     let lookups = prediction.lookups?.mean;
     let fom = 1.0 / (variance * lookups);

@@ -33,7 +33,7 @@ pub fn planned(plan: &Plan) -> Record {
 #[must_use]
 pub fn predicted(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
-        let best = curves::best_of_each(case.case);
+        let best = curves::best_of_each(case.case, plan.options.seed);
         let rows = case.experiments.par_iter().map(|planned| {
             let optimum = best.get(planned.estimator).copied().flatten();
             let mut rows = theory_rows(planned);
@@ -58,7 +58,7 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
             let both = case.experiments.iter().zip(drawn.iter());
             let rows = both.clone().flat_map(|(planned, drawn)| judge(plan, case, planned, drawn));
             let rows: Vec<Row> = rows.collect();
-            let sweep = curves::sweep(case.case, Some(plan.limits.z));
+            let sweep = curves::sweep(case.case, plan.options.seed, Some(plan.limits.z));
             let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
             (rows, sweep, anatomy)
         })
@@ -72,7 +72,8 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
             let both = case.experiments.iter().zip(drawn.iter());
             let seconds = both.flat_map(|(planned, drawn)| {
                 let time = planned.outcome.is_ok().then_some(drawn.seconds);
-                std::iter::repeat_n(time, drawn.tallies.len().max(1))
+                let rows = planned.outcome.as_ref().map_or(1, |r| r.prediction.channels.len());
+                std::iter::repeat_n(time, rows)
             });
             seconds.collect()
         })
@@ -162,6 +163,13 @@ fn judge(plan: &Plan, case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> V
     // A time limit may have left fewer draws than planned.
     subject.draws = drawn.lookups.draws;
     let findings = findings(plan, &subject, planned, drawn);
+    if subject.draws == 0 {
+        for row in &mut rows {
+            row.findings.clone_from(&findings);
+            (row.verdict, row.reason) = (Some(Verdict::Inconclusive), worst(&findings).1);
+        }
+        return rows;
+    }
     let channels = subject.prediction.channels.iter();
     for ((row, tally), channel) in rows.iter_mut().zip(&drawn.tallies).zip(channels) {
         let n = tally.draws as f64;

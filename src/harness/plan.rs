@@ -153,8 +153,9 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
         if twins > 0 {
             names.estimator = format!("{} #{}", names.estimator, twins + 1);
         }
+        let pilots = pilot_address(options.seed, case, estimator);
         let Prepared { outcome, expect_biased } =
-            case.scenario.prepare(estimator, variation, address);
+            case.scenario.prepare(estimator, variation, pilots);
         let mut planned = Planned {
             estimator,
             variation,
@@ -178,6 +179,13 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
     };
     let experiments = points.par_iter().map(plan).collect();
     PlannedCase { case, experiments }
+}
+
+/// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
+/// the theory's line and the experiments on it learn the same σ̂.
+#[must_use]
+pub fn pilot_address(seed: u64, case: &Case, estimator: usize) -> Address {
+    address(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
 }
 
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when

@@ -54,23 +54,30 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
         plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
     let mut cut_by_time = false;
     // Block by block over all experiments: a time limit then cuts all of them alike.
+    let expired =
+        || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
     for batch in units(plan).chunks(BATCH) {
-        let expired =
-            plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
-        if expired {
-            cut_by_time = true;
-            break;
-        }
-        let drawn: Vec<Drawn> = batch
+        let drawn: Vec<Option<Drawn>> = batch
             .par_iter()
             .map(|unit| {
+                if expired() {
+                    return None;
+                }
                 let drawn = draw_block(unit);
                 progress(drawn.lookups.draws);
-                drawn
+                Some(drawn)
             })
             .collect();
         for (unit, block) in batch.iter().zip(&drawn) {
-            cases[unit.case][unit.index].merge(block);
+            // What comes after a missing block is left out: an experiment keeps its first blocks.
+            let tally = &mut cases[unit.case][unit.index];
+            match block {
+                Some(block) if tally.lookups.draws == unit.block * BLOCK => tally.merge(block),
+                _ => cut_by_time = true,
+            }
+        }
+        if cut_by_time {
+            break;
         }
     }
     Draws { cases, cut_by_time }

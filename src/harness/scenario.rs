@@ -42,7 +42,12 @@ pub trait AnyScenario: Send + Sync {
     /// What theory says of an experiment at a constant σ̂; `None` if it is refused.
     ///
     /// `Some((What::Sampling, σ̂))` replaces the estimator's own σ̂ too: it asks "what if".
-    fn predict(&self, estimator: usize, variation: Variation) -> Option<Prediction>;
+    fn predict(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        pilots: Address,
+    ) -> Option<Prediction>;
 
     /// The ray seen from the side, for estimators of a curve.
     fn portrait(
@@ -304,10 +309,15 @@ impl<P: Estimated> AnyScenario for Scenario<P> {
         Prepared { outcome, expect_biased }
     }
 
-    fn predict(&self, estimator: usize, variation: Variation) -> Option<Prediction> {
+    fn predict(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        pilots: Address,
+    ) -> Option<Prediction> {
         let varied = self.varied_entry(estimator, variation);
         let entry = varied.as_deref().unwrap_or(&*self.written[estimator].entry);
-        let setup = self.setup(estimator, variation, NOWHERE).ok()?;
+        let setup = self.setup(estimator, variation, pilots).ok()?;
         entry.domain(&setup).ok()?;
         Some(entry.predict(&setup))
     }

@@ -7,6 +7,8 @@ pub struct CountLaw {
     pub mean: f64,
     /// `Var[M]`.
     pub variance: f64,
+    /// `μ₄/μ₂²`; 1 where the number is always the same.
+    pub kurtosis: f64,
     /// Whether the law is Poisson.
     pub poisson: bool,
 }
@@ -15,13 +17,13 @@ impl CountLaw {
     /// The same number every time.
     #[must_use]
     pub fn always(number: f64) -> Self {
-        Self { mean: number, variance: 0.0, poisson: false }
+        Self { mean: number, variance: 0.0, kurtosis: 1.0, poisson: false }
     }
 
     /// Poisson with the given mean: a walk through `∫σ̂` that nothing ends early.
     #[must_use]
     pub fn poisson(mean: f64) -> Self {
-        Self { mean, variance: mean, poisson: true }
+        Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true }
     }
 }
 

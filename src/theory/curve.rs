@@ -7,7 +7,7 @@
 //! E[(X₁−T₁)²(X₂−T₂)²] = T₁²T₂² [m₄(A)(1 + m₂(Y)) + 2 m₃(A) m₂(Y) + m₂(A) m₂(Y)]
 //! ```
 //!
-//! Source: Szirmay-Kalos et al. 2017, section 4.3 and Figure 8; the covariance follows from
+//! Source: Szirmay-Kalos et al. 2017, section 4.2 and Figure 8; the covariance follows from
 //! Eq. 13, since increments over disjoint stretches are independent.
 
 use super::prediction::Covariance;

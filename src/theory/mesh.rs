@@ -12,6 +12,9 @@ const MANY: usize = 2000;
 /// Legendre coefficients of the two highest orders, relative to the largest value: a panel with
 /// larger ones is halved.
 const TAIL: f64 = 1e-13;
+/// A tail below this that halving does not shrink is rounding noise; a larger one is a function
+/// that is not resolved yet, whose tail may grow for a while. Callers keep noisier functions away.
+const NOISE: f64 = 1e-9;
 /// Halvings of one panel at most.
 const HALVINGS: u32 = 40;
 
@@ -57,7 +60,7 @@ struct Tail {
 fn is_rough(tails: &[Tail], parent: &[Tail]) -> bool {
     tails.iter().enumerate().any(|(i, tail)| {
         let shrinks = parent.get(i).is_none_or(|before| tail.size < 0.5 * before.size);
-        tail.size > TAIL * tail.scale && shrinks
+        tail.size > TAIL * tail.scale && (shrinks || tail.size > NOISE * tail.scale)
     })
 }
 
@@ -170,8 +173,7 @@ impl Mesh {
 
     /// Adds a panel, or its halves where a function on it is not smooth.
     ///
-    /// `parent` holds the tails of the panel that this one is a half of. A tail that halving does
-    /// not shrink is rounding noise, and no reason to go on.
+    /// `parent` holds the tails of the panel that this one is a half of.
     fn grow(&mut self, span: Span, halvings: u32, smooth: &Functions<'_>, parent: &[Tail]) {
         let t: Vec<f64> =
             self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();

@@ -24,8 +24,8 @@ const COARSE: usize = 51;
 /// Searches the constant σ̂ with the largest figure of merit around `scale`, the largest residual.
 ///
 /// `predict` answers `None` where the estimator is refused. Where the figure of merit still rises
-/// at the upper end, the answer is the σ̂ that reaches 90 % of its value there, which is within
-/// 0.1 % of the limit.
+/// at the upper end, it is followed by factors of ten until it gains less than 0.1 %, and the answer
+/// is the σ̂ that reaches 90 % of that limit.
 pub fn best_constant(scale: f64, predict: impl Fn(f64) -> Option<Prediction>) -> Option<Optimum> {
     if scale.is_nan() || scale <= 0.0 {
         return None;
@@ -41,11 +41,26 @@ pub fn best_constant(scale: f64, predict: impl Fn(f64) -> Option<Prediction>) ->
     }
     let at = |i: usize| low + step * i as f64;
     let log = if best == COARSE - 1 {
-        let below = coarse.iter().rposition(|&fom| fom < 0.9 * largest)?;
-        roots::root(at(below), at(below + 1), |log| merit(log) - 0.9 * largest)
+        let (far, limit) = limit(high, largest, merit);
+        let below = coarse.iter().rposition(|&fom| fom < 0.9 * limit)?;
+        let above = if below + 1 < COARSE { at(below + 1) } else { far };
+        roots::root(at(below), above, |log| merit(log) - 0.9 * limit)
     } else {
         // A refused neighbour (figure of merit 0) is a cliff that golden sections walk up to.
         roots::minimum(at(best.saturating_sub(1)), at(best + 1), 1e-7, |log| -merit(log))
     };
     Some(Optimum { sampling: scale * log.exp(), figure_of_merit: merit(log) })
+}
+
+/// Follows a rising figure of merit to its limit.
+fn limit(from: f64, reached: f64, merit: impl Fn(f64) -> f64) -> (f64, f64) {
+    let (mut log, mut best) = (from, reached);
+    for _ in 0..8 {
+        let further = merit(log + 10f64.ln());
+        if further <= best * 1.001 {
+            break;
+        }
+        (log, best) = (log + 10f64.ln(), further);
+    }
+    (log, best)
 }

@@ -39,8 +39,9 @@ pub struct Integrals {
     pub rarity: f64,
     /// `ln E[(X/T)^k] = ∫ σ̂ (E[W^k] − 1 + k(1 − E[W]))`, k = 4 and 8.
     pub growth: [f64; 2],
-    /// `E[M]`, `E[M(M − 1)]`.
-    pub lookups: [f64; 2],
+    /// Factorial moments `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k−1}`, k = 1 … 4, with
+    /// `K = ∫ σ̂(1 − q)` and `A = ∫ σ̂ q` up to the collision.
+    pub lookups: [f64; 4],
     /// `∫σ̂`.
     pub flown: f64,
     /// The length on which `w ≤ 2σ_t`.
@@ -98,11 +99,20 @@ impl<'a> Product<'a> {
             let deaths: Vec<f64> =
                 pairs().map(|(s, o)| self.killing + s * (1.0 - o.survival)).collect();
             let decay = mesh.running(panel, &deaths).iter().map(|k| (-k).exp()).collect();
-            vec![
-                pairs().map(|(s, o)| s * o.mean_loss(2)).collect(),
-                pairs().map(|(s, o)| s * o.mean_loss(4)).collect(),
-                decay,
-            ]
+            // A control that fits to the last digits leaves a residual of rounding noise, which no
+            // halving makes smooth.
+            let largest = |values: &mut dyn Iterator<Item = f64>| {
+                values.fold(0.0f64, |most, x| most.max(x.abs()))
+            };
+            let loss = largest(&mut nodes.outcome.iter().map(|o| o.loss));
+            let seen = largest(&mut panel.extinction.iter().copied());
+            let flown = nodes.sampling.iter().fold(f64::INFINITY, |least, &s| least.min(s));
+            let mut functions = vec![decay];
+            if 4.0 * f64::EPSILON * seen / flown <= 1e-10 * loss {
+                functions.push(pairs().map(|(s, o)| s * o.mean_loss(2)).collect());
+                functions.push(pairs().map(|(s, o)| s * o.mean_loss(4)).collect());
+            }
+            functions
         })
     }
 
@@ -151,12 +161,21 @@ impl Integrals {
     /// The law of the number of lookups.
     #[must_use]
     pub fn count(&self) -> CountLaw {
-        let [mean, pairs] = self.lookups;
+        let [mean, pairs, triples, quadruples] = self.lookups;
         // A walk that nothing ends early makes Poisson many lookups.
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
             return CountLaw::poisson(self.flown);
         }
-        CountLaw { mean, variance: (pairs + mean - mean * mean).max(0.0), poisson: false }
+        let variance = pairs + mean - mean * mean;
+        // A number that is all but certain leaves a variance of rounding.
+        if variance <= 1e-12 * mean * mean {
+            return CountLaw::always(mean);
+        }
+        let raw = [mean, pairs + mean, triples + 3.0 * pairs + mean];
+        let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
+        let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
+        let kurtosis = (fourth / (variance * variance)).max(1.0);
+        CountLaw { mean, variance, kurtosis, poisson: false }
     }
 }
 
@@ -166,7 +185,7 @@ struct Totals {
     losses: [Sum; 4],
     rarity: Sum,
     growth: [Sum; 2],
-    lookups: [Sum; 2],
+    lookups: [Sum; 4],
     flown: Sum,
     deaths: Sum,
     survivals: Sum,
@@ -196,9 +215,11 @@ impl Totals {
             mesh.running(panel, &deaths).iter().map(|k| (-(k0 + k)).exp()).collect();
         let before: Vec<f64> = mesh.running(panel, &survivals).iter().map(|a| a0 + a).collect();
         let first: Vec<f64> = nodes.sampling.iter().zip(&alive).map(|(s, e)| s * e).collect();
-        let second: Vec<f64> = first.iter().zip(&before).map(|(f, a)| 2.0 * f * a).collect();
-        self.lookups[0].add(mesh.integral(panel, &first));
-        self.lookups[1].add(mesh.integral(panel, &second));
+        for (k, sum) in (1_i32..).zip(&mut self.lookups) {
+            let order = f64::from(k);
+            let terms = first.iter().zip(&before).map(|(f, a)| order * f * a.powi(k - 1));
+            sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
+        }
         self.flown.add(mesh.integral(panel, &nodes.sampling));
         self.deaths.add(mesh.integral(panel, &deaths));
         self.survivals.add(mesh.integral(panel, &survivals));

@@ -29,7 +29,9 @@
 
 use super::mesh::Panel;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
-use crate::numeric::Span;
+
+/// Central moments with a larger relative error, lost to cancellation, are not given at all.
+const WORST: f64 = 0.05;
 
 /// The highest order.
 pub const ORDERS: usize = 8;
@@ -45,7 +47,7 @@ pub trait Source {
 #[must_use]
 pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let end = mesh.support().to;
-    let fine = mesh.refined(&[], &|_, panel| panel_functions(panel, sampling, end));
+    let fine = mesh.refined(&[], &|mesh, panel| panel_functions(mesh, panel, sampling));
     let mut after = [0.0; ORDERS];
     for panel in fine.panels().rev() {
         after = sweep(&fine, panel, sampling, end, source, after);
@@ -69,16 +71,24 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let moments = Moments { scale: truth.value, relative, error };
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
     let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
-    let channel = Channel::unbiased(truth, moments, tails);
+    let mut channel = Channel::unbiased(truth, moments, tails);
+    if error.is_nan() || error > WORST {
+        channel.moments = None;
+    }
     Prediction::single(channel, CountLaw::poisson(sampling * mesh.support().length()))
 }
 
-/// What must be smooth on a panel: decay, growth and the powers of ρ.
-fn panel_functions(panel: Panel<'_>, sampling: f64, end: f64) -> Vec<Vec<f64>> {
-    let span = Span::new(panel.span.from, end.min(panel.span.to));
-    let decay = panel.t.iter().map(|t| (-sampling * (t - span.from)).exp()).collect();
-    let highest = panel.extinction.iter().map(|s| power(1.0 - s / sampling, ORDERS)).collect();
-    vec![decay, highest]
+/// What must be smooth on a panel: the decay of every order, and the powers of ρ.
+fn panel_functions(mesh: &Mesh, panel: Panel<'_>, sampling: f64) -> Vec<Vec<f64>> {
+    let flights = panel.t.iter().map(|t| (-sampling * (t - panel.span.from)).exp()).collect();
+    let mut functions = vec![flights];
+    for k in [1, 2, 4, ORDERS] {
+        let powers = panel.extinction.iter().map(|s| power(1.0 - s / sampling, k));
+        let rate: Vec<f64> = powers.map(|p| sampling * (1.0 - p)).collect();
+        functions.push(mesh.running(panel, &rate).iter().map(|depth| (-depth).exp()).collect());
+        functions.push(rate);
+    }
+    functions
 }
 
 /// Takes `A_k` from the end of a panel to its beginning.

@@ -153,7 +153,13 @@ impl Comparison {
             let z = self.z();
             return (Verdict::Fail, format!("{what} is off by {z:+.1} standard errors"));
         }
-        let needed = draws * (self.detectable(limits) / self.tolerance).powi(2);
+        let room = self.tolerance - self.allowance;
+        if room <= 0.0 {
+            let reason =
+                format!("the prediction of {what} is known to {:.0e} only", self.allowance);
+            return (too_short(subject), reason);
+        }
+        let needed = draws * (self.detectable(limits) / room).powi(2);
         let needed = needed.max(self.draws_for_level);
         if needed <= draws * (1.0 + 1e-9) {
             return (Verdict::Pass, String::new());

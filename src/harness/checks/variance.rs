@@ -11,7 +11,7 @@
 //! where tails are heavy. Below that it is inconclusive.
 
 use super::mean::is_certain;
-use super::{Check, Comparison, Evidence, Kind, Limits, Subject};
+use super::{Check, Comparison, Evidence, Kind, Limits, Subject, rounding};
 use crate::harness::record::Finding;
 use crate::stats::Tally;
 use crate::theory::Channel;
@@ -20,6 +20,9 @@ use crate::theory::Channel;
 const TOLERANCE: f64 = 0.2;
 /// A kurtosis this near to 1 makes `(x − E[X])²` constant: nothing is left to test.
 const TWO_POINT: f64 = 1.0 + 1e-6;
+/// The kurtosis of a squared normal number, 105/9, rounded up: squares are never lighter than that
+/// where draws are near normal.
+const NORMAL: f64 = 12.0;
 
 /// The check of the variance.
 pub struct Variance;
@@ -35,12 +38,14 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
     let unit = moments.scale / channel.truth.value;
     let predicted = moments.relative[0] * unit * unit;
     let observed = tally.mean_square()?;
+    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
+    let noise = rounding(lookups) / predicted.sqrt();
     Some(Comparison {
         difference: observed / predicted - 1.0,
         standard_error: ((kurtosis - 1.0) / tally.draws as f64).sqrt(),
-        allowance: moments.error,
+        allowance: moments.error + noise * (2.0 + noise),
         tolerance: subject.tolerance.variance.unwrap_or(TOLERANCE),
-        draws_for_level: 100.0 * kurtosis.max(channel.tails.eighth_moment_ratio),
+        draws_for_level: 100.0 * kurtosis.max(channel.tails.eighth_moment_ratio).max(NORMAL),
     })
 }
 
