@@ -4,8 +4,12 @@
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
+mod lists;
 pub mod page;
 pub mod settings;
+pub mod tree;
+mod words;
 
 pub use page::{Catalogue, Page};
-pub use settings::{Domain, Entry, Fault, Node, Settings, Value};
+pub use settings::Settings;
+pub use tree::{Domain, Entry, Fault, Node, Value};

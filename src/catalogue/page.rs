@@ -58,8 +58,6 @@ impl Page {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-
     #[test]
     fn a_page_describes_itself() {
         let page = page!(settings);

@@ -9,102 +9,8 @@ use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-/// A value and the bytes of the file that it stands in.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Node {
-    /// What is written.
-    pub value: Value,
-    /// Where, in bytes from the beginning of the file.
-    pub span: Range<usize>,
-}
-
-/// The kinds of values a case file has.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Value {
-    /// `{ key = value, … }` or `[section]`.
-    Table(Vec<Entry>),
-    /// `[value, …]`.
-    Array(Vec<Node>),
-    /// A number, integral or not.
-    Number(f64),
-    /// `"text"`.
-    Text(String),
-    /// `true` or `false`.
-    Boolean(bool),
-    /// Anything else TOML knows, such as a date; nothing in a case file takes it.
-    Other(&'static str),
-}
-
-impl Value {
-    fn kind(&self) -> &'static str {
-        match self {
-            Self::Table(_) => "a table",
-            Self::Array(_) => "a list",
-            Self::Number(_) => "a number",
-            Self::Text(_) => "a text",
-            Self::Boolean(_) => "true or false",
-            Self::Other(kind) => kind,
-        }
-    }
-}
-
-/// One `key = value`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Entry {
-    /// The key.
-    pub key: String,
-    /// Where the key stands.
-    pub key_span: Range<usize>,
-    /// Its value.
-    pub node: Node,
-}
-
-/// One mistake: where, what, and what would be right.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
-    /// The bytes of the file that are wrong.
-    pub span: Range<usize>,
-    /// The path of the key, as in `problem.transmittance.ray.length`.
-    pub path: String,
-    /// What is wrong.
-    pub message: String,
-    /// What would be right.
-    pub help: String,
-}
-
-/// Which numbers a setting takes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Domain {
-    /// Any finite number.
-    Finite,
-    /// A finite number ≥ 0.
-    NonNegative,
-    /// A finite number > 0.
-    Positive,
-    /// A number in `[0, 1]`.
-    Unit,
-}
-
-impl Domain {
-    fn contains(self, x: f64) -> bool {
-        x.is_finite()
-            && match self {
-                Self::Finite => true,
-                Self::NonNegative => x >= 0.0,
-                Self::Positive => x > 0.0,
-                Self::Unit => (0.0..=1.0).contains(&x),
-            }
-    }
-
-    fn words(self) -> &'static str {
-        match self {
-            Self::Finite => "a finite number",
-            Self::NonNegative => "a finite number that is not negative",
-            Self::Positive => "a finite number above 0",
-            Self::Unit => "a number from 0 to 1",
-        }
-    }
-}
+use super::words::{quoted, suggestion, whole};
+use super::{Domain, Entry, Fault, Value};
 
 /// A table that is being read.
 #[derive(Debug)]
@@ -174,7 +80,7 @@ impl<'a> Settings<'a> {
         }
     }
 
-    fn wrong(&self, entry: &Entry, wanted: &str) {
+    pub(super) fn wrong(&self, entry: &Entry, wanted: &str) {
         let message = match &entry.node.value {
             Value::Number(x) => format!("`{}` is {x}", entry.key),
             other => format!("`{}` is {}", entry.key, other.kind()),
@@ -183,7 +89,7 @@ impl<'a> Settings<'a> {
         self.fault_at(entry.node.span.clone(), &entry.key, message, help);
     }
 
-    fn required(&self, key: &'static str, wanted: &str) -> Option<&'a Entry> {
+    pub(super) fn required(&self, key: &'static str, wanted: &str) -> Option<&'a Entry> {
         let entry = self.entry(key);
         if entry.is_none() {
             let message = format!("`{key}` is missing");
@@ -242,95 +148,6 @@ impl<'a> Settings<'a> {
         None
     }
 
-    /// A list of numbers, at least `least` of them, that must be there.
-    pub fn numbers(&self, key: &'static str, domain: Domain, least: usize) -> Option<Vec<f64>> {
-        let wanted = format!("a list of at least {least}, each {}", domain.words());
-        let entry = self.required(key, &wanted)?;
-        self.list_of(entry, domain, &wanted).filter(|list| {
-            let enough = list.len() >= least;
-            if !enough {
-                self.wrong(entry, &wanted);
-            }
-            enough
-        })
-    }
-
-    /// A point or vector `[x, y, z]` that must be there.
-    pub fn triple(&self, key: &'static str) -> Option<[f64; 3]> {
-        let wanted = "a list of three finite numbers [x, y, z]";
-        let entry = self.required(key, wanted)?;
-        self.triple_of(entry, Domain::Finite, wanted)
-    }
-
-    /// A point or vector, or `default` where the key is absent.
-    pub fn triple_or(&self, key: &'static str, default: [f64; 3]) -> Option<[f64; 3]> {
-        let wanted = "a list of three finite numbers [x, y, z]";
-        match self.entry(key) {
-            Some(entry) => self.triple_of(entry, Domain::Finite, wanted),
-            None => Some(default),
-        }
-    }
-
-    /// Three whole numbers in a range that must be there.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
-    pub fn counts(&self, key: &'static str, range: RangeInclusive<u64>) -> Option<[usize; 3]> {
-        let wanted = format!("a list of three, each {}", whole(&range));
-        let entry = self.required(key, &wanted)?;
-        let triple = self.triple_of(entry, Domain::NonNegative, &wanted)?;
-        if triple.iter().all(|x| x.fract() == 0.0 && range.contains(&(*x as u64))) {
-            return Some(triple.map(|x| x as usize));
-        }
-        self.wrong(entry, &wanted);
-        None
-    }
-
-    /// A list of points or vectors `[[x, y, z], …]` that must be there.
-    pub fn triples(&self, key: &'static str) -> Option<Vec<[f64; 3]>> {
-        let wanted = "a list of triples of finite numbers [[x, y, z], …]";
-        let entry = self.required(key, wanted)?;
-        let Value::Array(items) = &entry.node.value else {
-            self.wrong(entry, wanted);
-            return None;
-        };
-        let (key, key_span) = (&entry.key, &entry.key_span);
-        let triples = items.iter().map(|node| {
-            let item = Entry { key: key.clone(), key_span: key_span.clone(), node: node.clone() };
-            self.triple_of(&item, Domain::Finite, "three finite numbers [x, y, z] each")
-        });
-        triples.collect::<Vec<_>>().into_iter().collect()
-    }
-
-    fn triple_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<[f64; 3]> {
-        let list = self.list_of(entry, domain, wanted)?;
-        let triple = <[f64; 3]>::try_from(list);
-        if triple.is_err() {
-            self.wrong(entry, wanted);
-        }
-        triple.ok()
-    }
-
-    fn list_of(&self, entry: &Entry, domain: Domain, wanted: &str) -> Option<Vec<f64>> {
-        let Value::Array(items) = &entry.node.value else {
-            self.wrong(entry, wanted);
-            return None;
-        };
-        let mut list = Vec::with_capacity(items.len());
-        for item in items {
-            match item.value {
-                Value::Number(x) if domain.contains(x) => list.push(x),
-                _ => {
-                    let what = match item.value {
-                        Value::Number(x) => format!("{x} stands in `{}`", entry.key),
-                        ref other => format!("{} stands in `{}`", other.kind(), entry.key),
-                    };
-                    let help = format!("each entry is {}", domain.words());
-                    self.fault_at(item.span.clone(), &entry.key, what, help);
-                }
-            }
-        }
-        (list.len() == items.len()).then_some(list)
-    }
-
     /// A text that must be there.
     pub fn text(&self, key: &'static str) -> Option<String> {
         let entry = self.required(key, "a text in quotes")?;
@@ -360,21 +177,17 @@ impl<'a> Settings<'a> {
     }
 
     fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
-        match &entry.node.value {
-            Value::Text(text) => {
-                let word = words.iter().find(|word| *word == text).copied();
-                if word.is_none() {
-                    let message = format!("`{}` is \"{text}\"", entry.key);
-                    let help = suggestion(text, words, wanted);
-                    self.fault_at(entry.node.span.clone(), &entry.key, message, help);
-                }
-                word
-            }
-            _ => {
-                self.wrong(entry, wanted);
-                None
-            }
+        let Value::Text(text) = &entry.node.value else {
+            self.wrong(entry, wanted);
+            return None;
+        };
+        let word = words.iter().find(|word| *word == text).copied();
+        if word.is_none() {
+            let message = format!("`{}` is \"{text}\"", entry.key);
+            let help = suggestion(text, words, wanted);
+            self.fault_at(entry.node.span.clone(), &entry.key, message, help);
         }
+        word
     }
 
     /// `true` or `false`, or `default` where the key is absent.
@@ -472,44 +285,9 @@ impl<'a> Settings<'a> {
     }
 }
 
-fn whole(range: &RangeInclusive<u64>) -> String {
-    format!("a whole number from {} to {}", range.start(), range.end())
-}
-
-fn quoted<S: AsRef<str>>(words: &[S]) -> String {
-    let words: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
-    words.join(", ")
-}
-
-/// "did you mean" where a known word is near, the whole list where none is.
-fn suggestion(written: &str, words: &[&str], otherwise: &str) -> String {
-    let near = words.iter().map(|word| (distance(written, word), word)).min();
-    match near {
-        Some((edits, word)) if edits <= 1 + written.len() / 4 => {
-            format!("did you mean `{word}`? ({otherwise})")
-        }
-        _ => otherwise.to_owned(),
-    }
-}
-
-/// The number of letters to insert, delete or replace (V. Levenshtein, 1966).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replace = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::Node;
     use super::*;
 
     fn number(key: &str, x: f64) -> Entry {

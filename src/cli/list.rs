@@ -1,5 +1,6 @@
 //! `trueflight list`: the catalogue, from the code's own documentation.
 
+use std::fmt::Write;
 use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
@@ -100,10 +101,10 @@ fn table(rows: &[Row], console: &Console) -> String {
         if row.part != part {
             let gap = if part.is_empty() { "" } else { "\n" };
             let (bold, plain) = if colour { ("\x1b[1m", "\x1b[0m") } else { ("", "") };
-            text += &format!("{gap}{bold}{}{plain}\n", row.part);
+            let _ = writeln!(text, "{gap}{bold}{}{plain}", row.part);
             part = &row.part;
         }
-        text += &format!("  {:widest$}  {}\n", row.name, row.summary);
+        let _ = writeln!(text, "  {:widest$}  {}", row.name, row.summary);
     }
     text
 }

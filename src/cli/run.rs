@@ -49,7 +49,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let files = artifacts.len();
         output::print(&format!("{files} files in {}\n", arguments.out.display()))?;
     }
-    exit_code(&record)
+    Ok(exit_code(&record))
 }
 
 fn draw(plan: &Plan, console: &Console) -> Record {
@@ -76,11 +76,11 @@ fn progress(plan: &Plan, console: &Console) -> ProgressBar {
 }
 
 /// Fail before refused cases before inconclusive before pass.
-fn exit_code(record: &Record) -> anyhow::Result<u8> {
+fn exit_code(record: &Record) -> u8 {
     let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
     let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
     if any(Verdict::Fail) {
-        return Ok(1);
+        return 1;
     }
     let refused = record
         .results
@@ -93,9 +93,9 @@ fn exit_code(record: &Record) -> anyhow::Result<u8> {
              `trueflight plan` says why",
             case.name
         ));
-        return Ok(USAGE);
+        return USAGE;
     }
-    Ok(if any(Verdict::Inconclusive) { 3 } else { 0 })
+    if any(Verdict::Inconclusive) { 3 } else { 0 }
 }
 
 fn writable(out: &Path) -> anyhow::Result<()> {

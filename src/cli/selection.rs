@@ -3,6 +3,7 @@
 use std::io::{IsTerminal, Write};
 use std::path::Path;
 
+use anyhow::Context;
 use clap::Args;
 use trueflight::harness::case::Case;
 use trueflight::harness::source::CaseError;
@@ -23,10 +24,10 @@ pub struct Selection {
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6]
-    #[arg(long, value_name = "N", value_parser = draws)]
+    #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
-    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = alpha)]
+    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = alpha, allow_hyphen_values = true)]
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -64,7 +65,8 @@ impl Selection {
 
     /// The options of a plan.
     pub fn options(&self, seconds: Option<f64>) -> anyhow::Result<Options> {
-        let filter = self.filter.as_deref().map(Filter::new).transpose()?;
+        let filter = self.filter.as_deref().map(Filter::new).transpose();
+        let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
         Ok(Options { seed: self.seed, draws: self.draws, alpha: self.alpha, seconds, filter })
     }
 

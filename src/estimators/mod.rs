@@ -149,16 +149,17 @@ macro_rules! recipes {
             pages: &[$($crate::page!($module)),*],
         };
 
-        /// Reads `NAME = { … }`.
+        /// Reads `NAME = { … }`. Without a body, because that was wrong, what depends on it is not
+        /// asked.
         pub fn read(
             settings: &$crate::catalogue::Settings,
-            body: &$crate::media::Body,
+            body: Option<&$crate::media::Body>,
         ) -> Option<Box<dyn $Trait>> {
             let names: Vec<String> =
                 CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
             let (index, recipe) = settings.choice(&names)?;
             let readers = [$(
-                |s: &$crate::catalogue::Settings, b: &$crate::media::Body| {
+                |s: &$crate::catalogue::Settings, b: Option<&$crate::media::Body>| {
                     $module::$Page::read(s, b).map(|page| Box::new(page) as Box<dyn $Trait>)
                 }
             ),*];

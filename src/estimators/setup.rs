@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::media::{Body, Control, Piecewise};
+use crate::numeric::elementary;
 use crate::problems::Problem;
 use crate::rng::Address;
 use crate::theory::{Mesh, Rule, product::Product};
@@ -45,8 +46,9 @@ impl<P: Problem> Setup<P> {
     ) -> Self {
         let support = mesh.support();
         let sampling = sampling.unwrap_or_else(|| Piecewise::constant(0.0, support)).on(support);
-        let control_transmittance = control.optical_depth(support).exp_neg().value;
-        let transmittance = mesh.optical_depth().exp_neg().value;
+        // Both enter draws: this crate's exponential, the same on every machine.
+        let control_transmittance = elementary::exp(-control.optical_depth(support).value);
+        let transmittance = elementary::exp(-mesh.optical_depth().value);
         Self { problem, mesh, sampling, control, control_transmittance, transmittance }
     }
 

@@ -75,12 +75,12 @@ impl Case {
             let sweep = read_sweep(&settings);
             let biased = expect_biased.unwrap_or(false);
             let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-            // The order is that of `problems::CATALOGUE`.
-            let scenario: Option<Box<dyn AnyScenario>> = match index {
-                0 => Scenario::<Transmittance>::read(&settings, body, biased, swept),
-                1 => Scenario::<FreeFlight>::read(&settings, body, biased, swept),
-                _ => Scenario::<TransmittanceCurve>::read(&settings, body, biased, swept),
+            let read = match names[index].as_str() {
+                "transmittance" => Scenario::<Transmittance>::read,
+                "free-flight" => Scenario::<FreeFlight>::read,
+                _ => Scenario::<TransmittanceCurve>::read,
             };
+            let scenario = read(&settings, body.as_ref(), biased, swept);
             settings.close();
             Some((names[index].clone(), scenario?, sweep?))
         });
@@ -163,6 +163,7 @@ pub(super) fn read_expect(settings: &Settings) -> Option<bool> {
     settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
 }
 
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
 fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
     match settings.table_if("sweep") {
         Some(sweep) => SweepAxis::read(&sweep).map(Some),

@@ -15,7 +15,7 @@ use crate::theory::optimum::Optimum;
 #[must_use]
 pub fn planned(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
-        case.experiments.iter().flat_map(|planned| theory_rows(planned)).collect()
+        case.experiments.iter().flat_map(theory_rows).collect()
     };
     let mut record = record(plan, plan.cases.iter().map(|case| (rows(case), None, None)));
     for (case, planned_case) in record.results.cases.iter_mut().zip(&plan.cases) {

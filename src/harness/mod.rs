@@ -16,6 +16,7 @@ pub mod scenario;
 pub mod source;
 pub mod suite;
 pub mod sweep;
+mod written;
 
 pub use case::Case;
 pub use filter::Filter;

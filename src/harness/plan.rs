@@ -146,8 +146,13 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
     }
     let draws = options.draws.or(case.draws).unwrap_or(DRAWS);
     let plan = |&(estimator, variation): &(usize, Variation)| {
-        let names = case.scenario.names(estimator, variation);
-        let address = address(options.seed, &case.name, &names, variation);
+        let mut names = case.scenario.names(estimator, variation);
+        // Two estimators may be called the same, as where each has a field of its own as control.
+        let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
+        let address = address(options.seed, &case.name, &names, variation, twins);
+        if twins > 0 {
+            names.estimator = format!("{} #{}", names.estimator, twins + 1);
+        }
         let Prepared { outcome, expect_biased } =
             case.scenario.prepare(estimator, variation, address);
         let mut planned = Planned {
@@ -176,11 +181,14 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
 }
 
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when
-/// other experiments join or leave the run.
-fn address(seed: u64, case: &str, names: &Names, variation: Variation) -> Address {
+/// other experiments join or leave the run. `twins` come before it in the case under the same name.
+fn address(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
     let Names { estimator, sampling, sampling_kind, control } = names;
     let sampling = sampling.map_or(String::new(), |value| value.to_string());
     let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
-    let name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
+    let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
+    if twins > 0 {
+        name = format!("{name}|{twins}");
+    }
     Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
 }

@@ -2,9 +2,9 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::case::read_expect;
 use super::sweep::What;
-use crate::catalogue::{Page, Settings};
+use super::written::{Written, read_if};
+use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
 use crate::estimators::{
     Estimated, Experiment, Portrait, Refusal, Setup, Site, controls, sampling,
@@ -85,15 +85,6 @@ pub struct Ready {
     pub prediction: Prediction,
 }
 
-/// An estimator as written.
-struct Written<P> {
-    name: String,
-    entry: Box<dyn Entry<P>>,
-    sampling: Option<Box<dyn sampling::Recipe>>,
-    control: Option<Box<dyn controls::Recipe>>,
-    expect_biased: bool,
-}
-
 /// A problem of known type.
 pub struct Scenario<P: Estimated> {
     body: Body,
@@ -108,23 +99,18 @@ impl<P: Estimated> Scenario<P> {
     /// Reads what follows the field: σ̂ and control for all, and the estimators.
     pub fn read(
         settings: &Settings,
-        body: Option<Body>,
+        body: Option<&Body>,
         expect_biased: bool,
         swept: Option<What>,
     ) -> Option<Box<dyn AnyScenario>> {
-        // Without a field nothing about it can be read, but unknown keys should not be blamed.
-        let Some(body) = body else {
-            for key in ["estimators", "sampling", "control", "distances", "ray", "span"] {
-                settings.entry(key);
-            }
-            return None;
-        };
-        let problem = P::read(&body, settings);
-        let sampling = read_if(settings, "sampling", &body, sampling::read);
-        let control = read_if(settings, "control", &body, controls::read);
-        let shared = settings.has("sampling") || swept == Some(What::Sampling);
+        let problem = P::read(body, settings);
+        let sampling = read_if(settings, "sampling", body, sampling::read);
+        let control = read_if(settings, "control", body, controls::read);
+        // A sweep that could not be read may have been one of σ̂.
+        let unread = settings.has("sweep") && swept.is_none();
+        let shared = settings.has("sampling") || swept == Some(What::Sampling) || unread;
         let estimators = settings.tables("estimators").map(|tables| {
-            let read = |table: &Settings| Written::read(table, &body, expect_biased, shared);
+            let read = |table: &Settings| Written::read(table, body, expect_biased, shared);
             tables.iter().map(read).collect::<Vec<_>>()
         });
         let estimators = estimators?;
@@ -142,7 +128,7 @@ impl<P: Estimated> Scenario<P> {
             sampling: sampling?,
             control: control?,
             written: written?,
-            body,
+            body: body?.clone(),
         }))
     }
 
@@ -221,7 +207,13 @@ impl<P: Estimated> Scenario<P> {
             _ => 1.0,
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
-        Ok(Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control))
+        let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
+        let controlled = setup.control_transmittance;
+        if controlled.is_finite() && controlled >= FAINTEST {
+            return Ok(setup);
+        }
+        let needs = "a control with T_c between 1e-300 and infinity";
+        Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")))
     }
 
     fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
@@ -349,7 +341,7 @@ const MOST_LOOKUPS: f64 = 1e6;
 fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
     for channel in &ready.prediction.channels {
         let truth = channel.truth.value;
-        if !truth.is_finite() || truth < FAINTEST && truth != 0.0 || truth == 0.0 {
+        if !(truth.is_finite() && truth >= FAINTEST) {
             let needs = "an answer between 1e-300 and infinity";
             return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
         }
@@ -366,58 +358,4 @@ fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a checked count
 fn whole(points: f64) -> usize {
     points as usize
-}
-
-fn read_if<T: ?Sized>(
-    settings: &Settings,
-    key: &'static str,
-    body: &Body,
-    read: fn(&Settings, &Body) -> Option<Box<T>>,
-) -> Option<Option<Box<T>>> {
-    match settings.table_if(key) {
-        Some(table) => read(&table, body).map(Some),
-        None if settings.has(key) => None,
-        None => Some(None),
-    }
-}
-
-impl<P: Estimated> Written<P> {
-    fn read(table: &Settings, body: &Body, expect_biased: bool, shared: bool) -> Option<Self> {
-        let names: Vec<String> = P::CATALOGUE.pages.iter().map(Page::name).collect();
-        let (index, settings) = table.choice(&names)?;
-        let entry = P::read_estimator(index, &settings);
-        let own_expect =
-            if settings.has("expect") { read_expect(&settings) } else { Some(expect_biased) };
-        let Some(entry) = entry else {
-            // The page's own mistakes are listed; what it would have taken is not known.
-            settings.entry("sampling");
-            settings.entry("control");
-            settings.close();
-            return None;
-        };
-        let inputs = entry.inputs();
-        let sampling = if inputs.sampling {
-            read_if(&settings, "sampling", body, sampling::read)
-        } else {
-            Some(None)
-        };
-        let control = if inputs.control {
-            read_if(&settings, "control", body, controls::read)
-        } else {
-            Some(None)
-        };
-        if inputs.sampling && !settings.has("sampling") && !shared {
-            let message = format!("`{}` has no sampling extinction", names[index]);
-            let help = "add `sampling.constant.value = …` to it or to the problem, or sweep it";
-            settings.fault_at(settings.span.clone(), "", message, help);
-        }
-        settings.close();
-        Some(Self {
-            name: names[index].clone(),
-            entry,
-            sampling: sampling?,
-            control: control?,
-            expect_biased: own_expect?,
-        })
-    }
 }

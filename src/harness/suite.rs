@@ -1,36 +1,42 @@
-//! The cases that are built into the binary.
+//! The cases that are built into the binary: a choice of those under `cases/`, one line each.
 
 use std::path::PathBuf;
 
 use super::source::Source;
 
-/// The name of a case file with its text.
-macro_rules! case {
-    ($name:literal) => {
-        ($name, include_str!(concat!("../../cases/", $name, ".toml")))
+/// Lists the built-in cases by their path below `cases/`, without `.toml`.
+macro_rules! cases {
+    ($($name:literal,)*) => {
+        &[$(($name, include_str!(concat!("../../cases/", $name, ".toml")))),*]
     };
 }
 
-/// The names of the built-in cases with their text: every estimator, every kind of medium, free
-/// flight, a curve, and estimators that must be caught. They draw in well under a minute and read
-/// no further files.
-const CASES: &[(&str, &str)] = &[
-    case!("transmittance/eq21-overview"),
-    case!("transmittance/eq21-oblique"),
-    case!("transmittance/constant-sampling"),
-    case!("transmittance/layers-with-gap"),
-    case!("transmittance/ramps"),
-    case!("transmittance/exponential"),
-    case!("transmittance/gaussian"),
-    case!("transmittance/sines"),
-    case!("transmittance/noise-4"),
-    case!("transmittance/grid-trilinear"),
-    case!("transmittance/negative-extinction"),
-    case!("transmittance/biased-ray-marching"),
-    case!("transmittance/biased-misuse"),
-    case!("free-flight/eq21-central"),
-    case!("free-flight/layers-with-gap"),
-    case!("transmittance-curve/eq21-figure-8"),
+/// The names of the built-in cases with their text.
+const CASES: &[(&str, &str)] = cases![
+    "transmittance/eq21-overview",
+    "transmittance/next-flight",
+    "transmittance/negative-extinction",
+    "transmittance/ratio-exactly-one",
+    "transmittance/decomposition",
+    "transmittance/local-majorants",
+    "transmittance/layers-with-gap",
+    "transmittance/exponential",
+    "transmittance/gaussian",
+    "transmittance/grid-trilinear",
+    "transmittance/grid-nearest",
+    "transmittance/noise-4",
+    "transmittance/pilot",
+    "transmittance/biased-ray-marching",
+    "transmittance/biased-misuse",
+    "transmittance/eq21-missing",
+    "transmittance/sines",
+    "transmittance/ramps",
+    "transmittance/tight-control",
+    "free-flight/eq21-central",
+    "free-flight/layers-with-gap",
+    "free-flight/exponential",
+    "transmittance-curve/eq21-figure-8",
+    "transmittance-curve/noise-figure-5",
 ];
 
 /// Every built-in case, in the order of the suite.
@@ -46,9 +52,6 @@ pub fn find(name: &str) -> Option<Source> {
 }
 
 fn source(name: &str, text: &str) -> Source {
-    Source {
-        name: name.to_owned(),
-        path: PathBuf::from(format!("{name}.toml")),
-        text: text.to_owned(),
-    }
+    let path = PathBuf::from(format!("{name}.toml"));
+    Source { name: name.to_owned(), path, text: text.to_owned() }
 }

@@ -8,6 +8,7 @@ use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
 
 /// A field and the stretch of line or ray on which it is asked about.
+#[derive(Clone)]
 pub enum Body {
     /// `medium.NAME = { … }` on `span = [from, to]`.
     Line {
@@ -131,11 +132,10 @@ fn read_ray(settings: &Settings) -> Option<Ray> {
     let direction = settings.triple("direction");
     let length = settings.number("length", Domain::NonNegative);
     settings.close();
-    let ray = Ray::new(Point(origin?), Point(direction?), length?);
-    if ray.is_none() {
+    if direction.is_some_and(|d| Point(d).normalised().is_none()) {
         settings.fault("direction", "`direction` is the zero vector", "it takes any other vector");
     }
-    ray
+    Ray::new(Point(origin?), Point(direction?), length?)
 }
 
 /// Reads `axis`, the direction in which a plane-parallel medium varies; the z axis without the key.

@@ -1,4 +1,4 @@
-//! The analytic medium of Szirmay-Kalos et al.
+//! The analytic medium of Szirmay-Kalos et al. 2017, Eq. 21, in its sphere.
 //!
 //! ```text
 //! σ_t(x, y, z) = ((cos(1.5(x + y + z)) + 1)/2)⁵ · (sin(z/2) + 2)/3   within the sphere

@@ -13,7 +13,7 @@
 //! | `width` | standard deviation, > 0 | length | required |
 //! | `bounds` | 3-D only: `sphere = { centre, radius }` or `box = { low, high }` | length | all of space |
 //!
-//! Along a ray that passes the centre at the distance D, with its foot at s_c, the blob is a 1-D
+//! Along a ray that passes the centre at the distance D, with its foot at `s_c`, the blob is a 1-D
 //! Gaussian of peak A = peak·exp(−D²/(2 width²)):
 //!
 //! ```text

@@ -61,7 +61,7 @@ pub trait FreeFlight: OpticalDepth {
         if depth_to(span.to) <= depth {
             return None;
         }
-        Some(roots::root(span.from, span.to, |s| depth_to(s) - depth))
+        Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, self.extinction(s))))
     }
 }
 

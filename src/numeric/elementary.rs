@@ -108,7 +108,7 @@ fn polynomial<const N: usize>(x: f64, c: &[f64; N]) -> f64 {
 /// ```
 #[inline(always)]
 #[must_use]
-#[allow(clippy::cast_possible_wrap)] // a biased exponent fits in 12 bits
+#[allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // an exponent fits in 12 bits
 pub fn ln(x: f64) -> f64 {
     // √½ has the bits 0x3fe6a09e…: subtracting them moves the cut between exponents there.
     let bits = x.to_bits();

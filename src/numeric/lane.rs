@@ -24,18 +24,23 @@ pub trait Lane:
     + Mul<f64, Output = Self>
 {
     /// The same value in every element.
+    #[must_use]
     fn splat(value: f64) -> Self;
 
     /// Applies a scalar function to each element, for fields that gather or hash.
+    #[must_use]
     fn map(self, f: impl FnMut(f64) -> f64) -> Self;
 
     /// `e^x`.
+    #[must_use]
     fn exp(self) -> Self;
 
     /// `cos x`, `x` in radians, `|x| < 1e9`.
+    #[must_use]
     fn cos(self) -> Self;
 
     /// `sin x`, `x` in radians, `|x| < 1e9`.
+    #[must_use]
     fn sin(self) -> Self;
 }
 

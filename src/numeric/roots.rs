@@ -38,6 +38,31 @@ pub fn root(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
+/// The root of a function that rises from below zero at `low` to above zero at `high`, by Newton's
+/// steps kept within the bracket; `f` answers the value and the slope.
+pub fn rising(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let mut x = 0.5 * (low + high);
+    for _ in 0..200 {
+        let (value, slope) = f(x);
+        let step = value / slope;
+        if value == 0.0 || step.abs() <= f64::EPSILON * x.abs() {
+            return x - if step.is_finite() { step } else { 0.0 };
+        }
+        if value < 0.0 {
+            low = x;
+        } else {
+            high = x;
+        }
+        let next = x - step;
+        // A flat stretch sends the step away: halve instead.
+        x = if next > low && next < high { next } else { 0.5 * (low + high) };
+        if x <= low || x >= high {
+            break;
+        }
+    }
+    x
+}
+
 /// Where a function with one minimum on `[low, high]` is smallest, by golden sections until the
 /// bracket is `tolerance` wide.
 ///
@@ -70,6 +95,12 @@ mod tests {
         let x = root(0.0, 3.0, |x| x * x - 2.0);
         assert!((x - 2.0f64.sqrt()).abs() < 1e-15);
         assert_eq!(root(0.0, 1.0, |x| x), 0.0);
+    }
+
+    #[test]
+    fn finds_a_rising_root_across_a_flat_stretch() {
+        let cube = |x: f64| ((x - 1.0).powi(3) - 1e-3, 3.0 * (x - 1.0).powi(2));
+        assert!((rising(0.0, 5.0, cube) - 1.1).abs() < 1e-14);
     }
 
     #[test]

@@ -20,8 +20,8 @@ pub struct FreeFlight {
 impl Problem for FreeFlight {
     type Value = [f64; 1];
 
-    fn read(body: &Body, _: &Settings) -> Option<Self> {
-        Some(Self { medium: body.medium() })
+    fn read(body: Option<&Body>, _: &Settings) -> Option<Self> {
+        Some(Self { medium: body?.medium() })
     }
 
     fn medium(&self) -> &Medium {

@@ -28,8 +28,8 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// What one draw is: one number per channel.
     type Value: Copy + AsRef<[f64]>;
 
-    /// Reads what the problem needs beside the field.
-    fn read(body: &Body, settings: &Settings) -> Option<Self>;
+    /// Reads what the problem needs beside the field, which is absent after a mistake.
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self>;
 
     /// The field along the ray.
     fn medium(&self) -> &Medium;

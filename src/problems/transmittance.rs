@@ -27,8 +27,8 @@ pub struct Transmittance {
 impl Problem for Transmittance {
     type Value = [f64; 1];
 
-    fn read(body: &Body, _: &Settings) -> Option<Self> {
-        Some(Self { medium: body.medium() })
+    fn read(body: Option<&Body>, _: &Settings) -> Option<Self> {
+        Some(Self { medium: body?.medium() })
     }
 
     fn medium(&self) -> &Medium {

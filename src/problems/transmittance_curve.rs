@@ -52,9 +52,9 @@ impl TransmittanceCurve {
 impl Problem for TransmittanceCurve {
     type Value = Values;
 
-    fn read(body: &Body, settings: &Settings) -> Option<Self> {
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let count = settings.count_or("distances", 2..=MOST as u64, 8)?;
-        let medium = body.medium();
+        let medium = body?.medium();
         let span = medium.span();
         let step = span.length() / count as f64;
         let mut distances: Vec<f64> = (1..count).map(|k| span.from + step * k as f64).collect();

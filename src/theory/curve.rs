@@ -31,8 +31,10 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
             let truth = mesh.medium().optical_depth(Span::new(start, s)).exp_neg();
             let error = mesh.relative_error();
             let moments = Moments::of_product(truth.value, integrals.losses, error);
-            let sizes = integrals.rarity.map(f64::exp);
-            Channel { name: format!("T({s})"), ..Channel::unbiased(truth, moments, sizes) }
+            Channel {
+                name: format!("T({s})"),
+                ..Channel::unbiased(truth, moments, integrals.tails())
+            }
         })
         .collect();
     let covariances = pairs(&channels, &upto);

@@ -6,7 +6,7 @@
 //! ```
 
 use super::mesh::Panel;
-use super::{Channel, CountLaw, Law, Mesh, Moments, Prediction};
+use super::{Channel, CountLaw, Law, Mesh, Moments, Prediction, Tails};
 use crate::numeric::sum::Sum;
 use crate::numeric::{Known, Span};
 
@@ -35,7 +35,7 @@ pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     });
     let truth = Known::new(mean, mean * (mesh.relative_error() + 1e-14));
     let moments = Moments { scale: mean, relative, error: mesh.relative_error() + 1e-13 };
-    let channel = Channel::unbiased(truth, moments, [1.0; 2]);
+    let channel = Channel::unbiased(truth, moments, Tails::LIGHT);
     let law = distances(mesh, ray, escape.value);
     Prediction { law, ..Prediction::single(channel, lookups) }
 }

@@ -105,6 +105,7 @@ impl Mesh {
     }
 
     /// The panels in ascending order.
+    #[must_use]
     pub fn panels(&self) -> impl DoubleEndedIterator<Item = Panel<'_>> + ExactSizeIterator {
         let n = self.rule.nodes.len();
         self.panels.iter().enumerate().map(move |(i, &span)| {

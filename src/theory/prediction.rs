@@ -30,17 +30,31 @@ pub struct Channel {
     pub mean: Known,
     /// Its central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
-    /// How many draws it takes to see the events that carry the variance, and those that carry
-    /// the fourth moment; below these, sample statistics mislead.
-    pub rare_event_sizes: [f64; 2],
+    /// How heavy its tails are.
+    pub tails: Tails,
+}
+
+/// How many draws it takes before sample statistics mean what they say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tails {
+    /// `n(2) = exp(D)`, D the relative entropy of the walks that carry `E[X²]` against those that
+    /// occur: with fewer draws the events that make the variance are not seen.
+    pub rare_event_size: f64,
+    /// `E[X⁸]/E[X⁴]²`: the kurtosis of what the sample variance sums, where tails are heavy.
+    pub eighth_moment_ratio: f64,
+}
+
+impl Tails {
+    /// A bounded draw that is not rare.
+    pub const LIGHT: Self = Self { rare_event_size: 1.0, eighth_moment_ratio: 1.0 };
 }
 
 impl Channel {
     /// A single unbiased channel.
     #[must_use]
-    pub fn unbiased(truth: Known, moments: Moments, rare_event_sizes: [f64; 2]) -> Self {
+    pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
         let name = String::new();
-        Self { name, truth, mean: truth, moments: Some(moments), rare_event_sizes }
+        Self { name, truth, mean: truth, moments: Some(moments), tails }
     }
 }
 

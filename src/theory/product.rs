@@ -10,7 +10,7 @@
 //! (2017), with the variance introduction densities of its Eqs. 17–20.
 
 use super::mesh::Panel;
-use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule};
+use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use crate::media::{Control, Piecewise};
 use crate::numeric::sum::Sum;
 
@@ -35,8 +35,10 @@ pub struct Product<'a> {
 pub struct Integrals {
     /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4.
     pub losses: [f64; 4],
-    /// `ln n(k) = ∫ σ̂ (ρ ln(ρ/q) − ρ + 1)`, `ρ = q |W|^k`, for k = 2 and 4.
-    pub rarity: [f64; 2],
+    /// `ln n(2) = ∫ σ̂ (ρ ln(ρ/q) − ρ + 1)`, `ρ = q W²`.
+    pub rarity: f64,
+    /// `ln E[(X/T)^k] = ∫ σ̂ (E[W^k] − 1 + k(1 − E[W]))`, k = 4 and 8.
+    pub growth: [f64; 2],
     /// `E[M]`, `E[M(M − 1)]`.
     pub lookups: [f64; 2],
     /// `∫σ̂`.
@@ -128,7 +130,7 @@ impl<'a> Product<'a> {
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
         let truth = mesh.optical_depth().exp_neg();
         let moments = Moments::of_product(truth.value, all.losses, mesh.relative_error());
-        let channel = Channel::unbiased(truth, moments, all.rarity.map(f64::exp));
+        let channel = Channel::unbiased(truth, moments, all.tails());
         let length = mesh.support().length();
         let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
         Prediction { stable_share, ..Prediction::single(channel, all.count()) }
@@ -136,6 +138,16 @@ impl<'a> Product<'a> {
 }
 
 impl Integrals {
+    /// How heavy the tails of a draw are.
+    #[must_use]
+    pub fn tails(&self) -> Tails {
+        let [fourth, eighth] = self.growth;
+        Tails {
+            rare_event_size: self.rarity.exp(),
+            eighth_moment_ratio: (eighth - 2.0 * fourth).exp(),
+        }
+    }
+
     /// The law of the number of lookups.
     #[must_use]
     pub fn count(&self) -> CountLaw {
@@ -152,7 +164,8 @@ impl Integrals {
 #[derive(Default)]
 struct Totals {
     losses: [Sum; 4],
-    rarity: [Sum; 2],
+    rarity: Sum,
+    growth: [Sum; 2],
     lookups: [Sum; 2],
     flown: Sum,
     deaths: Sum,
@@ -169,9 +182,11 @@ impl Totals {
             sum.add(mesh.integral(panel, &over(&|o| o.mean_loss(k))));
             sum.add(killing * panel.span.length());
         }
-        for (k, sum) in [2, 4].into_iter().zip(&mut self.rarity) {
-            sum.add(mesh.integral(panel, &over(&|o| rarity(o, k))));
-            sum.add(killing * panel.span.length());
+        self.rarity.add(mesh.integral(panel, &over(&rarity)));
+        self.rarity.add(killing * panel.span.length());
+        for (k, sum) in [4, 8].into_iter().zip(&mut self.growth) {
+            sum.add(mesh.integral(panel, &over(&|o| growth(o, k))));
+            sum.add(f64::from(k - 1) * killing * panel.span.length());
         }
         let deaths: Vec<f64> =
             over(&|o| 1.0 - o.survival).iter().map(|rate| rate + killing).collect();
@@ -198,7 +213,8 @@ impl Totals {
     fn read(&self) -> Integrals {
         Integrals {
             losses: self.losses.map(|sum| sum.value()),
-            rarity: self.rarity.map(|sum| sum.value()),
+            rarity: self.rarity.value(),
+            growth: self.growth.map(|sum| sum.value()),
             lookups: self.lookups.map(|sum| sum.value()),
             flown: self.flown.value(),
             stable: self.stable.value(),
@@ -206,11 +222,17 @@ impl Totals {
     }
 }
 
-/// `ρ ln(ρ/q) − ρ + 1` with `ρ = q|W|^k`: the relative entropy, per collision, of the walks that
-/// carry `E[X^k]` against the walks that occur.
-fn rarity(outcome: &Outcome, k: i32) -> f64 {
-    let size = outcome.weight.abs();
-    let rho = outcome.survival * size.powi(k);
-    let entropy = if rho > 0.0 { rho * f64::from(k) * size.ln() } else { 0.0 };
+/// `ρ ln(ρ/q) − ρ + 1` with `ρ = qW²`: the relative entropy, per collision, of the walks that carry
+/// `E[X²]` against the walks that occur.
+fn rarity(outcome: &Outcome) -> f64 {
+    let square = outcome.weight * outcome.weight;
+    let rho = outcome.survival * square;
+    let entropy = if rho > 0.0 { rho * square.ln() } else { 0.0 };
     entropy - rho + 1.0
+}
+
+/// `E[W^k] − 1 + k(1 − E[W])`.
+fn growth(outcome: &Outcome, k: i32) -> f64 {
+    let mean = outcome.survival * outcome.weight;
+    outcome.survival * outcome.weight.powi(k) - 1.0 + f64::from(k) * (1.0 - mean)
 }

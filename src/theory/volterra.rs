@@ -19,7 +19,8 @@
 //! A_k(x) = ∫ₓ^ℓ σ̄ ρ^k g_k(y) exp(−∫ₓ^y σ̄ (1 − ρ^k)) dy
 //! ```
 //!
-//! which one sweep over the panels from the far end evaluates for k = 1 … 4.
+//! which one sweep over the panels from the far end evaluates for k = 1 … 8: four for the moments
+//! that are tested, the eighth for how long their tests take.
 //!
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019);
@@ -27,14 +28,17 @@
 //! model for deep-penetration Monte Carlo calculations*, Nuclear Science and Engineering 65 (1978).
 
 use super::mesh::Panel;
-use super::{Channel, CountLaw, Mesh, Moments, Prediction};
+use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
 use crate::numeric::Span;
+
+/// The highest order.
+pub const ORDERS: usize = 8;
 
 /// The part that an estimator adds at a collision, as moments.
 pub trait Source {
-    /// `g_k(x)` for k = 1 … 4 from `v = e^{−σ̄(ℓ−x)}` and `A_1 … A_4` at `x` (only lower ones
+    /// `g_k(x)` for k = 1 … 8 from `v = e^{−σ̄(ℓ−x)}` and `A_1 … A_8` at `x` (only lower ones
     /// than k may be used).
-    fn moment(&self, k: usize, v: f64, lower: &[f64; 4]) -> f64;
+    fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64;
 }
 
 /// Mean, moments and cost of such an estimator over the whole support, at constant `σ̄ > 0`.
@@ -42,17 +46,18 @@ pub trait Source {
 pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let end = mesh.support().to;
     let fine = mesh.refined(&[], &|_, panel| panel_functions(panel, sampling, end));
-    let mut after = [0.0; 4];
+    let mut after = [0.0; ORDERS];
     for panel in fine.panels().rev() {
         after = sweep(&fine, panel, sampling, end, source, after);
     }
     let v = (-sampling * mesh.support().length()).exp();
-    let raw: [f64; 4] = std::array::from_fn(|k| source.moment(k + 1, v, &after) + after[k]);
+    let raw: [f64; ORDERS] = std::array::from_fn(|k| source.moment(k + 1, v, &after) + after[k]);
     let truth = mesh.optical_depth().exp_neg();
     let t = raw[0];
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is stated in `error`.
-    let [m1, m2, m3, m4] = std::array::from_fn(|k| raw[k] / t.powi(k as i32 + 1));
+    let unit: [f64; ORDERS] = std::array::from_fn(|k| raw[k] / power(t, k + 1));
+    let [m1, m2, m3, m4, _, _, _, m8] = unit;
     let central = [
         m2 - m1 * m1,
         m3 - 3.0 * m2 * m1 + 2.0 * m1.powi(3),
@@ -63,7 +68,8 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
     let moments = Moments { scale: truth.value, relative, error };
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
-    let channel = Channel::unbiased(truth, moments, [kurtosis; 2]);
+    let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
+    let channel = Channel::unbiased(truth, moments, tails);
     Prediction::single(channel, CountLaw::poisson(sampling * mesh.support().length()))
 }
 
@@ -71,8 +77,8 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
 fn panel_functions(panel: Panel<'_>, sampling: f64, end: f64) -> Vec<Vec<f64>> {
     let span = Span::new(panel.span.from, end.min(panel.span.to));
     let decay = panel.t.iter().map(|t| (-sampling * (t - span.from)).exp()).collect();
-    let fourth = panel.extinction.iter().map(|s| (1.0 - s / sampling).powi(4)).collect();
-    vec![decay, fourth]
+    let highest = panel.extinction.iter().map(|s| power(1.0 - s / sampling, ORDERS)).collect();
+    vec![decay, highest]
 }
 
 /// Takes `A_k` from the end of a panel to its beginning.
@@ -82,24 +88,22 @@ fn sweep(
     sampling: f64,
     end: f64,
     source: &dyn Source,
-    after: [f64; 4],
-) -> [f64; 4] {
+    after: [f64; ORDERS],
+) -> [f64; ORDERS] {
     let ratio: Vec<f64> = panel.extinction.iter().map(|s| s / sampling).collect();
     let n = ratio.len();
     let v: Vec<f64> = panel.t.iter().map(|t| (-sampling * (end - t)).exp()).collect();
-    let mut at_nodes = vec![[0.0; 4]; n];
-    let mut before = [0.0; 4];
-    for k in 1..=4 {
-        let power = k as i32;
-        let rate: Vec<f64> =
-            ratio.iter().map(|r| sampling * (1.0 - (1.0 - r).powi(power))).collect();
+    let mut at_nodes = vec![[0.0; ORDERS]; n];
+    let mut before = [0.0; ORDERS];
+    for k in 1..=ORDERS {
+        let rate: Vec<f64> = ratio.iter().map(|r| sampling * (1.0 - power(1.0 - r, k))).collect();
         let total = mesh.integral(panel, &rate);
         let so_far = mesh.running(panel, &rate);
         // exp(+∫) from the panel's beginning to a node multiplies the integrand's exp(−∫).
         let weighted: Vec<f64> = (0..n)
             .map(|i| {
                 let g = source.moment(k, v[i], &at_nodes[i]);
-                sampling * (1.0 - ratio[i]).powi(power) * g * (-so_far[i]).exp()
+                sampling * power(1.0 - ratio[i], k) * g * (-so_far[i]).exp()
             })
             .collect();
         let inside = mesh.integral(panel, &weighted);
@@ -113,15 +117,14 @@ fn sweep(
     before
 }
 
-/// `C(k, j)` for k ≤ 4.
+/// `x^k` for small k.
+#[must_use]
+pub fn power(x: f64, k: usize) -> f64 {
+    std::iter::repeat_n(x, k).product()
+}
+
+/// `C(k, j)`.
 #[must_use]
 pub fn binomial(k: usize, j: usize) -> f64 {
-    const ROWS: [[f64; 5]; 5] = [
-        [1.0, 0.0, 0.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0, 0.0, 0.0],
-        [1.0, 2.0, 1.0, 0.0, 0.0],
-        [1.0, 3.0, 3.0, 1.0, 0.0],
-        [1.0, 4.0, 6.0, 4.0, 1.0],
-    ];
-    ROWS[k][j]
+    (1..=j).map(|i| (k + 1 - i) as f64 / i as f64).product()
 }

@@ -20,7 +20,7 @@ pub struct Constant {
 
 impl Constant {
     /// Reads `{ value }`.
-    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         settings.number("value", Domain::Finite).map(|value| Self { value })
     }
 }

@@ -24,15 +24,15 @@ pub struct Explorers {
 impl Explorers {
     /// Reads `{ points, octaves }`.
     #[allow(clippy::cast_possible_truncation)] // at most 100000
-    pub fn read(settings: &Settings, body: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let points = settings.count("points", 2..=100_000);
         let octaves = if settings.has("octaves") {
             let octaves = settings.count("octaves", 1..=16).map(|k| k as usize)?;
-            let known = match body {
-                Body::Volume { volume, .. } => volume.coarsened(octaves).is_some(),
-                Body::Line { .. } => false,
-            };
-            if !known {
+            let unknown = body.filter(|body| match body {
+                Body::Volume { volume, .. } => volume.coarsened(octaves).is_none(),
+                Body::Line { .. } => true,
+            });
+            if let Some(body) = unknown {
                 let message = format!("`{}` has no octaves", body.name());
                 settings.fault("octaves", message, "leave it out, or use the field `noise`");
                 return None;

@@ -20,7 +20,12 @@ pub struct Field {
 
 impl Field {
     /// Reads `{ medium.NAME = { … } }` or `{ volume.NAME = { … } }`, like the problem itself.
-    pub fn read(settings: &Settings, body: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
+        let Some(body) = body else {
+            settings.has("medium");
+            settings.has("volume");
+            return None;
+        };
         let beside = body.read_beside(settings)?;
         Some(Self { name: beside.name().to_owned(), field: beside.medium() })
     }

@@ -19,7 +19,8 @@ pub struct Mean;
 
 impl Mean {
     /// Reads `{}`.
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    #[must_use]
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

@@ -20,7 +20,8 @@ pub struct Minimum;
 
 impl Minimum {
     /// Reads `{}`.
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    #[must_use]
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

@@ -13,7 +13,8 @@ pub struct None;
 
 impl None {
     /// Reads `{}`.
-    pub fn read(_: &Settings, _: &Body) -> Option<Self> {
+    #[must_use]
+    pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }
 }

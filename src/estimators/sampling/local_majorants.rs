@@ -35,7 +35,7 @@ pub enum LocalMajorants {
 impl LocalMajorants {
     /// Reads `{ segments }` or `{ grid }`.
     #[allow(clippy::cast_possible_truncation)] // at most 65536
-    pub fn read(settings: &Settings, body: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         match (settings.has("segments"), settings.has("grid")) {
             (true, false) => {
                 settings.count("segments", 1..=65_536).map(|n| Self::Segments(n as usize))
@@ -43,8 +43,9 @@ impl LocalMajorants {
             (false, true) => {
                 let cells = settings.counts("grid", 1..=4096)?;
                 let bounded = match body {
-                    Body::Volume { volume, .. } => volume.bounds().enclosing_box().is_some(),
-                    Body::Line { .. } => false,
+                    Some(Body::Volume { volume, .. }) => volume.bounds().enclosing_box().is_some(),
+                    Some(Body::Line { .. }) => false,
+                    None => true,
                 };
                 if !bounded {
                     let help = "use `segments`, or give the volume `bounds`";

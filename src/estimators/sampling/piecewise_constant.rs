@@ -20,7 +20,7 @@ pub struct PiecewiseConstant(Piecewise);
 
 impl PiecewiseConstant {
     /// Reads `{ breaks, values }`.
-    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         read_steps(settings).map(Self)
     }
 }

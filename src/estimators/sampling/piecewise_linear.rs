@@ -20,7 +20,7 @@ pub struct PiecewiseLinear(Piecewise);
 
 impl PiecewiseLinear {
     /// Reads `{ knots, values }`.
-    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         read_lines(settings).map(Self)
     }
 }

@@ -29,7 +29,7 @@ pub struct Pilot {
 
 impl Pilot {
     /// Reads `{ rays, safety, start }`.
-    pub fn read(settings: &Settings, _: &Body) -> Option<Self> {
+    pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         let rays = settings.count_or("rays", 1..=10_000, 8);
         let safety = settings.number_or("safety", Domain::Positive, 1.2);
         let start = if settings.has("start") {

@@ -15,7 +15,7 @@ use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
-use crate::theory::{Channel, CountLaw, Law, Moments, Prediction};
+use crate::theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
 
 /// Closed-form tracking; it has no settings.
 #[derive(Debug, Clone)]
@@ -25,7 +25,7 @@ pub struct ClosedForm;
 #[must_use]
 pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
     let truth = setup.mesh.optical_depth().exp_neg();
-    let channel = Channel::unbiased(truth, Moments::certain(truth.value), [1.0; 2]);
+    let channel = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
     let law = Some(Law::Atoms(vec![(truth.value, 1.0)]));
     Prediction { law, ..Prediction::single(channel, CountLaw::always(lookups as f64)) }
 }

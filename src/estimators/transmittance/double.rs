@@ -55,7 +55,7 @@ fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
     let most = (mean + 12.0 * mean.sqrt() + 30.0).min(1e4);
     let mut atoms: Vec<(f64, f64)> = Vec::new();
     let mut value = scale;
-    for n in (0_u32..).take_while(|&n| f64::from(n) <= most) {
+    for n in (0..u32::MAX).take_while(|&n| f64::from(n) <= most) {
         let probability = poisson(n, mean);
         match atoms.iter_mut().find(|atom| atom.0 == value) {
             // A factor of 0 or ±1 puts many n on one atom.

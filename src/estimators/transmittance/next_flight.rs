@@ -24,16 +24,16 @@ use crate::numeric::elementary;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
-use crate::theory::volterra::{self, Source, binomial};
+use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
 
 /// The next-flight estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct NextFlight;
 
 impl Source for NextFlight {
-    fn moment(&self, k: usize, v: f64, lower: &[f64; 4]) -> f64 {
-        let mixed = (1..k).map(|j| binomial(k, j) * v.powi((k - j) as i32) * lower[j - 1]);
-        v.powi(k as i32) + mixed.sum::<f64>()
+    fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
+        let mixed = (1..k).map(|j| binomial(k, j) * power(v, k - j) * lower[j - 1]);
+        power(v, k) + mixed.sum::<f64>()
     }
 }
 

@@ -26,7 +26,7 @@ use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, elementary};
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
-use crate::theory::{Channel, CountLaw, Moments, Prediction};
+use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
 const PANELS: usize = 256;
@@ -88,7 +88,7 @@ impl Estimator<Transmittance> for RayMarching {
         };
         let channel = Channel {
             mean: Known::new(mean, 1e-9 * mean),
-            ..Channel::unbiased(truth, moments, [1.0; 2])
+            ..Channel::unbiased(truth, moments, Tails::LIGHT)
         };
         Prediction::single(channel, CountLaw::always(f64::from(self.steps)))
     }

@@ -22,18 +22,17 @@ use crate::numeric::elementary;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
-use crate::theory::volterra::{self, Source, binomial};
+use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct UnidirectionalMis;
 
 impl Source for UnidirectionalMis {
-    fn moment(&self, k: usize, v: f64, lower: &[f64; 4]) -> f64 {
+    fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
         let u = v / (1.0 + v);
-        let power = k as i32;
-        let mixed = (1..k).map(|j| binomial(k, j) * u.powi((k - j) as i32) * lower[j - 1]);
-        v * (2.0 * u).powi(power) + (1.0 - v) * u.powi(power) + mixed.sum::<f64>()
+        let mixed = (1..k).map(|j| binomial(k, j) * power(u, k - j) * lower[j - 1]);
+        v * power(2.0 * u, k) + (1.0 - v) * power(u, k) + mixed.sum::<f64>()
     }
 }
 

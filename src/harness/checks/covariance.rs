@@ -79,13 +79,13 @@ impl Check for Covariance {
                 let kurtosis = |k: usize| {
                     channels[k].moments.and_then(|m| m.kurtosis()).unwrap_or(f64::INFINITY)
                 };
-                let rare = channels[j].rare_event_sizes[1];
+                let tail = channels[j].tails.eighth_moment_ratio;
                 let comparison = Comparison {
                     difference: sum.value() / draws - covariance.value / unit,
                     standard_error: (covariance.variance / draws).sqrt() / unit,
                     allowance: 1e-10 * spread(i) * spread(j),
                     tolerance: TOLERANCE * spread(i) * spread(j),
-                    draws_for_level: (100.0 * kurtosis(i).max(kurtosis(j))).max(10.0 * rare),
+                    draws_for_level: 100.0 * kurtosis(i).max(kurtosis(j)).max(tail),
                 };
                 let what = format!("the covariance with {}", channels[i].name);
                 let (verdict, reason) = comparison.verdict(&what, subject, limits);

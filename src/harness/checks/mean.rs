@@ -32,7 +32,7 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
         Some(moments) => {
             let unit = moments.scale / truth;
             let kurtosis = moments.kurtosis().unwrap_or(1.0);
-            let level = (100.0 * kurtosis).max(10.0 * channel.rare_event_sizes[0]);
+            let level = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
             (moments.relative[0] * unit * unit, level)
         }
         // A forced experiment has no theory: the draws' own variance must do.

@@ -30,7 +30,7 @@ fn probabilities(subject: &Subject) -> Option<Vec<f64>> {
     let law = subject.prediction.lookups.filter(|law| law.poisson && law.mean > 0.0)?;
     let most = law.mean + 10.0 * law.mean.sqrt() + 20.0;
     let probability: Vec<f64> =
-        (0..).take_while(|&n| f64::from(n) <= most).map(|n| poisson(n, law.mean)).collect();
+        (0..u32::MAX).take_while(|&n| f64::from(n) <= most).map(|n| poisson(n, law.mean)).collect();
     let enough = chi_square::testable_bins(&probability, subject.draws as f64) > 1;
     enough.then_some(probability)
 }

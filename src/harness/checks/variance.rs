@@ -6,7 +6,9 @@
 //!
 //! The predicted mean is known, so v needs no correction for its own. The exact kurtosis κ makes
 //! this a test at its level; normal theory would fail correct estimators of high kurtosis most of
-//! the time. It needs `n ≥ 100 κ` and ten times the rare-event size of the fourth moment.
+//! the time. The normal law
+//! holds for it from `n ≥ 100 κ'` on, κ' the kurtosis of the squares that v sums: `E[X⁸]/E[X⁴]²`
+//! where tails are heavy. Below that it is inconclusive.
 
 use super::mean::is_certain;
 use super::{Check, Comparison, Evidence, Kind, Limits, Subject};
@@ -38,7 +40,7 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
         standard_error: ((kurtosis - 1.0) / tally.draws as f64).sqrt(),
         allowance: moments.error,
         tolerance: subject.tolerance.variance.unwrap_or(TOLERANCE),
-        draws_for_level: (100.0 * kurtosis).max(10.0 * channel.rare_event_sizes[1]),
+        draws_for_level: 100.0 * kurtosis.max(channel.tails.eighth_moment_ratio),
     })
 }
 

@@ -1,0 +1,99 @@
+//! Under the null, z-scores are standard normal: their mean square lies in its own χ² band.
+//!
+//! Every case file is drawn with a fixed number of draws. A predicted variance that is too small
+//! makes the z-scores of its kind large together, long before a single one fails; one that is too
+//! large makes them small, which no single check would ever see.
+
+mod common;
+
+use common::{ALPHA, judged, none, options, shipped};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
+use trueflight::harness::record::{Finding, Record, Row, Verdict};
+use trueflight::stats::normal;
+
+const DRAWS: u64 = 50_000;
+/// The band holds all but a thousandth: half of it on either side.
+const OUTSIDE: f64 = 1e-3;
+
+/// The last row of each experiment that was drawn and is not declared biased: the channels of one
+/// walk are not independent.
+fn experiments(record: &Record) -> Vec<(&str, &Row)> {
+    let mut found = Vec::new();
+    for case in &record.results.cases {
+        for (i, row) in case.rows.iter().enumerate() {
+            let same = |next: &&Row| {
+                next.channel != row.channel
+                    && !row.channel.is_empty()
+                    && (&next.estimator, &next.control, next.swept)
+                        == (&row.estimator, &row.control, row.swept)
+            };
+            let last = case.rows.get(i + 1).as_ref().is_none_or(|next| !same(next));
+            // What a case declares biased is neither fair nor compared with theory.
+            let biased = |finding: &Finding| finding.reason.contains("bias");
+            let drawn = row.verdict != Some(Verdict::Refused);
+            if last && drawn && !row.findings.iter().any(biased) {
+                found.push((case.name.as_str(), row));
+            }
+        }
+    }
+    found
+}
+
+/// Draws enough for the kurtosis of a draw, so that z-scores are near their limit law.
+fn adequate(row: &Row) -> bool {
+    let draws = row.draws.unwrap_or(0) as f64;
+    row.predicted_kurtosis.is_some_and(|kurtosis| draws >= 100.0 * kurtosis)
+        && row.verdict != Some(Verdict::Underpowered)
+}
+
+/// What is wrong with a family of z-scores, if anything.
+fn judge(kind: &str, scores: &[(String, f64)]) -> Vec<String> {
+    assert!(scores.len() >= 50, "only {} z-scores of the {kind}", scores.len());
+    let mut wrong = Vec::new();
+    let limit = normal::two_sided(ALPHA / scores.len() as f64);
+    for (name, z) in scores {
+        if z.abs() > limit {
+            wrong.push(format!("{kind} of {name}: z = {z:.2} beyond {limit:.2}"));
+        }
+    }
+    let n = scores.len() as f64;
+    let law = ChiSquared::new(n).expect("a law");
+    let [low, high] = [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE].map(|p| law.inverse_cdf(p) / n);
+    let square = scores.iter().map(|(_, z)| z * z).sum::<f64>() / n;
+    if !(low..=high).contains(&square) {
+        wrong.push(format!("{kind}: mean z² of {n} is {square:.3}, outside [{low:.3}, {high:.3}]"));
+    }
+    wrong
+}
+
+#[test]
+fn z_scores_of_all_cases_have_mean_square_one() {
+    let record = judged(&shipped(), &options(1, DRAWS));
+    let experiments = experiments(&record);
+    let scores = |z: fn(&Row) -> Option<f64>, wanted: fn(&Row) -> bool| {
+        let rows = experiments.iter().filter(|(_, row)| wanted(row));
+        let scores = rows.filter_map(|(case, row)| {
+            let name = format!("{case}, {} {} {:?}", row.estimator, row.control, row.swept);
+            z(row).map(|z| (name, z))
+        });
+        scores.collect::<Vec<_>>()
+    };
+    let mut wrong = judge("means", &scores(|row| row.z_mean, adequate));
+    wrong.extend(judge("variances", &scores(|row| row.z_variance, adequate)));
+    wrong.extend(judge("lookups", &scores(|row| row.z_lookups, |_| true)));
+    none(&wrong);
+}
+
+#[test]
+fn wrong_variances_and_a_single_outlier_are_seen() {
+    let scores = |scale: f64| -> Vec<(String, f64)> {
+        let quantile = |i: u32| normal::upper_quantile((f64::from(i) + 0.5) / 400.0);
+        (0..400).map(|i| (String::new(), scale * quantile(i))).collect()
+    };
+    assert!(judge("scores", &scores(1.0)).is_empty());
+    assert_eq!(judge("scores", &scores(1.15)).len(), 1, "variances 1.3 times as large");
+    assert_eq!(judge("scores", &scores(0.85)).len(), 1, "variances 1.4 times too small");
+    let mut outlier = scores(1.0);
+    outlier[0].1 = 7.0;
+    assert_eq!(judge("scores", &outlier).len(), 1, "one z-score of 7");
+}

@@ -1,0 +1,72 @@
+//! Every case file of the repository can be read, planned and drawn, and is not refuted.
+
+mod common;
+
+use std::collections::BTreeSet;
+
+use common::{judged, none, options, shipped};
+use trueflight::harness::record::Verdict;
+use trueflight::harness::{Case, Plan, Record, suite};
+
+/// Whether a case declares some experiment biased: such a bias must show, which takes draws.
+fn is_biased(case: &Case) -> bool {
+    let cases = std::slice::from_ref(case);
+    Plan::new(cases, &options(1, 2)).experiments().any(|(_, planned)| planned.expect_biased)
+}
+
+#[test]
+fn every_case_draws_and_none_is_refuted() {
+    let (biased, fair): (Vec<Case>, Vec<Case>) = shipped().into_iter().partition(is_biased);
+    assert!(!fair.is_empty() && !biased.is_empty());
+    let mut wrong = Vec::new();
+    for (cases, draws) in [(fair, 10_000), (biased, 3_000_000)] {
+        wrong.extend(refuted(&judged(&cases, &options(1, draws))));
+    }
+    none(&wrong);
+}
+
+/// What fails, and what was neither drawn nor refused.
+fn refuted(record: &Record) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for case in &record.results.cases {
+        for row in &case.rows {
+            let drawn = row.mean.is_some_and(f64::is_finite);
+            match row.verdict {
+                Some(Verdict::Fail) => {
+                    wrong.push(format!("{}, {}: {}", case.name, row.estimator, row.reason));
+                }
+                Some(Verdict::Refused) if !row.reason.is_empty() => {}
+                Some(_) if drawn => {}
+                other => wrong.push(format!("{}, {}: {other:?}", case.name, row.estimator)),
+            }
+        }
+        let refused = case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused));
+        if refused {
+            wrong.push(format!("{}: every experiment is refused", case.name));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn no_two_cases_or_experiments_share_a_name() {
+    let cases = shipped();
+    let names: BTreeSet<&str> = cases.iter().map(|case| case.name.as_str()).collect();
+    assert_eq!(names.len(), cases.len(), "two case files have one name");
+    let titles: BTreeSet<&str> = cases.iter().map(|case| case.title.as_str()).collect();
+    assert_eq!(titles.len(), cases.len(), "two case files have one title");
+    let plan = Plan::new(&cases, &options(1, 1_000));
+    let mut addresses = BTreeSet::new();
+    for (case, planned) in plan.experiments() {
+        let is_new = addresses.insert(planned.address.experiment);
+        assert!(is_new, "{}: two experiments share their random numbers", case.case.name);
+    }
+}
+
+#[test]
+fn the_built_in_suite_is_a_choice_of_the_case_files() {
+    let files: BTreeSet<String> = shipped().into_iter().map(|case| case.name).collect();
+    let built_in: BTreeSet<String> = suite::suite().into_iter().map(|source| source.name).collect();
+    assert!(!built_in.is_empty());
+    assert!(built_in.is_subset(&files), "{:?}", built_in.difference(&files));
+}

@@ -1,0 +1,373 @@
+//! The command: exit codes, messages for broken case files, what goes where.
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use tempfile::TempDir;
+
+/// A case that passes within `--draws 400000`.
+const GOOD: &str = "title = \"a good case\"
+[problem.transmittance]
+medium.constant.extinction = 0.5
+span = [0, 2]
+sampling.constant.value = 1
+estimators = [{ woodcock = {} }, { ratio = {} }]
+";
+
+/// The first columns of summary.csv, in the order of the design.
+const COLUMNS: &str = "case,problem,medium,estimator,sampling,control,channel,seed,draws,mean,\
+                       standard_error,truth,truth_error,z_mean,variance,predicted_variance,\
+                       z_variance,lookups_per_draw,predicted_lookups,z_lookups,\
+                       predicted_kurtosis,detectable_bias,fom,seconds,ns_per_lookup,verdict,reason";
+
+/// A folder with case files, in which the command runs.
+struct Place(TempDir);
+
+impl Place {
+    fn new(files: &[(&str, &str)]) -> Self {
+        let folder = TempDir::new().expect("a folder");
+        for (name, text) in files {
+            std::fs::write(folder.path().join(name), text).expect("a case file");
+        }
+        Self(folder)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn run(&self, arguments: &str) -> Output {
+        let mut command = Command::cargo_bin("trueflight").expect("the binary");
+        command.current_dir(self.path()).env_remove("NO_COLOR").env("COLUMNS", "200");
+        command.args(arguments.split_whitespace()).output().expect("it runs")
+    }
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().expect("an exit code")
+}
+
+fn stdout(output: &Output) -> String {
+    String::from_utf8(output.stdout.clone()).expect("text")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+/// Runs a case file of the given text with `--draws`, expecting an exit code.
+fn exits(expected: i32, text: &str, draws: &str) -> Output {
+    let place = Place::new(&[("case.toml", text)]);
+    let output = place.run(&format!("run case.toml --alpha 1e-6 --draws {draws}"));
+    assert_eq!(code(&output), expected, "{}{}", stdout(&output), stderr(&output));
+    output
+}
+
+/// The message about a broken case file: exit code 2, nothing on stdout, nothing written.
+fn message(text: &str) -> String {
+    let place = Place::new(&[("case.toml", text)]);
+    for command in ["run", "predict", "plan"] {
+        let output = place.run(&format!("{command} case.toml"));
+        assert_eq!(code(&output), 2, "{command}: {}", stderr(&output));
+        assert_eq!(stdout(&output), "", "{command}");
+    }
+    assert!(!place.path().join("results").exists(), "something was written");
+    stderr(&place.run("run case.toml"))
+}
+
+fn assert_says(message: &str, words: &[&str]) {
+    for word in words {
+        assert!(message.contains(word), "no \"{word}\" in:\n{message}");
+    }
+}
+
+#[test]
+fn all_pass_is_0() {
+    let output = exits(0, GOOD, "400000");
+    assert_says(&stdout(&output), &["woodcock", "ratio", "pass"]);
+    assert_eq!(stderr(&output), "", "without a terminal there is no progress");
+}
+
+#[test]
+fn a_failure_is_1() {
+    let biased = GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2 } }");
+    let biased = biased.replace("medium.constant.extinction = 0.5", LINEAR);
+    assert_says(&stdout(&exits(1, &biased, "10000")), &["fail", "off by"]);
+}
+
+const LINEAR: &str = "medium.piecewise-linear = { knots = [0, 0.5, 2], values = [0.1, 1.0, 0.1] }";
+
+#[test]
+fn too_few_draws_is_3() {
+    assert_says(&stdout(&exits(3, GOOD, "1000")), &["inconclusive", "draws"]);
+}
+
+#[test]
+fn a_case_of_which_nothing_can_be_drawn_is_2() {
+    let refused = GOOD.replace("value = 1", "value = 0.4").replace(", { ratio = {} }", "");
+    let output = exits(2, &refused, "1000");
+    assert_says(&stderr(&output), &["refused"]);
+}
+
+#[test]
+fn usage_is_2() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    for arguments in [
+        "",
+        "fly",
+        "run case.toml --draws 0",
+        "run case.toml --draws many",
+        "run case.toml --alpha 1",
+        "run case.toml --alpha nan",
+        "run case.toml --seed -1",
+        "run case.toml --threads 0",
+        "run case.toml --time soon",
+        "run case.toml --format yaml",
+        "run case.toml --filter [",
+        "run case.toml --filter nothing-of-the-kind",
+        "explain nothing-of-the-kind",
+        "list nothing-of-the-kind",
+        "completions nothing-of-the-kind",
+    ] {
+        let output = place.run(arguments);
+        assert_eq!(code(&output), 2, "trueflight {arguments}");
+        assert_eq!(stdout(&output), "", "trueflight {arguments}");
+        assert!(!stderr(&output).is_empty(), "trueflight {arguments} says nothing");
+    }
+}
+
+#[test]
+fn unknown_cases_are_2_and_the_message_says_what_would_be_right() {
+    let place = Place::new(&[]);
+    for command in ["run", "predict", "plan"] {
+        let output = place.run(&format!("{command} nowhere.toml"));
+        assert_eq!((code(&output), stdout(&output).as_str()), (2, ""));
+        assert_says(&stderr(&output), &["nowhere.toml", "case file"]);
+    }
+    std::fs::create_dir(place.path().join("empty")).expect("a folder");
+    assert_says(&stderr(&place.run("run empty")), &["empty", "no case file"]);
+}
+
+#[test]
+fn an_unknown_key_is_shown_in_its_line_with_a_caret() {
+    let message = message(&GOOD.replace("extinction", "extincton"));
+    assert_says(&message, &["`extincton`", "did you mean `extinction`?", "case.toml:3:"]);
+    let lines: Vec<&str> = message.lines().collect();
+    // Of the two mistakes, what is missing and what is unknown, the second is at the key.
+    let line = lines.iter().rposition(|line| line.contains("medium.constant.extincton = 0.5"));
+    let line = line.expect("the line of the file");
+    let key = lines[line].find("extincton").expect("the key");
+    let under: Vec<char> = lines[line + 1].chars().collect();
+    let column = lines[line][..key].chars().count();
+    assert_eq!(under.get(column), Some(&'^'), "no caret under the key:\n{message}");
+}
+
+#[test]
+fn every_mistake_is_listed_not_only_the_first() {
+    let text = GOOD
+        .replace("extinction = 0.5", "extinction = -0.5")
+        .replace("span = [0, 2]", "span = [0, \"2\"]")
+        .replace("{ ratio = {} }", "{ ratoi = {} }, { single.rule = \"terminate\" }")
+        .replace("title", "tilte");
+    let message = message(&text);
+    let wanted = ["-0.5", "`span`", "did you mean `ratio`", "terminate", "`title`", "`tilte`"];
+    assert_says(&message, &wanted);
+    let mistakes = message.matches("error: ").count();
+    assert!(mistakes >= 6, "{mistakes} mistakes shown:\n{message}");
+}
+
+#[test]
+fn numbers_that_are_none_are_refused_in_place() {
+    for wrong in ["nan", "inf", "-inf", "-1", "\"0.5\"", "true", "[0.5]", "1979-05-27"] {
+        let message = message(&GOOD.replace("= 0.5", &format!("= {wrong}")));
+        assert_says(&message, &["extinction", "case.toml:3:", "^"]);
+    }
+    for wrong in ["0", "-1", "nan", "1e999"] {
+        let message = message(&GOOD.replace("value = 1", &format!("value = {wrong}")));
+        assert_says(&message, &["value", "case.toml:5:", "^"]);
+    }
+    for wrong in ["[2, 0]", "[0]", "[0, 1, 2]", "[0, nan]", "2", "[]"] {
+        let message = message(&GOOD.replace("[0, 2]", wrong));
+        assert_says(&message, &["span", "case.toml:4:", "^"]);
+    }
+}
+
+#[test]
+fn huge_numbers_neither_hang_nor_panic() {
+    for (from, to) in
+        [("= 0.5", "= 1e308"), ("value = 1", "value = 1e308"), ("[0, 2]", "[0, 1e308]")]
+    {
+        let place = Place::new(&[("case.toml", &GOOD.replace(from, to))]);
+        for command in ["plan", "predict", "run"] {
+            let draws = if command == "predict" { "" } else { " --draws 1000" };
+            let output = place.run(&format!("{command} case.toml{draws}"));
+            let said = stderr(&output);
+            assert!([0, 2, 3].contains(&code(&output)), "{command} with {to}: {said}");
+            assert!(!said.contains("panicked"), "{said}");
+        }
+        let output = place.run("plan case.toml");
+        assert_says(&stdout(&output), &["refused"]);
+    }
+}
+
+#[test]
+fn what_is_not_toml_is_shown_in_place() {
+    let message = message(&GOOD.replace("[problem.transmittance]", "[problem.transmittance"));
+    assert_says(&message, &["not TOML", "case.toml:2:", "^"]);
+    assert_says(&self::message(""), &["title", "problem"]);
+}
+
+#[test]
+fn mistakes_in_two_files_are_both_shown_and_nothing_runs() {
+    let broken = GOOD.replace("title", "titel");
+    let place = Place::new(&[("a.toml", &broken), ("b.toml", GOOD), ("c.toml", &broken)]);
+    let output = place.run("run . --draws 1000");
+    assert_eq!(code(&output), 2);
+    assert_says(&stderr(&output), &["a.toml", "c.toml", "nothing was run"]);
+    assert_eq!(stdout(&output), "");
+}
+
+#[test]
+fn an_unwritable_folder_is_known_before_the_drawing() {
+    let place = Place::new(&[("case.toml", GOOD), ("file", "")]);
+    let begin = std::time::Instant::now();
+    let output = place.run("run case.toml --out file/below --draws 1000000000");
+    assert_eq!(code(&output), 2);
+    assert_says(&stderr(&output), &["cannot write", "file/below", "--out"]);
+    assert!(begin.elapsed().as_secs() < 20, "it drew first");
+}
+
+#[test]
+fn results_are_written_where_they_are_wanted() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    let output = place.run("run case.toml --out here --draws 2000 --quiet");
+    assert_eq!((code(&output), stdout(&output).as_str()), (3, ""));
+    let summary = std::fs::read_to_string(place.path().join("here/summary.csv")).expect("a table");
+    assert!(summary.starts_with(COLUMNS), "{summary}");
+    let mut reader = csv::Reader::from_reader(summary.as_bytes());
+    let headers = reader.headers().expect("columns").clone();
+    let rows: Vec<csv::StringRecord> = reader.records().map(|row| row.expect("a row")).collect();
+    assert_eq!(rows.len(), 2);
+    let field = |name: &str| {
+        let at = headers.iter().position(|header| header == name).expect("the column");
+        rows[0][at].to_owned()
+    };
+    assert_eq!((field("estimator"), field("draws")), ("woodcock".into(), "2000".into()));
+    let truth: f64 = field("truth").parse().expect("a number");
+    assert!((truth - (-1f64).exp()).abs() < 1e-16);
+    // Nothing is left half written.
+    let names = std::fs::read_dir(place.path().join("here")).expect("a folder");
+    let temporary = names.filter(|entry| {
+        entry.as_ref().expect("an entry").file_name().to_string_lossy().starts_with('.')
+    });
+    assert_eq!(temporary.count(), 0);
+}
+
+#[test]
+fn csv_and_json_hold_the_columns_and_nothing_else() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    for command in ["run case.toml --draws 2000", "predict case.toml", "plan case.toml"] {
+        let table = place.run(&format!("{command} --format csv"));
+        assert!(stdout(&table).starts_with(COLUMNS), "{command}");
+        assert_eq!(stderr(&table), "", "{command}");
+        assert_eq!(stdout(&table).lines().count(), 3, "{command}");
+        let json = place.run(&format!("{command} --format json"));
+        let rows: Vec<serde_json::Map<String, serde_json::Value>> =
+            serde_json::from_slice(&json.stdout).expect("JSON and nothing else");
+        assert_eq!(rows.len(), 2, "{command}");
+        for column in COLUMNS.split(',') {
+            assert!(rows[0].contains_key(column), "{command}: no {column}");
+        }
+        // What is unknown is empty, and never zero.
+        if !command.starts_with("run") {
+            assert_eq!(rows[0]["mean"], serde_json::Value::Null, "{command}");
+            assert_eq!(rows[0]["variance"], serde_json::Value::Null, "{command}");
+        }
+    }
+}
+
+#[test]
+fn predict_and_plan_write_no_files() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    assert_eq!(code(&place.run("predict case.toml")), 0);
+    assert_eq!(code(&place.run("plan case.toml")), 0);
+    assert_eq!(std::fs::read_dir(place.path()).expect("a folder").count(), 1);
+}
+
+#[test]
+fn the_same_seed_makes_the_same_files_on_any_number_of_threads() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    let without_timing = |threads: u32| {
+        let output =
+            place.run(&format!("run case.toml --draws 50000 --format csv --threads {threads}"));
+        let text = stdout(&output);
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let headers = reader.headers().expect("columns").clone();
+        let rows = reader.records().map(|row| {
+            let row = row.expect("a row");
+            let fields = headers.iter().zip(row.iter());
+            let kept = fields.filter(|(name, _)| !["seconds", "ns_per_lookup"].contains(name));
+            kept.map(|(_, field)| field.to_owned()).collect::<Vec<_>>()
+        });
+        rows.collect::<Vec<_>>()
+    };
+    assert_eq!(without_timing(1), without_timing(2));
+    assert_eq!(without_timing(1), without_timing(7));
+}
+
+#[test]
+fn filters_keep_what_they_name() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    let output = place.run("plan case.toml --format csv --filter case:ratio");
+    assert_eq!(stdout(&output).lines().count(), 2);
+    assert_says(&stdout(&output), &["ratio"]);
+}
+
+#[test]
+fn the_catalogue_lists_and_explains_every_page() {
+    let place = Place::new(&[]);
+    let listed = place.run("list --format csv");
+    assert_eq!((code(&listed), stderr(&listed).as_str()), (0, ""));
+    let text = stdout(&listed);
+    let mut names: Vec<String> = csv::Reader::from_reader(text.as_bytes())
+        .records()
+        .map(|row| row.expect("a row")[1].to_owned())
+        .collect();
+    for name in ["eq21", "pilot", "explorers", "double", "next-flight", "transmittance-curve"] {
+        assert!(names.iter().any(|known| known == name), "{name} is not listed");
+    }
+    names.sort();
+    names.dedup();
+    for name in names {
+        let output = place.run(&format!("explain {name}"));
+        assert_eq!(code(&output), 0, "explain {name}: {}", stderr(&output));
+        assert!(stdout(&output).lines().count() > 2, "explain {name} says next to nothing");
+    }
+    assert_says(&stdout(&place.run("list media")), &["eq21"]);
+    assert!(!stdout(&place.run("list media")).contains("next-flight"));
+}
+
+#[test]
+fn help_version_and_completions() {
+    let place = Place::new(&[]);
+    let help = place.run("--help");
+    assert_eq!(code(&help), 0);
+    assert_says(&stdout(&help), &["run", "predict", "plan", "list", "explain", "completions"]);
+    let version = stdout(&place.run("--version"));
+    assert_eq!(version.trim(), format!("trueflight {}", env!("CARGO_PKG_VERSION")));
+    for shell in ["bash", "zsh", "fish"] {
+        let output = place.run(&format!("completions {shell}"));
+        assert_eq!(code(&output), 0);
+        assert_says(&stdout(&output), &["trueflight", "predict"]);
+    }
+}
+
+#[test]
+fn colours_only_where_they_are_wanted() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    let coloured = |arguments: &str| stdout(&place.run(arguments)).contains('\u{1b}');
+    assert!(!coloured("plan case.toml"), "stdout is no terminal here");
+    assert!(coloured("predict case.toml --color always") || coloured("list --color always"));
+    assert!(!coloured("predict case.toml --color never"));
+}

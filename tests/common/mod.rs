@@ -1,0 +1,103 @@
+//! Cases written as text, read, predicted, drawn and judged.
+
+#![allow(dead_code)] // each test file uses its own part
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use trueflight::catalogue::Settings;
+use trueflight::harness::record::{Finding, Row, Verdict};
+use trueflight::harness::{Case, CaseError, Options, Plan, Record, Source, judge, run};
+use trueflight::media::{Body, Medium};
+
+/// The level of every run in the tests: a false alarm does not happen.
+pub const ALPHA: f64 = 1e-6;
+
+/// A case of the given name and text.
+pub fn source(name: &str, text: &str) -> Source {
+    Source { name: name.into(), path: PathBuf::from(format!("{name}.toml")), text: text.into() }
+}
+
+/// Reads a case; panics with the rendered mistakes.
+pub fn case(name: &str, text: &str) -> Case {
+    Case::read(&source(name, text)).unwrap_or_else(|error| panic!("{}", error.render(false)))
+}
+
+/// The mistakes that reading a case reports, or `None` if it is well written.
+pub fn mistakes(text: &str) -> Option<CaseError> {
+    Case::read(&source("broken", text)).err()
+}
+
+/// A seed and a number of draws at the level of the tests.
+pub fn options(seed: u64, draws: u64) -> Options {
+    Options { seed, draws: Some(draws), alpha: ALPHA, ..Options::default() }
+}
+
+/// Draws and judges cases.
+pub fn judged(cases: &[Case], options: &Options) -> Record {
+    let plan = Plan::new(cases, options);
+    let draws = run::draw(&plan, &|_| {});
+    judge::judged(&plan, &draws, 0.0)
+}
+
+/// Draws and judges one case written as text, from seed 1.
+pub fn rows(text: &str, draws: u64) -> Vec<Row> {
+    let record = judged(&[case("test", text)], &options(1, draws));
+    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+}
+
+/// What theory says of one case written as text, as `trueflight predict` shows it.
+pub fn predicted(text: &str) -> Vec<Row> {
+    let cases = [case("test", text)];
+    let record = judge::predicted(&Plan::new(&cases, &options(1, 1000)));
+    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+}
+
+/// The row of an estimator whose name begins as given.
+pub fn row<'a>(rows: &'a [Row], estimator: &str) -> &'a Row {
+    let mut found = rows.iter().filter(|row| row.estimator.starts_with(estimator));
+    found.next().unwrap_or_else(|| panic!("no row of {estimator}"))
+}
+
+/// What a check found in a row.
+pub fn finding<'a>(row: &'a Row, check: &str) -> &'a Finding {
+    let mut found = row.findings.iter().filter(|finding| finding.check == check);
+    found.next().unwrap_or_else(|| panic!("no {check} of {}", row.estimator))
+}
+
+/// The verdict on a row.
+pub fn verdict(row: &Row) -> Verdict {
+    row.verdict.unwrap_or_else(|| panic!("no verdict on {}", row.estimator))
+}
+
+/// The field along a line or ray, from the lines that a case has under its problem.
+pub fn medium(text: &str) -> Medium {
+    let faults = RefCell::default();
+    let root = source("medium", text).parse(&faults);
+    let body = Body::read(&Settings::new(&root, Path::new("tests/data"), &faults));
+    body.unwrap_or_else(|| panic!("{text}: {:?}", faults.borrow())).medium()
+}
+
+/// Every case file of the repository.
+pub fn shipped() -> Vec<Case> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
+    Case::read_all(&[folder]).unwrap_or_else(|errors| {
+        let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
+        panic!("{}", shown.join("\n\n"))
+    })
+}
+
+/// `found` against `expected` to a relative tolerance, as a message if they differ.
+pub fn differs(what: &str, found: f64, expected: f64, tolerance: f64) -> Option<String> {
+    let error = (found - expected).abs();
+    let same = found == expected || error <= tolerance * expected.abs();
+    (!same).then(|| {
+        let relative = error / expected.abs();
+        format!("{what}: {found:e} against {expected:e}, {relative:.1e} > {tolerance:.1e}")
+    })
+}
+
+/// Panics with all messages if there are any.
+pub fn none(messages: &[String]) {
+    assert!(messages.is_empty(), "{} differ:\n{}", messages.len(), messages.join("\n"));
+}

@@ -1,0 +1,166 @@
+//! The first draws of every estimator from seed 1, to the bit.
+//!
+//! A change detector and nothing more: it says that draws have changed, not that they were right.
+//! After a change that is meant, `TRUEFLIGHT_FIRST_DRAWS=write cargo test --test value_stability`
+//! writes the file anew; the difference belongs in the same commit as its reason.
+
+mod common;
+
+use std::fmt::Write;
+use std::path::Path;
+
+use common::{case, options};
+use trueflight::catalogue::Catalogue;
+use trueflight::estimators::{DrawBuffer, Estimated};
+use trueflight::harness::{Case, Plan};
+use trueflight::problems::{FreeFlight, Transmittance, TransmittanceCurve};
+
+/// Draws of each experiment.
+const DRAWS: usize = 4;
+
+fn cases() -> Vec<Case> {
+    vec![
+        case(
+            "transmittance",
+            "title = \"every estimator of the transmittance\"
+            [problem.transmittance]
+            medium.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0.4] }
+            span = [0, 4]
+            sampling.constant.value = 1.6
+            estimators = [
+                { closed-form = {} },
+                { regular = {} },
+                { woodcock = {} },
+                { woodcock.sampling.local-majorants.segments = 8 },
+                { local-majorant.sampling.local-majorants.segments = 8 },
+                { decomposition = {} },
+                { ratio = {} },
+                { ratio.sampling.piecewise-linear = { knots = [0, 2, 4], values = [0.5, 2, 1] } },
+                { ratio.sampling.pilot.rays = 16 },
+                { residual-ratio = {} },
+                { single.rule = \"terminating\" },
+                { single.rule = \"clamped\" },
+                { single = { rule = \"non-terminating\", albedo = 0.7 } },
+                { single = { rule = \"adaptive\", albedo = 0.2 } },
+                { double.control.explorers.points = 5 },
+                { double.control.constant.value = 0.9 },
+                { weighted-delta = {} },
+                { next-flight = {} },
+                { unidirectional-mis = {} },
+                { ray-marching = { steps = 10, jitter = true } },
+            ]",
+        ),
+        case(
+            "volume",
+            "title = \"a volume whose lookups take cosines\"
+            [problem.transmittance]
+            volume.eq21 = {}
+            ray = { origin = [1, 0, -3], direction = [0, 0.1, 1], length = 30 }
+            sampling.constant.value = 1.1
+            estimators = [{ woodcock = {} }, { double.control.mean = {} }]",
+        ),
+        case(
+            "noise",
+            "title = \"a volume whose lookups hash\"
+            [problem.transmittance]
+            volume.noise = { extinction = 1.2, octaves = 3, seed = 5 }
+            ray = { origin = [0.3, 0.7, -0.4], direction = [0.6, 0.5, 0.4], length = 5 }
+            sampling.constant.value = 1.3
+            estimators = [{ woodcock = {} }, { ratio = {} }]",
+        ),
+        case(
+            "grid",
+            "title = \"a volume whose lookups interpolate\"
+            [problem.transmittance]
+            volume.grid = { random = { size = [5, 5, 5], seed = 7 },
+                            bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }
+            ray = { origin = [-1, 0.4, 0.9], direction = [4.2, 2.2, 1.9], length = 9 }
+            sampling.constant.value = 1.1
+            estimators = [{ woodcock = {} }, { ratio = {} }]",
+        ),
+        case(
+            "flight",
+            "title = \"free flights\"
+            [problem.free-flight]
+            medium.exponential = { extinction = 2, rate = 0.7 }
+            span = [0, 3]
+            sampling.constant.value = 2
+            estimators = [{ woodcock = {} }, { inversion = {} }]",
+        ),
+        case(
+            "curve",
+            "title = \"a curve\"
+            [problem.transmittance-curve]
+            medium.gaussian = { peak = 1.5, centre = 2, width = 0.7 }
+            span = [0, 4]
+            distances = 3
+            sampling.constant.value = 1.2
+            estimators = [{ double = {} }]",
+        ),
+    ]
+}
+
+/// One line per draw: names, values in bits and in decimals, lookups.
+fn drawn() -> String {
+    let cases = cases();
+    let plan = Plan::new(&cases, &options(1, DRAWS as u64));
+    let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
+    for (planned_case, planned) in plan.experiments() {
+        let ready = planned.outcome.as_ref().expect("it is not refused");
+        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+        ready.experiment.fill(&mut planned.address.stream(), DRAWS, &mut buffer);
+        let names = &planned.names;
+        for draw in 0..DRAWS {
+            let values: Vec<f64> = buffer.values.iter().map(|channel| channel[draw]).collect();
+            let bits: Vec<String> =
+                values.iter().map(|value| format!("{:016x}", value.to_bits())).collect();
+            let decimals: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
+            let (estimator, sampling, control) =
+                (&names.estimator, &names.sampling_kind, &names.control);
+            writeln!(
+                text,
+                "{},\"{estimator}\",\"{sampling}\",\"{control}\",{draw},{},{},{}",
+                planned_case.case.name,
+                bits.join(" "),
+                decimals.join(" "),
+                buffer.lookups[draw]
+            )
+            .expect("a text takes lines");
+        }
+    }
+    text
+}
+
+#[test]
+fn the_first_draws_have_not_changed() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/first-draws.csv");
+    let now = drawn();
+    if std::env::var_os("TRUEFLIGHT_FIRST_DRAWS").is_some_and(|wish| wish == "write") {
+        std::fs::write(&path, &now).expect("the file is written");
+    }
+    let before = std::fs::read_to_string(&path).expect("the file of first draws");
+    let changed: Vec<String> = before
+        .lines()
+        .zip(now.lines())
+        .filter(|(before, now)| before != now)
+        .map(|(before, now)| format!("- {before}\n+ {now}"))
+        .collect();
+    common::none(&changed);
+    assert_eq!(before.lines().count(), now.lines().count(), "estimators came or went");
+}
+
+#[test]
+fn every_estimator_of_the_catalogue_is_there() {
+    let text = drawn();
+    for (Catalogue { pages, .. }, cases) in [
+        (Transmittance::CATALOGUE, ["transmittance", "volume"]),
+        (FreeFlight::CATALOGUE, ["flight", "flight"]),
+        (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
+    ] {
+        for page in pages {
+            let found =
+                cases.iter().any(|case| text.contains(&format!("{case},\"{}", page.name())));
+            assert!(found, "{} is missing here", page.name());
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! The gate: what passes, what is caught, what is too short, and what is never drawn.
+
+mod common;
+
+use common::{finding, row, rows, verdict};
+use trueflight::harness::record::Verdict;
+
+/// A dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
+const LAYERS: &str = "
+    medium.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0.4] }
+    span = [0, 4]";
+
+fn transmittance(estimators: &str) -> String {
+    format!(
+        "title = \"t\"\n[problem.transmittance]\n{LAYERS}\n\
+         sampling.constant.value = 1.6\nestimators = [{estimators}]"
+    )
+}
+
+#[test]
+fn correct_estimators_pass() {
+    let text = transmittance(
+        "{ woodcock = {} }, { ratio = {} }, { residual-ratio = {} }, { next-flight = {} }, \
+         { unidirectional-mis = {} }, { single.rule = \"terminating\" }, { closed-form = {} }, \
+         { single = { rule = \"non-terminating\", albedo = 0.5 } }, { regular = {} }, \
+         { double.control.explorers.points = 9 }, { decomposition = {} }, \
+         { local-majorant.sampling.local-majorants.segments = 8 }",
+    );
+    for row in rows(&text, 1_000_000) {
+        assert_eq!(verdict(&row), Verdict::Pass, "{}: {}", row.estimator, row.reason);
+    }
+}
+
+#[test]
+fn a_biased_estimator_that_claims_to_be_fair_is_caught() {
+    // Theory knows the bias of marching; the truth is not what marching finds.
+    let rows = rows(
+        &transmittance(
+            "{ ray-marching.steps = 3 }, { ray-marching = { steps = 3, jitter = true } }",
+        ),
+        100_000,
+    );
+    for row in &rows {
+        assert_eq!(verdict(row), Verdict::Fail, "{}", row.estimator);
+        assert_eq!(finding(row, "mean").verdict, Verdict::Fail);
+        assert!(row.reason.contains("off by"), "{}", row.reason);
+    }
+}
+
+#[test]
+fn a_declared_bias_passes_once_it_is_seen() {
+    let rows = rows(
+        &transmittance(
+            "{ ray-marching = { steps = 3, expect = \"biased\" } }, \
+             { woodcock = { sampling.constant.value = 0.9, expect = \"biased\" } }",
+        ),
+        200_000,
+    );
+    for row in &rows {
+        assert_eq!(verdict(row), Verdict::Pass, "{}: {}", row.estimator, row.reason);
+        assert!(row.reason.contains("biased-as-expected"), "{}", row.reason);
+    }
+    // Woodcock below the majorant sees min(σ_t, σ̂): T = exp(−.2 − .9·1.5 − .4·1.5).
+    let forced = row(&rows, "woodcock");
+    let (mean, error) = (forced.mean.expect("a mean"), forced.standard_error.expect("an error"));
+    assert!((mean - (-2.15f64).exp()).abs() < 5.0 * error, "{mean} ± {error}");
+    assert_eq!((forced.predicted_variance, forced.predicted_lookups), (None, None));
+}
+
+#[test]
+fn a_declared_bias_that_does_not_show_fails() {
+    let rows = rows(&transmittance("{ ratio.expect = \"biased\" }"), 1_000_000);
+    assert_eq!(verdict(&rows[0]), Verdict::Fail);
+    assert!(rows[0].reason.contains("expected a bias"), "{}", rows[0].reason);
+}
+
+#[test]
+fn a_run_that_is_too_short_says_how_long_it_should_be() {
+    let text = transmittance("{ woodcock = {} }");
+    let short = rows(&text, 1_000);
+    assert_eq!(verdict(&short[0]), Verdict::Inconclusive);
+    let words: Vec<&str> = short[0].reason.split_whitespace().collect();
+    let needed: f64 = words
+        .windows(2)
+        .find(|pair| pair[1].starts_with("draws"))
+        .and_then(|pair| pair[0].parse().ok())
+        .unwrap_or_else(|| panic!("no number of draws in {}", short[0].reason));
+    assert!(needed > 1_000.0);
+    // The number is rounded to two digits; a little more than that is enough.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count of draws")]
+    let enough = rows(&text, (1.1 * needed) as u64);
+    assert_eq!(finding(&enough[0], "mean").verdict, Verdict::Pass);
+}
+
+#[test]
+fn a_case_may_allow_what_is_too_short() {
+    let text = format!("underpowered = \"allow\"\n{}", transmittance("{ woodcock = {} }"));
+    assert_eq!(verdict(&rows(&text, 1_000)[0]), Verdict::Underpowered);
+}
+
+#[test]
+fn a_tighter_tolerance_needs_more_draws() {
+    let text = transmittance("{ ratio = {} }");
+    assert_eq!(finding(&rows(&text, 200_000)[0], "mean").verdict, Verdict::Pass);
+    let tight = format!("{text}\n[tolerance]\nmean = 1e-5");
+    assert_eq!(finding(&rows(&tight, 200_000)[0], "mean").verdict, Verdict::Inconclusive);
+}
+
+/// The reason why an estimator is refused.
+fn refusal(text: &str) -> String {
+    let rows = rows(text, 1_000);
+    assert_eq!(verdict(&rows[0]), Verdict::Refused, "{}", rows[0].reason);
+    assert_eq!((rows[0].draws, rows[0].mean), (None, None), "it was drawn");
+    rows[0].reason.clone()
+}
+
+/// Asserts that a reason holds the given words and a place between two distances.
+fn assert_names(reason: &str, words: &[&str], [from, to]: [f64; 2]) {
+    for word in words {
+        assert!(reason.contains(word), "no \"{word}\" in: {reason}");
+    }
+    let place = reason.rsplit("t = ").next().and_then(|text| text.parse::<f64>().ok());
+    let place = place.unwrap_or_else(|| panic!("no place in: {reason}"));
+    assert!((from..=to).contains(&place), "not in [{from}, {to}]: {reason}");
+}
+
+#[test]
+fn woodcock_below_the_majorant_is_refused() {
+    let reason = refusal(&transmittance("{ woodcock.sampling.constant.value = 1.2 }"));
+    assert_names(&reason, &["σ̂ ≥ σ_t", "σ̂ = 1.2", "σ_t = 1.5"], [1.0, 2.5]);
+    let reason = refusal(&transmittance(
+        "{ local-majorant.sampling.piecewise-constant = \
+         { breaks = [0, 2, 3, 4], values = [2, 1, 2] } }",
+    ));
+    assert_names(&reason, &["σ̄ ≥ σ_t", "σ̂ = 1.0", "σ_t = 1.5"], [2.0, 2.5]);
+}
+
+#[test]
+fn free_flight_below_the_majorant_is_refused() {
+    let reason = refusal(&format!(
+        "title = \"t\"\n[problem.free-flight]\n{LAYERS}\nsampling.constant.value = 1\n\
+         estimators = [{{ woodcock = {{}} }}]"
+    ));
+    assert_names(&reason, &["σ̂ ≥ σ_t", "σ̂ = 1.0", "r = 1.5"], [1.0, 2.5]);
+}
+
+#[test]
+fn terminating_beyond_twice_sigma_hat_is_refused() {
+    let reason = refusal(&transmittance(
+        "{ single = { rule = \"terminating\", sampling.constant.value = 0.6 } }",
+    ));
+    assert_names(&reason, &["r ≤ 2", "r = 2.5"], [1.0, 2.5]);
+}
+
+#[test]
+fn terminating_at_negative_extinction_is_refused() {
+    let reason = refusal(&transmittance(
+        "{ single = { rule = \"terminating\", control.constant.value = 0.3 } }",
+    ));
+    assert_names(&reason, &["r ≥ 0", "σ_t − σ_c = -0.1"], [0.0, 1.0]);
+    let reason = refusal(&transmittance("{ decomposition.control.constant.value = 0.3 }"));
+    assert_names(&reason, &["σ_c ≤ σ_t", "-0.1"], [0.0, 1.0]);
+}
+
+#[test]
+fn a_sigma_hat_that_leaves_out_a_stretch_is_refused() {
+    let sampling = "sampling.piecewise-constant = { breaks = [0, 1, 2, 4], values = [2, 0, 2] }";
+    for estimator in [
+        "ratio",
+        "weighted-delta",
+        "woodcock",
+        "double.control.constant.value = 0.5, double",
+        "single.rule = \"clamped\", single",
+    ] {
+        let reason = refusal(&transmittance(&match estimator.split_once(", ") {
+            Some((setting, name)) => format!("{{ {setting}, {name}.{sampling} }}"),
+            None => format!("{{ {estimator}.{sampling} }}"),
+        }));
+        assert_names(&reason, &["σ̂ > 0", "σ̂ = 0"], [1.0, 2.0]);
+    }
+}
+
+#[test]
+fn a_sigma_hat_of_zero_is_welcome_where_nothing_is_left_to_sample() {
+    // The control equals σ_t on [1, 2.5], and σ̂ is zero there.
+    let text = transmittance(
+        "{ double = { \
+         control.field.medium.constant.extinction = 1.5, \
+         sampling.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [1, 0, 1] } } }",
+    );
+    let rows = rows(&text, 200_000);
+    assert_ne!(verdict(&rows[0]), Verdict::Refused, "{}", rows[0].reason);
+    assert_ne!(verdict(&rows[0]), Verdict::Fail, "{}", rows[0].reason);
+}
+
+#[test]
+fn what_an_estimator_cannot_use_is_refused() {
+    let reason = refusal(&transmittance("{ residual-ratio.control.explorers.points = 4 }"));
+    assert!(reason.contains("a constant control"), "{reason}");
+    let sloping = "sampling.piecewise-linear = { knots = [0, 4], values = [2, 3] }";
+    for name in ["next-flight", "unidirectional-mis"] {
+        let reason = refusal(&transmittance(&format!("{{ {name}.{sloping} }}")));
+        assert!(reason.contains("a constant σ̂"), "{reason}");
+    }
+    let reason = refusal(&transmittance(&format!("{{ local-majorant.{sloping} }}")));
+    assert!(reason.contains("a piecewise-constant σ̂"), "{reason}");
+    let reason = refusal(
+        "title = \"t\"\n[problem.transmittance]\nspan = [0, 4]\n\
+         medium.exponential = { extinction = 1, rate = 1 }\nestimators = [{ regular = {} }]",
+    );
+    assert!(reason.contains("constant between its breaks"), "{reason}");
+}
+
+#[test]
+fn only_the_refused_member_of_a_sweep_is_refused() {
+    let rows = rows(
+        &format!(
+            "title = \"t\"\n[problem.transmittance]\n{LAYERS}\n\
+             sweep.sampling.values = [1.4, 2]\nestimators = [{{ woodcock = {{}} }}, {{ ratio = {{}} }}]"
+        ),
+        500_000,
+    );
+    let verdicts: Vec<Verdict> = rows.iter().map(verdict).collect();
+    assert_eq!(verdicts, [Verdict::Refused, Verdict::Pass, Verdict::Pass, Verdict::Pass]);
+}
