@@ -15,6 +15,8 @@ const TAIL: f64 = 1e-13;
 /// A tail below this that halving does not shrink is rounding noise; a larger one is a function
 /// that is not resolved yet, whose tail may grow for a while. Callers keep noisier functions away.
 const NOISE: f64 = 1e-9;
+/// Panels of an adaptive mesh at most: a function that wants more is noise that slipped through.
+const MOST: usize = 50_000;
 /// Halvings of one panel at most.
 const HALVINGS: u32 = 40;
 
@@ -88,8 +90,14 @@ impl Mesh {
             adaptive: !many,
             error: 0.0,
         };
+        let spans = || ends.windows(2).map(|pair| Span::new(pair[0], pair[1]));
+        let scale =
+            |nodes: Vec<f64>| mesh.medium.extinctions(&nodes).into_iter().fold(0.0, f64::max);
+        let whole =
+            if many { 0.0 } else { spans().map(|s| scale(mesh.nodes(s))).fold(0.0, f64::max) };
+        let whole = [Tail { scale: whole, size: f64::INFINITY }];
         for span in ends.windows(2).map(|pair| Span::new(pair[0], pair[1])) {
-            mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()], &[]);
+            mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()], &whole);
         }
         mesh.error = mesh.measured_error();
         mesh
@@ -131,12 +139,14 @@ impl Mesh {
             extinction: Vec::with_capacity(self.t.len()),
             ..self.without_panels()
         };
+        // What is small beside the whole need not be smooth to its own last digits.
+        let whole = if self.adaptive { self.whole(smooth) } else { Vec::new() };
         for panel in self.panels() {
             let first = cuts.partition_point(|&cut| cut <= panel.span.from);
             let last = cuts.partition_point(|&cut| cut < panel.span.to);
             let inside = &cuts[first..last.max(first)];
             let smooth_enough =
-                || !self.adaptive || !is_rough(&self.tails(&smooth(self, panel), &[]), &[]);
+                || !self.adaptive || !is_rough(&self.tails(&smooth(self, panel), &whole), &whole);
             if inside.is_empty() && smooth_enough() {
                 fine.keep(panel);
                 continue;
@@ -146,10 +156,24 @@ impl Mesh {
             ends.push(panel.span.to);
             ends.dedup();
             for pair in ends.windows(2) {
-                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth, &[]);
+                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth, &whole);
             }
         }
         fine
+    }
+
+    /// The largest value of each function over all panels.
+    fn whole(&self, smooth: &Functions<'_>) -> Vec<Tail> {
+        let mut whole: Vec<Tail> = Vec::new();
+        for panel in self.panels() {
+            for (i, tail) in self.tails(&smooth(self, panel), &[]).into_iter().enumerate() {
+                match whole.get_mut(i) {
+                    Some(known) => known.scale = known.scale.max(tail.scale),
+                    None => whole.push(Tail { size: f64::INFINITY, ..tail }),
+                }
+            }
+        }
+        whole
     }
 
     fn without_panels(&self) -> Self {
@@ -175,12 +199,12 @@ impl Mesh {
     ///
     /// `parent` holds the tails of the panel that this one is a half of.
     fn grow(&mut self, span: Span, halvings: u32, smooth: &Functions<'_>, parent: &[Tail]) {
-        let t: Vec<f64> =
-            self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();
+        let t = self.nodes(span);
         let extinction = self.medium.extinctions(&t);
         let panel = Panel { span, t: &t, extinction: &extinction };
         let middle = span.middle();
-        let divisible = self.adaptive && span.contains_inside(middle) && halvings > 0;
+        let room = halvings > 0 && self.panels.len() < MOST;
+        let divisible = self.adaptive && room && span.contains_inside(middle);
         let tails = if divisible { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
         if is_rough(&tails, parent) {
             self.grow(Span::new(span.from, middle), halvings - 1, smooth, &tails);
@@ -188,6 +212,10 @@ impl Mesh {
         } else {
             self.keep(panel);
         }
+    }
+
+    fn nodes(&self, span: Span) -> Vec<f64> {
+        self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect()
     }
 
     fn tails(&self, functions: &[Vec<f64>], parent: &[Tail]) -> Vec<Tail> {
