@@ -20,10 +20,10 @@ fn transmittance(estimators: &str) -> String {
 #[test]
 fn correct_estimators_pass() {
     let text = transmittance(
-        "{ woodcock = {} }, { ratio = {} }, { residual-ratio = {} }, { next-flight = {} }, \
+        "{ woodcock = {} }, { ratio = {} }, { residual-ratio.sampling.constant.value = 4.0 }, { next-flight = {} }, \
          { unidirectional-mis = {} }, { single.rule = \"terminating\" }, { closed-form = {} }, \
          { single = { rule = \"non-terminating\", albedo = 0.5 } }, { regular = {} }, \
-         { double.control.explorers.points = 9 }, { decomposition = {} }, \
+         { double = { control.explorers.points = 9, sampling.constant.value = 8.0 } }, { decomposition = {} }, \
          { local-majorant.sampling.local-majorants.segments = 8 }",
     );
     for row in rows(&text, 1_000_000) {
@@ -222,4 +222,16 @@ fn only_the_refused_member_of_a_sweep_is_refused() {
     );
     let verdicts: Vec<Verdict> = rows.iter().map(verdict).collect();
     assert_eq!(verdicts, [Verdict::Refused, Verdict::Pass, Verdict::Pass, Verdict::Pass]);
+}
+
+#[test]
+fn steep_decays_are_resolved() {
+    // Free flight through σ_t = 600 on [0, 1]: mean depth (1 − e⁻⁶⁰⁰)/600. Walks that end after two
+    // lookups on average: σ̂ = 2σ_t.
+    let text = "title = \"t\"\n[problem.free-flight]\nmedium.constant.extinction = 600\n\
+                span = [0, 1]\nestimators = [{ woodcock.sampling.constant.value = 1200 }]";
+    let row = &rows(text, 200_000)[0];
+    assert!((row.truth.expect("known") * 600.0 - 1.0).abs() < 1e-12);
+    assert!((row.predicted_lookups.expect("known") - 2.0).abs() < 1e-10);
+    assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason);
 }

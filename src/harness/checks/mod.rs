@@ -136,6 +136,12 @@ impl Comparison {
         self.difference / self.standard_error
     }
 
+    /// Whether the difference is within the prediction's own error.
+    #[must_use]
+    pub fn is_rounding(&self) -> bool {
+        self.difference.abs() <= self.allowance
+    }
+
     /// The smallest difference that would have been seen.
     #[must_use]
     pub fn detectable(&self, limits: &Limits) -> f64 {
