@@ -7,6 +7,9 @@
 //! Exact for every field whose optical depth is; where that has no closed inverse, the root is
 //! bracketed to the last bits. It evaluates the optical depth, never σ_t: no lookups.
 //!
+//! The optical depth is theory, which uses the platform's library: the last bits of these draws, and
+//! of these alone, may differ between machines.
+//!
 //! Source: Szirmay-Kalos et al. 2017, Eq. 4.
 
 use crate::catalogue::Settings;
