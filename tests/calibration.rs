@@ -11,7 +11,12 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trueflight::harness::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;
 
-const DRAWS: u64 = 50_000;
+/// Draws per experiment; `TRUEFLIGHT_DRAWS` asks for another number, for long campaigns.
+fn draws() -> u64 {
+    let wished = std::env::var("TRUEFLIGHT_DRAWS").ok();
+    wished.map_or(50_000, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
+}
+
 /// The band holds all but a thousandth: half of it on either side.
 const OUTSIDE: f64 = 1e-3;
 
@@ -60,6 +65,8 @@ fn judge(kind: &str, scores: &[(String, f64)]) -> Vec<String> {
     let law = ChiSquared::new(n).expect("a law");
     let [low, high] = [0.5 * OUTSIDE, 1.0 - 0.5 * OUTSIDE].map(|p| law.inverse_cdf(p) / n);
     let square = scores.iter().map(|(_, z)| z * z).sum::<f64>() / n;
+    let largest = scores.iter().fold(0.0f64, |most, (_, z)| most.max(z.abs()));
+    println!("{n} {kind}: mean z² {square:.3} in [{low:.3}, {high:.3}], largest |z| {largest:.2}");
     if !(low..=high).contains(&square) {
         wrong.push(format!("{kind}: mean z² of {n} is {square:.3}, outside [{low:.3}, {high:.3}]"));
     }
@@ -68,7 +75,7 @@ fn judge(kind: &str, scores: &[(String, f64)]) -> Vec<String> {
 
 #[test]
 fn z_scores_of_all_cases_have_mean_square_one() {
-    let record = judged(&shipped(), &options(1, DRAWS));
+    let record = judged(&shipped(), &options(1, draws()));
     let experiments = experiments(&record);
     let scores = |z: fn(&Row) -> Option<f64>, wanted: fn(&Row) -> bool| {
         let rows = experiments.iter().filter(|(_, row)| wanted(row));

@@ -235,3 +235,17 @@ fn steep_decays_are_resolved() {
     assert!((row.predicted_lookups.expect("known") - 2.0).abs() < 1e-10);
     assert_eq!(verdict(row), Verdict::Pass, "{}", row.reason);
 }
+
+#[test]
+fn a_sampling_extinction_that_touches_zero_is_refused() {
+    let refused = |medium: &str| {
+        let text = format!(
+            "title = \"t\"\n[problem.transmittance]\nmedium.piecewise-linear = {medium}\nspan = [0, 1]\n\
+             sampling.piecewise-linear = {{ knots = [0, 1], values = [0, 5] }}\n\
+             estimators = [{{ ratio = {{}} }}]"
+        );
+        verdict(&rows(&text, 1000)[0]) == Verdict::Refused
+    };
+    assert!(refused("{ knots = [0, 1], values = [0.2, 0.2] }"));
+    assert!(!refused("{ knots = [0, 1], values = [0, 0.2] }"));
+}

@@ -67,6 +67,7 @@ impl<P: Problem> Setup<P> {
                 });
                 residual.filter(|&(_, size)| size > 0.0)
             });
+        let blind = blind.or_else(|| self.touched_zero());
         match blind {
             None => Ok(()),
             Some((at, size)) => Err(Refusal::Inequality {
@@ -75,6 +76,24 @@ impl<P: Problem> Setup<P> {
                 at,
             }),
         }
+    }
+
+    /// A knot at which σ̂ falls to zero while the residual does not: collisions are then so rare
+    /// beside what they must carry that the variance is infinite.
+    fn touched_zero(&self) -> Option<(f64, f64)> {
+        let medium = self.mesh.medium();
+        let support = self.mesh.support();
+        let size = |t: f64| self.residual(t, medium.extinction(t)).abs();
+        self.sampling.knots().windows(2).find_map(|ends| {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let inset = 1e-9 * (ends[1] - ends[0]);
+            // Where the residual vanishes with σ̂ their ratio stays what it is in the middle.
+            let usual = |t: f64| size(middle).max(size(t)) / self.sampling.value(middle);
+            let blows_up = |t: &f64| size(*t) / self.sampling.value(*t) > 1e6 * usual(*t);
+            let corners = [ends[0] + inset, ends[1] - inset];
+            let inside = corners.into_iter().filter(|&t| support.contains_inside(t));
+            inside.filter(blows_up).map(|t| (t, size(t))).next()
+        })
     }
 
     /// `0 ≤ σ_t − σ_c ≤ σ̂` everywhere: σ̂ is a majorant.

@@ -99,7 +99,7 @@ impl Mesh {
         for span in ends.windows(2).map(|pair| Span::new(pair[0], pair[1])) {
             mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()], &whole);
         }
-        mesh.error = mesh.measured_error();
+        mesh.error += mesh.measured_error();
         mesh
     }
 
@@ -204,9 +204,16 @@ impl Mesh {
         let panel = Panel { span, t: &t, extinction: &extinction };
         let middle = span.middle();
         let room = halvings > 0 && self.panels.len() < MOST;
-        let divisible = self.adaptive && room && span.contains_inside(middle);
-        let tails = if divisible { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
-        if is_rough(&tails, parent) {
+        let tails =
+            if self.adaptive { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
+        let rough = is_rough(&tails, parent);
+        if rough && !(room && span.contains_inside(middle)) {
+            // What stays unresolved is an error of the integrals, and is said.
+            let share = span.length() / self.support().length();
+            let left = tails.iter().map(|tail| tail.size / tail.scale).fold(0.0, f64::max);
+            self.error += share * left;
+        }
+        if rough && room && span.contains_inside(middle) {
             self.grow(Span::new(span.from, middle), halvings - 1, smooth, &tails);
             self.grow(Span::new(middle, span.to), halvings - 1, smooth, &tails);
         } else {
