@@ -33,6 +33,18 @@ pub struct Draw<V> {
     pub value: V,
     /// How many times σ_t was evaluated.
     pub lookups: u32,
+    /// By how much the draw breaks a law that holds for every single draw, relative to what the law
+    /// is about: rounding where all is well, and 0 where there is no such law.
+    pub defect: f64,
+}
+
+impl<V> Draw<V> {
+    /// A draw of an estimator without a law that holds draw by draw.
+    #[inline(always)]
+    #[must_use]
+    pub fn free(value: V, lookups: u32) -> Self {
+        Self { value, lookups, defect: 0.0 }
+    }
 }
 
 /// What an estimator takes beside the medium.

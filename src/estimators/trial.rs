@@ -6,13 +6,15 @@ use crate::problems::Problem;
 use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
 
-/// A buffer of draws, one array per channel and one for the lookups.
+/// A buffer of draws: one array per channel, one for the lookups, one for the defects.
 #[derive(Debug, Clone)]
 pub struct DrawBuffer {
     /// `values[channel][draw]`.
     pub values: Vec<Vec<f64>>,
     /// `lookups[draw]`.
     pub lookups: Vec<u32>,
+    /// `defects[draw]`, see [`Draw::defect`].
+    pub defects: Vec<f64>,
 }
 
 impl DrawBuffer {
@@ -23,12 +25,15 @@ impl DrawBuffer {
     #[must_use]
     pub fn new(channels: usize) -> Self {
         let values = vec![Vec::with_capacity(Self::LENGTH); channels];
-        Self { values, lookups: Vec::with_capacity(Self::LENGTH) }
+        let (lookups, defects) =
+            (Vec::with_capacity(Self::LENGTH), Vec::with_capacity(Self::LENGTH));
+        Self { values, lookups, defects }
     }
 
     fn clear(&mut self) {
         self.values.iter_mut().for_each(Vec::clear);
         self.lookups.clear();
+        self.defects.clear();
     }
 
     #[inline]
@@ -37,6 +42,7 @@ impl DrawBuffer {
             channel.push(value);
         }
         self.lookups.push(draw.lookups);
+        self.defects.push(draw.defect);
     }
 }
 

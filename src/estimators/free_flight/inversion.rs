@@ -47,6 +47,6 @@ impl Estimator<FreeFlight> for Inversion {
         let medium = setup.problem.medium();
         let ray = medium.span();
         let end = medium.free_flight(exponential(rng)).unwrap_or(ray.to);
-        Draw { value: [end - ray.from], lookups: 0 }
+        Draw::free([end - ray.from], 0)
     }
 }

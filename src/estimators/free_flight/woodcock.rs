@@ -52,9 +52,9 @@ impl Estimator<FreeFlight> for Woodcock {
         while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
             lookups += 1;
             if unit(rng) * sampling < medium.extinction(cursor.t) {
-                return Draw { value: [cursor.t - ray.from], lookups };
+                return Draw::free([cursor.t - ray.from], lookups);
             }
         }
-        Draw { value: [ray.length()], lookups }
+        Draw::free([ray.length()], lookups)
     }
 }

@@ -51,6 +51,6 @@ impl Estimator<Transmittance> for ClosedForm {
         _: &M,
         _: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        Draw { value: [setup.transmittance], lookups: 0 }
+        Draw::free([setup.transmittance], 0)
     }
 }

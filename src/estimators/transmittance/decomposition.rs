@@ -85,10 +85,10 @@ impl Estimator<Transmittance> for Decomposition {
             }
             lookups += 1;
             if unit(rng) < (medium.extinction(cursor.t) - control) / sampling {
-                return Draw { value: [0.0], lookups };
+                return Draw::free([0.0], lookups);
             }
         }
         let passed = support.from + flight >= support.to;
-        Draw { value: [f64::from(u8::from(passed))], lookups }
+        Draw::free([f64::from(u8::from(passed))], lookups)
     }
 }

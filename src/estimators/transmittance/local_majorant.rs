@@ -63,10 +63,10 @@ impl Estimator<Transmittance> for LocalMajorant {
                 }
                 lookups += 1;
                 if unit(rng) < medium.extinction(t) / majorant {
-                    return Draw { value: [0.0], lookups };
+                    return Draw::free([0.0], lookups);
                 }
             }
         }
-        Draw { value: [1.0], lookups }
+        Draw::free([1.0], lookups)
     }
 }

@@ -68,6 +68,6 @@ impl Estimator<Transmittance> for NextFlight {
             lookups += 1;
             score += weight * elementary::exp(-sampling * (end - cursor.t));
         }
-        Draw { value: [score], lookups }
+        Draw::free([score], lookups)
     }
 }

@@ -101,6 +101,6 @@ impl Estimator<Transmittance> for RayMarching {
     ) -> Draw<[f64; 1]> {
         let u = if self.jitter { unit(rng) } else { 0.5 };
         let depth = self.depth(setup, u, |t| medium.extinction(t));
-        Draw { value: [elementary::exp(-depth)], lookups: self.steps }
+        Draw::free([elementary::exp(-depth)], self.steps)
     }
 }

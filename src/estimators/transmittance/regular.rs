@@ -63,6 +63,6 @@ impl Estimator<Transmittance> for Regular {
             weight *= elementary::exp(-extinction * panel.span.length());
             lookups += 1;
         }
-        Draw { value: [weight], lookups }
+        Draw::free([weight], lookups)
     }
 }

@@ -73,6 +73,6 @@ impl Estimator<Transmittance> for UnidirectionalMis {
             lookups += 1;
             here = share(sampling, cursor.t);
         }
-        Draw { value: [score + 2.0 * weight * here], lookups }
+        Draw::free([score + 2.0 * weight * here], lookups)
     }
 }

@@ -20,6 +20,7 @@
 use super::portrait::{self, Portrait};
 use crate::catalogue::Settings;
 use crate::estimators::rules::Weight;
+use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Medium};
 use crate::numeric::{Span, elementary};
@@ -85,14 +86,17 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         };
         let mut cursor = setup.sampling.begin();
         let mut weight = 1.0;
+        let mut books = Books::open(weight);
         let mut lookups = 0;
         while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
             pass(cursor.t, weight);
             let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
-            weight *= 1.0 - residual / sampling;
+            let ratio = residual / sampling;
+            books.hand_over(weight, ratio, 1.0);
+            weight *= 1.0 - ratio;
             lookups += 1;
         }
         pass(f64::INFINITY, weight);
-        Draw { value: values, lookups }
+        Draw { value: values, lookups, defect: books.defect(weight) }
     }
 }
