@@ -69,6 +69,8 @@ impl Inputs {
 pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// What it takes.
     const INPUTS: Inputs;
+    /// Whether its draws know their [`Draw::defect`].
+    const KEEPS_BOOKS: bool = false;
 
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
     /// it.

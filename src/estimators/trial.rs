@@ -50,6 +50,11 @@ impl DrawBuffer {
 pub trait Experiment: Send + Sync {
     /// Replaces the buffer's draws by the next `count` of the stream: one virtual call a buffer.
     fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer);
+
+    /// See [`Estimator::KEEPS_BOOKS`].
+    fn keeps_books(&self) -> bool {
+        false
+    }
 }
 
 /// An estimator as written in a case, with its type erased.
@@ -119,6 +124,10 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
     fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
         self.setup.problem.medium().profile().visit(Fill { trial: self, rng, count, buffer });
+    }
+
+    fn keeps_books(&self) -> bool {
+        E::KEEPS_BOOKS
     }
 }
 

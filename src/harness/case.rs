@@ -41,6 +41,14 @@ pub struct Tolerance {
     pub lookups: Option<f64>,
 }
 
+impl Tolerance {
+    /// Whether the case has any.
+    #[must_use]
+    pub fn says_something(&self) -> bool {
+        *self != Self::default()
+    }
+}
+
 impl Case {
     /// Reads a case.
     ///

@@ -2,14 +2,16 @@
 
 use rayon::prelude::*;
 
-use super::checks::{self, Evidence, Subject, lookups, mean, variance};
-use super::curves;
-use super::plan::{Plan, Planned, PlannedCase};
+use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
-    Anatomy, CaseRecord, Finding, MeasuredPoint, Record, Results, Row, Timing, Verdict,
+    Anatomy, CaseRecord, Finding, Gate, MeasuredPoint, Record, Results, Row, SCHEMA, Timing,
+    Verdict,
 };
 use super::run::{Drawn, Draws};
+use super::{curves, findings, summary};
+use crate::stats::Tally;
 use crate::theory::optimum::Optimum;
+use crate::theory::{Channel, Prediction};
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
 #[must_use]
@@ -52,19 +54,32 @@ pub fn predicted(plan: &Plan) -> Record {
 #[must_use]
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
-    let parts: Vec<_> = pairs
+    let mut findings: Vec<Vec<Vec<Finding>>> = pairs
         .par_iter()
         .map(|(case, drawn)| {
+            let both = case.experiments.par_iter().zip(drawn.par_iter());
+            both.map(|(planned, drawn)| findings::of_experiment(plan, case, planned, drawn)).collect()
+        })
+        .collect();
+    findings::judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
+    let parts: Vec<_> = pairs
+        .par_iter()
+        .zip(&findings)
+        .map(|((case, drawn), findings)| {
             let both = case.experiments.iter().zip(drawn.iter());
-            let rows = both.clone().flat_map(|(planned, drawn)| judge(plan, case, planned, drawn));
+            let rows = both.clone().zip(findings).flat_map(|((planned, drawn), findings)| {
+                drawn_rows(plan, case, planned, drawn, findings)
+            });
             let rows: Vec<Row> = rows.collect();
-            let sweep = curves::sweep(case.case, plan.options.seed, Some(plan.limits.z));
+            let sweep = curves::sweep(case.case, plan.options.seed, Some(plan.levels.z));
             let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
             (rows, sweep, anatomy)
         })
         .collect();
     let mut record = record(plan, parts.into_iter());
     record.results.cut_by_time = draws.cut_by_time;
+    record.results.cut_by_budget = draws.cut_by_budget;
+    summary::complete(&mut record.results);
     record.timing.seconds = seconds;
     record.timing.rows = pairs
         .iter()
@@ -93,6 +108,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             title: planned.case.title.clone(),
             problem: planned.case.problem.clone(),
             medium: planned.case.scenario.medium().to_owned(),
+            visible_bias: None,
             rows,
             sweep,
             anatomy,
@@ -103,12 +119,25 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         seconds: 0.0,
         rows: cases.iter().map(|case| vec![None; case.rows.len()]).collect(),
     };
+    let levels = &plan.levels;
+    let gate = Gate {
+        scalars: levels.scalars,
+        laws: levels.laws,
+        biased: levels.biased,
+        beta: MISS,
+        ln_e_limit: levels.ln_fail,
+        ln_p_limit: levels.ln_pass,
+        ..Gate::default()
+    };
     let results = Results {
+        schema: SCHEMA,
         version: env!("CARGO_PKG_VERSION").to_owned(),
         seed: plan.options.seed,
         alpha: plan.options.alpha,
-        checks: plan.hypotheses,
+        streams: "PCG XSL RR 128/64 by address (seed, experiment, block, lane)".to_owned(),
+        gate,
         cut_by_time: false,
+        cut_by_budget: false,
         cases,
     };
     Record { results, timing }
@@ -157,77 +186,91 @@ fn finite(x: Option<f64>) -> Option<f64> {
 }
 
 /// The rows of an experiment with what was drawn and found.
-fn judge(plan: &Plan, case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Vec<Row> {
+fn drawn_rows(
+    plan: &Plan,
+    case: &PlannedCase,
+    planned: &Planned,
+    drawn: &Drawn,
+    findings: &[Finding],
+) -> Vec<Row> {
     let mut rows = theory_rows(planned);
-    let Some(mut subject) = planned.subject(case.case) else { return rows };
-    // A time limit may have left fewer draws than planned.
-    subject.draws = drawn.lookups.draws;
-    let findings = findings(plan, &subject, planned, drawn);
-    if subject.draws == 0 {
-        for row in &mut rows {
-            row.findings.clone_from(&findings);
-            (row.verdict, row.reason) = (Some(Verdict::Inconclusive), worst(&findings).1);
+    let Ok(ready) = &planned.outcome else { return rows };
+    let prediction = &ready.prediction;
+    let command = command(plan, case, planned);
+    for (index, row) in rows.iter_mut().enumerate() {
+        let channel = &prediction.channels[index];
+        row.command.clone_from(&command);
+        row.stream = Some(planned.address.experiment);
+        row.drawn = Some(drawn.draws);
+        if let Some(tally) = drawn.tallies.get(index) {
+            measure(row, channel, tally);
+            measure_lookups(row, prediction, drawn);
         }
-        return rows;
-    }
-    let channels = subject.prediction.channels.iter();
-    for ((row, tally), channel) in rows.iter_mut().zip(&drawn.tallies).zip(channels) {
-        let n = tally.draws as f64;
-        let unit = channel.truth.value;
-        let moments = tally.moments();
-        row.draws = Some(tally.draws);
-        row.mean = finite(moments.map(|m| channel.mean.value + m.mean * unit));
-        row.variance = finite(moments.and_then(|m| m.variance).map(|v| v * unit * unit));
-        row.standard_error = row.variance.map(|v| (v / n).sqrt());
-        row.variance_deviation =
-            finite(channel.moments.and_then(|m| {
-                Some(m.spread_of_sample_variance(n)?.max(0.0).sqrt() * m.variance())
-            }));
-        let certain = mean::is_certain(&subject, channel);
-        let compared = mean::compare(&subject, channel, tally).filter(|_| !certain);
-        row.z_mean = finite(compared.map(|comparison| comparison.z()));
-        row.detectable_bias =
-            finite(compared.map(|comparison| comparison.detectable(&plan.limits)));
-        row.z_variance =
-            finite(variance::compare(&subject, channel, tally).map(|comparison| comparison.z()));
-        let lookups = drawn.lookups.moments();
-        let predicted = subject.prediction.lookups.map_or(0.0, |law| law.mean);
-        row.lookups_per_draw = lookups.map(|m| m.mean + predicted);
-        row.z_lookups = lookups::compare(&subject, &drawn.lookups).map(|comparison| comparison.z());
-        row.lookups_deviation = subject.prediction.lookups.map(|law| (law.variance / n).sqrt());
-        let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
-        row.fom = finite(fom.filter(|_| !certain));
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
         let about =
             |finding: &&Finding| finding.channel.is_empty() || finding.channel == channel.name;
         row.findings = findings.iter().filter(about).cloned().collect();
+        for finding in &mut row.findings {
+            finding.z = match finding.check.as_str() {
+                "mean" => row.z_mean,
+                "variance" => row.z_variance,
+                "lookups" => row.z_lookups,
+                _ => None,
+            };
+        }
+        let gate = |check: &str| row.findings.iter().find(|f| f.check == check)?.gate;
+        row.detectable_bias = gate("mean").map(|gate| gate.tolerance);
         let (verdict, reason) = worst(&row.findings);
-        row.verdict = Some(verdict);
-        row.reason = reason;
+        (row.verdict, row.reason) = (Some(verdict), reason);
     }
     rows
 }
 
-fn findings(plan: &Plan, subject: &Subject, planned: &Planned, drawn: &Drawn) -> Vec<Finding> {
-    let mut findings = Vec::new();
-    for (index, check) in checks::ALL.iter().enumerate() {
-        if check.hypotheses(subject) == 0 {
-            continue;
-        }
-        let none = Vec::new();
-        let sums = drawn.sums.get(index).unwrap_or(&none);
-        let evidence = Evidence { tallies: &drawn.tallies, lookups: &drawn.lookups, sums };
-        if subject.draws > 0 {
-            findings.extend(check.judge(subject, &plan.limits, &evidence));
-        }
+/// Mean and variance of the fixed draws, and their z-scores.
+fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
+    let n = tally.draws as f64;
+    let unit = channel.truth.value;
+    let moments = tally.moments();
+    row.draws = Some(tally.draws);
+    row.mean = finite(moments.map(|m| channel.mean.value + m.mean * unit));
+    row.variance = finite(moments.and_then(|m| m.variance).map(|v| v * unit * unit));
+    row.standard_error = row.variance.map(|v| (v / n).sqrt());
+    let Some(predicted) = channel.moments.filter(|m| m.relative[0] > CERTAIN) else { return };
+    row.variance_deviation = finite(
+        predicted.spread_of_sample_variance(n).map(|s| s.max(0.0).sqrt() * predicted.variance()),
+    );
+    let spread = (predicted.variance() / n).sqrt();
+    row.z_mean = finite(row.mean.map(|mean| (mean - channel.truth.value) / spread));
+    let kurtosis = predicted.kurtosis().filter(|&kurtosis| kurtosis > 1.0 + 1e-6);
+    let square = tally.mean_square().map(|square| square * unit * unit / predicted.variance());
+    row.z_variance = finite(square.zip(kurtosis).map(|(square, kurtosis)| {
+        (square - 1.0) / ((kurtosis - 1.0) / n).sqrt()
+    }));
+}
+
+fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
+    let n = drawn.lookups.draws as f64;
+    let law = prediction.lookups.as_ref();
+    let observed = drawn.lookups.moments().map(|m| m.mean);
+    row.lookups_per_draw = observed.map(|mean| mean + law.map_or(0.0, |law| law.mean));
+    if let Some(law) = law.filter(|law| law.variance > 0.0) {
+        let deviation = (law.variance / n).sqrt();
+        row.lookups_deviation = Some(deviation);
+        row.z_lookups = observed.map(|mean| mean / deviation);
     }
-    if planned.outcome.is_ok() && findings.is_empty() {
-        let reason = "the time limit came before the first draw".to_owned();
-        let (check, channel) = ("mean".into(), String::new());
-        let verdict = Verdict::Inconclusive;
-        findings.push(Finding { check, channel, z: None, p: None, verdict, reason });
-    }
-    findings
+    let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
+    row.fom = finite(fom.filter(|_| row.z_mean.is_some()));
+}
+
+/// A relative variance below this is rounding.
+const CERTAIN: f64 = 1e-20;
+
+/// The command that draws an experiment again.
+fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
+    let name = &case.case.name;
+    let estimator = &planned.names.estimator;
+    let (seed, draws) = (plan.options.seed, planned.draws);
+    format!("trueflight run {name} --filter \"*:{estimator}\" --seed {seed} --draws {draws}")
 }
 
 /// Fail before inconclusive before underpowered before pass, with every reason of that verdict.

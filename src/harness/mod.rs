@@ -7,6 +7,8 @@
 pub mod case;
 pub mod checks;
 pub mod curves;
+pub mod draw;
+pub mod findings;
 pub mod filter;
 pub mod judge;
 pub mod plan;
@@ -15,6 +17,7 @@ pub mod run;
 pub mod scenario;
 pub mod source;
 pub mod suite;
+pub mod summary;
 pub mod sweep;
 mod written;
 

@@ -1,43 +1,127 @@
-//! A plan: every experiment of a run, prepared, with its draws and its share of the error rate.
+//! A plan: every experiment of a run, prepared, with its questions and their share of the error
+//! rate, all before the first draw.
+//!
+//! ```text
+//! n        what `--draws` or the case says, or what the case's tolerances need
+//! fixed    ⌈n/2⌉ in whole blocks: the draws of p-values and z-scores, never a number that data chose
+//! horizon  60/27 n: the gate may go on that far
+//! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm
+//! ```
 
 use rayon::prelude::*;
 
 use super::case::Case;
-use super::checks::{self, Kind, Limits, Statistic, Subject};
+use super::checks::{self, Kind, Question, Scalar, Subject};
 use super::filter::Filter;
 use super::scenario::{Names, Prepared, Ready, Variation};
-use crate::estimators::Refusal;
-use crate::rng::{Address, name_hash};
-use crate::stats::normal;
+use crate::estimators::{DrawBuffer, Refusal};
+use crate::rng::{Address, PILOT, Stream, name_hash};
+use crate::stats::{gate, normal};
 
+/// Draws per block, always.
+pub const BLOCK: u64 = 1 << 14;
 /// The share of the error rate that goes to tests of whole laws.
 const LAW_SHARE: f64 = 0.2;
-/// The chance of missing a difference that matters.
-const MISS: f64 = 0.01;
+/// β, the chance that a check passes although the bias is as large as its tolerance.
+pub const MISS: f64 = 0.01;
+/// Draws per experiment where neither the options nor the case say.
+pub const DRAWS: u64 = 4_000_000;
+/// Draws that estimate the variance of a forced experiment, for which theory has none.
+const PILOT_DRAWS: usize = 4096;
 
 /// What a run is asked to do.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The seed of all random numbers.
     pub seed: u64,
-    /// Draws per experiment, whatever the cases say.
-    pub draws: Option<u64>,
+    /// How many draws.
+    pub draws: Draws,
     /// The chance that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
     pub seconds: Option<f64>,
+    /// Stop drawing after this many draws of all experiments together.
+    pub budget: Option<u64>,
+    /// Draw exactly what is planned: the gate stops nothing.
+    pub fixed: bool,
+    /// Whether each check that is underpowered makes its experiment inconclusive.
+    pub strict: bool,
     /// Only these experiments.
     pub filter: Option<Filter>,
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        Self { seed: 1, draws: None, alpha: 1e-3, seconds: None, filter: None }
+/// How many draws an experiment makes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Draws {
+    /// So many, whatever the cases say.
+    Exactly(u64),
+    /// What the case says; without a word of it, [`DRAWS`].
+    Case,
+    /// The same, but at most so many.
+    AtMost(u64),
+}
+
+impl Draws {
+    fn of(self, case: Option<u64>) -> u64 {
+        match self {
+            Self::Exactly(draws) => draws,
+            Self::Case => case.unwrap_or(DRAWS),
+            Self::AtMost(most) => case.unwrap_or(most).min(most),
+        }
     }
 }
 
-/// Draws per experiment where neither the options nor the case say.
-pub const DRAWS: u64 = 4_000_000;
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            seed: 1,
+            draws: Draws::Case,
+            alpha: 1e-3,
+            seconds: None,
+            budget: None,
+            fixed: false,
+            strict: false,
+            filter: None,
+        }
+    }
+}
+
+/// The levels that the run's questions share, fixed before the first draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Levels {
+    /// How many scalars go through the gate.
+    pub scalars: usize,
+    /// How many p-values there are.
+    pub laws: usize,
+    /// How many experiments are declared biased: they have an α of their own.
+    pub biased: usize,
+    /// A scalar fails at `ln E ≥ ln(K/(0.8 α))`.
+    pub ln_fail: f64,
+    /// A declared bias is shown at `ln E ≥ ln(K_biased/α)`.
+    pub ln_biased: f64,
+    /// A scalar passes at `ln P± ≥ ln(1/β)`.
+    pub ln_pass: f64,
+    /// What the p-values share, by Holm.
+    pub law_alpha: f64,
+    /// The z-score that the gate's level corresponds to, for plots.
+    pub z: f64,
+}
+
+impl Levels {
+    fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
+        let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
+        Self {
+            scalars,
+            laws,
+            biased,
+            ln_fail: -share.ln(),
+            ln_biased: (biased.max(1) as f64 / alpha).ln(),
+            ln_pass: -MISS.ln(),
+            law_alpha: alpha * LAW_SHARE,
+            z: normal::two_sided(share),
+        }
+    }
+}
 
 /// A run, ready to draw.
 pub struct Plan<'a> {
@@ -45,10 +129,8 @@ pub struct Plan<'a> {
     pub options: Options,
     /// The cases.
     pub cases: Vec<PlannedCase<'a>>,
-    /// The levels that the checks share.
-    pub limits: Limits,
-    /// How many hypotheses the run tests.
-    pub hypotheses: usize,
+    /// The levels that the questions share.
+    pub levels: Levels,
 }
 
 /// A case with its experiments.
@@ -69,28 +151,35 @@ pub struct Planned {
     pub names: Names,
     /// Where its random numbers are.
     pub address: Address,
-    /// How many draws it makes.
+    /// n: how many draws are planned.
     pub draws: u64,
+    /// How many of the first draws the p-values and z-scores get.
+    pub fixed: u64,
+    /// How many draws the gate may take.
+    pub horizon: u64,
     /// Whether the case declares it biased.
     pub expect_biased: bool,
     /// What draws and what theory says, or why it is refused.
     pub outcome: Result<Ready, Refusal>,
-    /// For each check, the sums it needs.
-    pub statistics: Vec<Option<Box<dyn Statistic>>>,
+    /// What is asked of the draws.
+    pub questions: Vec<Question>,
+    /// Where an address finds its stream.
+    pub streams: fn(Address) -> Stream,
 }
 
 impl Planned {
-    /// What the checks know of it; `None` if it is refused.
-    #[must_use]
-    pub fn subject<'p>(&'p self, case: &Case) -> Option<Subject<'p>> {
-        let ready = self.outcome.as_ref().ok()?;
-        Some(Subject {
-            prediction: &ready.prediction,
-            draws: self.draws,
-            tolerance: case.tolerance,
-            expect_biased: self.expect_biased,
-            allow_underpowered: case.allow_underpowered,
+    /// The questions that go through the gate.
+    pub fn scalars(&self) -> impl Iterator<Item = (&Question, &Scalar)> {
+        self.questions.iter().filter_map(|question| match &question.kind {
+            Kind::Scalar(scalar) => Some((question, scalar)),
+            _ => None,
         })
+    }
+
+    /// The stream of a block.
+    #[must_use]
+    pub fn stream(&self, block: u64) -> Stream {
+        (self.streams)(Address { block, ..self.address })
     }
 }
 
@@ -98,28 +187,35 @@ impl<'a> Plan<'a> {
     /// Prepares every experiment of the cases.
     #[must_use]
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
-        let cases: Vec<PlannedCase> = cases
+        let mut cases: Vec<PlannedCase> = cases
             .par_iter()
             .map(|case| plan_case(case, options))
             .filter(|case| !case.experiments.is_empty())
             .collect();
-        let mut counts = [0_usize; 2];
-        for planned in &cases {
-            for experiment in &planned.experiments {
-                let Some(subject) = experiment.subject(planned.case) else { continue };
-                for check in checks::ALL {
-                    counts[usize::from(check.kind() == Kind::Law)] += check.hypotheses(&subject);
+        let ready = |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
+        let ready: usize = cases.iter().map(ready).sum();
+        // A budget is shared out evenly; what is saved goes to those that are still open.
+        let share = options.budget.map(|budget| (budget / ready.max(1) as u64).max(2));
+        cases.par_iter_mut().for_each(|planned_case| {
+            let case = planned_case.case;
+            for planned in &mut planned_case.experiments {
+                planned.draws = share.map_or(planned.draws, |share| planned.draws.min(share));
+                planned.ask(case, options);
+            }
+        });
+        let mut counts = [0; 3];
+        for experiment in cases.iter().flat_map(|case| &case.experiments) {
+            for question in &experiment.questions {
+                match question.kind {
+                    Kind::Scalar(_) if question.expects_bias => counts[2] += 1,
+                    Kind::Scalar(_) => counts[0] += 1,
+                    Kind::Law(_) | Kind::Inspection(_) => counts[1] += 1,
+                    Kind::Always(_) | Kind::Untestable(_) => {}
                 }
             }
         }
-        let [scalars, laws] = counts.map(|count| count.max(1) as f64);
-        let limits = Limits {
-            z: normal::two_sided(options.alpha * (1.0 - LAW_SHARE) / scalars),
-            p: options.alpha * LAW_SHARE / laws,
-            power: normal::upper_quantile(MISS),
-        };
-        let hypotheses = counts.iter().sum();
-        Self { options: options.clone(), cases, limits, hypotheses }
+        let levels = Levels::new(options.alpha, counts);
+        Self { options: options.clone(), cases, levels }
     }
 
     /// All experiments with their case.
@@ -144,7 +240,7 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
             filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
         });
     }
-    let draws = options.draws.or(case.draws).unwrap_or(DRAWS);
+    let most = options.draws.of(case.draws);
     let plan = |&(estimator, variation): &(usize, Variation)| {
         let mut names = case.scenario.names(estimator, variation);
         // Two estimators may be called the same, as where each has a field of its own as control.
@@ -156,29 +252,99 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
         let pilots = pilot_address(options.seed, case, estimator);
         let Prepared { outcome, expect_biased } =
             case.scenario.prepare(estimator, variation, pilots);
-        let mut planned = Planned {
+        Planned {
             estimator,
             variation,
             names,
             address,
-            draws,
+            draws: most,
+            fixed: most,
+            horizon: most,
             expect_biased,
             outcome,
-            statistics: Vec::new(),
-        };
-        planned.statistics = match planned.subject(case) {
-            Some(subject) => checks::ALL
-                .iter()
-                .map(|check| {
-                    (check.hypotheses(&subject) > 0).then(|| check.statistic(&subject)).flatten()
-                })
-                .collect(),
-            None => Vec::new(),
-        };
-        planned
+            questions: Vec::new(),
+            streams: Address::stream,
+        }
     };
     let experiments = points.par_iter().map(plan).collect();
     PlannedCase { case, experiments }
+}
+
+impl Planned {
+    /// Asks all checks, first for the draws that the case's tolerances need, then for good.
+    fn ask(&mut self, case: &Case, options: &Options) {
+        let Ok(ready) = &self.outcome else { return };
+        let most = self.draws;
+        let forced = self.expect_biased
+            && ready.prediction.channels.iter().any(|channel| channel.moments.is_none());
+        let mut subject = Subject {
+            prediction: &ready.prediction,
+            draws: most,
+            most,
+            fixed: fixed(most),
+            tolerance: case.tolerance,
+            expect_biased: self.expect_biased,
+            keeps_books: ready.experiment.keeps_books(),
+            pilot_variance: forced.then(|| self.pilot_variance(ready)),
+        };
+        if case.tolerance.says_something() {
+            let needed = needed(&checks::questions(&subject), most);
+            subject.draws = needed;
+            subject.fixed = fixed(needed);
+        }
+        if options.fixed {
+            subject.fixed = subject.draws;
+        }
+        let mut questions = checks::questions(&subject);
+        let decides = |question: &Question| {
+            matches!(question.kind, Kind::Scalar(_) | Kind::Law(_) | Kind::Inspection(_))
+        };
+        if !questions.iter().any(decides) {
+            // Draws without chance say in one block what they would say in many.
+            subject.draws = subject.draws.min(BLOCK);
+            subject.fixed = subject.fixed.min(BLOCK);
+            questions = checks::questions(&subject);
+        }
+        (self.draws, self.fixed) = (subject.draws, subject.fixed);
+        self.horizon = if options.fixed { self.draws } else { horizon(self.draws) };
+        self.questions = questions;
+    }
+
+    /// The variance of a few draws from a stream of their own.
+    fn pilot_variance(&self, ready: &Ready) -> f64 {
+        let mut stream = Address { lane: PILOT, ..self.address }.stream();
+        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+        let mut values = Vec::with_capacity(PILOT_DRAWS);
+        while values.len() < PILOT_DRAWS {
+            ready.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+            values.extend_from_slice(&buffer.values[0]);
+        }
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
+    }
+}
+
+/// Half of the planned draws in whole blocks; all of them where they are few.
+fn fixed(draws: u64) -> u64 {
+    let half = draws.div_ceil(2).div_ceil(BLOCK) * BLOCK;
+    if draws < 4 * BLOCK { draws } else { half }
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of draws
+fn horizon(draws: u64) -> u64 {
+    (draws as f64 * gate::HORIZON / gate::PLANNED).ceil() as u64
+}
+
+/// The most draws that a question with the case's own tolerance needs, within `most`.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
+fn needed(questions: &[Question], most: u64) -> u64 {
+    let wanted = questions.iter().filter_map(|question| match &question.kind {
+        Kind::Scalar(scalar) if scalar.by_case => Some(scalar.draws),
+        _ => None,
+    });
+    let needed = wanted.fold(0.0, f64::max);
+    if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }
 }
 
 /// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that

@@ -5,6 +5,9 @@
 
 use serde::Serialize;
 
+/// The version of the record's form: it grows when a field changes its meaning or goes away.
+pub const SCHEMA: u32 = 1;
+
 /// A finished run, prediction or plan.
 #[derive(Debug, Clone, Serialize)]
 pub struct Record {
@@ -17,18 +20,64 @@ pub struct Record {
 /// The part of a record that depends on nothing but the cases, the seed and the options.
 #[derive(Debug, Clone, Serialize)]
 pub struct Results {
+    /// The version of the record's form, [`SCHEMA`].
+    pub schema: u32,
     /// The version of the tool.
     pub version: String,
     /// The run's seed.
     pub seed: u64,
     /// The chance that a correct run shows any failure at all.
     pub alpha: f64,
-    /// How many checks share `alpha`; fixed before the first draw.
-    pub checks: usize,
+    /// How random numbers are found.
+    pub streams: String,
+    /// How the error rate is shared, and what came of it.
+    pub gate: Gate,
     /// Whether a time limit cut the draws short; such results depend on the machine.
     pub cut_by_time: bool,
+    /// Whether the budget of draws ran out before all was decided.
+    pub cut_by_budget: bool,
     /// The cases, in the order they were given.
     pub cases: Vec<CaseRecord>,
+}
+
+/// The error control of a run: levels fixed before the first draw, and what came of them.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct Gate {
+    /// K: how many scalars go through the gate and share 4/5 of α.
+    pub scalars: usize,
+    /// How many p-values share 1/5 of α, by Holm.
+    pub laws: usize,
+    /// How many declared biases have an α of their own.
+    pub biased: usize,
+    /// β, the chance that a scalar passes although its bias is as large as its tolerance.
+    pub beta: f64,
+    /// A scalar fails at this ln E.
+    pub ln_e_limit: f64,
+    /// A scalar passes when both its ln P reach this.
+    pub ln_p_limit: f64,
+    /// ln of the mean e-value of all scalars: near or below 0 where all is well.
+    pub ln_mean_e: Option<f64>,
+    /// How far the strongest evidence stays below its limit; negative where something fails.
+    pub smallest_margin: Option<f64>,
+    /// The largest bias of a mean that a pass leaves possible, relative to its unit.
+    pub worst_bias: Option<f64>,
+    /// How many means passed although their variance could not be tested.
+    pub variance_assumed: usize,
+    /// The e-BH list at α: where to look first.
+    pub triage: Vec<Suspect>,
+}
+
+/// An entry of the e-BH list.
+#[derive(Debug, Clone, Serialize)]
+pub struct Suspect {
+    /// The case.
+    pub case: String,
+    /// The estimator, with σ̂ and control where they tell it from others.
+    pub experiment: String,
+    /// The check.
+    pub check: String,
+    /// ln of its e-value.
+    pub ln_e: f64,
 }
 
 /// What was found for one case file.
@@ -42,6 +91,9 @@ pub struct CaseRecord {
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,
+    /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
+    /// planned to see.
+    pub visible_bias: Option<[f64; 2]>,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<Row>,
     /// What was swept, with the theory's curves.
@@ -65,8 +117,15 @@ pub struct Row {
     pub swept: Option<f64>,
     /// The channel's name, as in `T(5)`; empty where the value has one channel only.
     pub channel: String,
-    /// How many draws were made.
+    /// How many draws the means, variances and z-scores of this row are of: a number fixed by the
+    /// plan.
     pub draws: Option<u64>,
+    /// How many draws the gate took to decide.
+    pub drawn: Option<u64>,
+    /// The name of the experiment's streams: with the seed and a block's number it finds them.
+    pub stream: Option<u64>,
+    /// The command that repeats the experiment.
+    pub command: String,
     /// The mean of the draws.
     pub mean: Option<f64>,
     /// The standard error of the mean from the draws' own variance.
@@ -99,7 +158,7 @@ pub struct Row {
     pub predicted_skewness: Option<f64>,
     /// The kurtosis of one draw in theory (3 for the normal law).
     pub predicted_kurtosis: Option<f64>,
-    /// The smallest relative bias of the mean that the run would have shown.
+    /// ε of the mean: the smallest bias, relative to the truth, that a pass excludes.
     pub detectable_bias: Option<f64>,
     /// The measured figure of merit, 1/(variance · lookups per draw).
     pub fom: Option<f64>,
@@ -128,9 +187,9 @@ pub enum Verdict {
     Pass,
     /// Differs from theory by more than chance allows.
     Fail,
-    /// Not refuted, but too few draws to tell.
+    /// Not decided by the draws that were made.
     Inconclusive,
-    /// The same, known beforehand and allowed by the case.
+    /// It could fail, but was never promised to pass: known before the first draw.
     Underpowered,
     /// Not drawn: the estimator does not exist or is biased here.
     Refused,
@@ -155,16 +214,51 @@ impl Verdict {
 pub struct Finding {
     /// The check's name in the catalogue.
     pub check: String,
+    /// What the check asked about, as in `the mean`.
+    pub what: String,
+    /// Whether the case declares a bias that the check must show.
+    pub expects_bias: bool,
     /// The channel it is about; empty for the experiment as a whole.
     pub channel: String,
     /// The statistic, in standard deviations, where the check has one.
     pub z: Option<f64>,
     /// The p-value, for tests of a whole law.
     pub p: Option<f64>,
+    /// Where the gate stands, for scalars.
+    pub gate: Option<GateFinding>,
+    /// The block at whose end it was decided, or where it was found.
+    pub block: Option<u64>,
     /// What the check says.
     pub verdict: Verdict,
     /// Why, with the numbers.
     pub reason: String,
+}
+
+/// Where the gate stands with one scalar.
+#[derive(Debug, Clone, Copy, Serialize)]
+pub struct GateFinding {
+    /// ε: the bias that a pass excludes.
+    pub tolerance: f64,
+    /// V: the variance of the scalar in theory.
+    pub variance: f64,
+    /// The observed mean of the scalar, 0 when all is well.
+    pub mean: f64,
+    /// How many draws were planned, 27 V/ε².
+    pub planned: f64,
+    /// How many draws it took to decide, or were made without a decision.
+    pub draws: u64,
+    /// ln E, the evidence against a correct scalar.
+    pub ln_e: f64,
+    /// The ln E at which it fails.
+    pub ln_e_limit: f64,
+    /// ln of the evidence against a bias of +ε and of −ε.
+    pub ln_p: [f64; 2],
+    /// The ln P at which it passes.
+    pub ln_p_limit: f64,
+    /// The draws that it would need, where more than were planned.
+    pub needed: Option<f64>,
+    /// Whether it was decided.
+    pub is_decided: bool,
 }
 
 /// The axis of a sweep and the theory's curves along it.

@@ -1,172 +1,310 @@
-//! Drawing: blocks of draws by address, merged in the order of their addresses.
+//! Drawing until every question is decided: looks at fixed places, blocks in the order of addresses.
+//!
+//! ```text
+//! looks after 1, 2, 3, … blocks, growing by 1.15, and at the horizon
+//! ```
+//!
+//! A look uses exactly the blocks up to it. Blocks that other threads drew ahead wait for their
+//! look, and are discarded if it never comes: what is decided does not depend on the threads. In
+//! each round every open experiment gets the blocks to its next look, in the order of the cases;
+//! what a decided experiment saves goes to those that are open.
 
+use std::collections::VecDeque;
 use std::time::Instant;
 
-use cpu_time::ThreadTime;
 use rayon::prelude::*;
 
-use super::plan::{Plan, Planned};
-use crate::estimators::DrawBuffer;
+use super::checks::Kind;
+use super::draw::{self, Answer, Block, larger};
+use super::plan::{BLOCK, Plan, Planned};
 use crate::numeric::sum::Sum;
-use crate::rng::Address;
 use crate::stats::Tally;
+use crate::stats::gate::{Decision, Evidence, SUMS};
 
-/// Draws per block, always.
-pub const BLOCK: u64 = 1 << 14;
-/// Blocks drawn between two looks at the clock; results do not depend on it.
+/// Blocks drawn between two merges; results do not depend on it.
 const BATCH: usize = 256;
 
 /// What one experiment drew.
 #[derive(Debug, Clone, Default)]
 pub struct Drawn {
-    /// One tally per channel, in units of the truth about the predicted mean.
+    /// How many draws all of its questions saw.
+    pub draws: u64,
+    /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
     pub tallies: Vec<Tally>,
-    /// The lookups, about their predicted mean.
+    /// The lookups of the fixed draws, about their predicted mean.
     pub lookups: Tally,
-    /// For each check, its sums.
-    pub sums: Vec<Vec<Sum>>,
+    /// One total per question.
+    pub totals: Vec<Total>,
     /// Processor seconds.
     pub seconds: f64,
+}
+
+/// What all blocks say to one question.
+#[derive(Debug, Clone)]
+pub enum Total {
+    /// Where the gate stands.
+    Gate(Standing),
+    /// The sums of a law over the fixed draws.
+    Law(Vec<Sum>),
+    /// The largest value, and the block where it was found first.
+    Largest(f64, u64),
+    /// Nothing.
+    Silent,
+}
+
+/// Where a question of the gate stands.
+#[derive(Debug, Clone)]
+pub struct Standing {
+    psi: [Sum; SUMS],
+    y: Sum,
+    /// The mean of y up to the look of the decision, or to the last.
+    pub mean: f64,
+    /// The evidence at the look of the decision, or at the last.
+    pub evidence: Evidence,
+    /// The decision.
+    pub decision: Decision,
+    /// The draws up to that look.
+    pub draws: u64,
 }
 
 /// Everything that a plan drew.
 #[derive(Debug, Clone)]
 pub struct Draws {
-    /// Per case, per experiment; empty tallies for refused ones.
+    /// Per case, per experiment; nothing for refused ones.
     pub cases: Vec<Vec<Drawn>>,
     /// Whether the time limit came first.
     pub cut_by_time: bool,
+    /// Whether the budget of draws came first.
+    pub cut_by_budget: bool,
 }
 
-/// One block of one experiment.
-#[derive(Clone, Copy)]
-struct Unit<'p> {
+/// An experiment on its way.
+struct Front<'p> {
     case: usize,
     index: usize,
-    block: u64,
     planned: &'p Planned,
+    drawn: Drawn,
+    /// How many blocks are merged.
+    blocks: u64,
+    /// After how many blocks the next look comes.
+    look: u64,
+    /// Blocks drawn ahead of the next look.
+    ahead: VecDeque<Block>,
+    is_done: bool,
 }
 
 /// Draws a plan; `progress` is told after each block how many draws it made.
 pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     let begin = Instant::now();
-    let mut cases: Vec<Vec<Drawn>> =
-        plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
-    let mut cut_by_time = false;
-    // Block by block over all experiments: a time limit then cuts all of them alike.
     let expired =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
-    for batch in units(plan).chunks(BATCH) {
-        let drawn: Vec<Option<Drawn>> = batch
-            .par_iter()
-            .map(|unit| {
-                if expired() {
-                    return None;
-                }
-                let drawn = draw_block(unit);
-                progress(drawn.lookups.draws);
-                Some(drawn)
-            })
-            .collect();
-        for (unit, block) in batch.iter().zip(&drawn) {
-            // What comes after a missing block is left out: an experiment keeps its first blocks.
-            let tally = &mut cases[unit.case][unit.index];
-            match block {
-                Some(block) if tally.lookups.draws == unit.block * BLOCK => tally.merge(block),
-                _ => cut_by_time = true,
+    let mut fronts = fronts(plan);
+    let mut budget = plan.options.budget;
+    let (mut cut_by_time, mut cut_by_budget) = (false, false);
+    while !cut_by_time && fronts.iter().any(|front| !front.is_done) {
+        for front in fronts.iter_mut().filter(|front| !front.is_done) {
+            if !take(&mut budget, front.stage()) {
+                (front.is_done, cut_by_budget) = (true, true);
             }
         }
-        if cut_by_time {
-            break;
+        for units in units(&fronts).chunks(BATCH) {
+            let drawn: Vec<Option<Block>> = units
+                .par_iter()
+                .map(|&(planned, block, _)| {
+                    let drawn = if expired() { None } else { draw::block(planned, block) };
+                    progress(drawn.as_ref().map_or(0, |block| block.draws));
+                    drawn
+                })
+                .collect();
+            for (&(_, _, front), block) in units.iter().zip(drawn) {
+                // What comes after a missing block is left out: the first blocks are kept.
+                match block {
+                    Some(block) if !cut_by_time => fronts[front].ahead.push_back(block),
+                    _ => cut_by_time = true,
+                }
+                fronts[front].merge();
+            }
+        }
+        for front in fronts.iter_mut().filter(|front| !front.is_done) {
+            front.look(plan);
         }
     }
-    Draws { cases, cut_by_time }
+    let mut cases: Vec<Vec<Drawn>> =
+        plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
+    for front in fronts {
+        cases[front.case][front.index] = front.drawn;
+    }
+    Draws { cases, cut_by_time, cut_by_budget }
 }
 
-fn units<'p>(plan: &'p Plan) -> Vec<Unit<'p>> {
-    let mut units: Vec<Unit> = Vec::new();
+/// Takes draws from the budget, if there is one and it has them.
+fn take(budget: &mut Option<u64>, draws: u64) -> bool {
+    let left = budget.map(|left| left.checked_sub(draws));
+    match left {
+        Some(None) => false,
+        Some(left) => {
+            *budget = left;
+            true
+        }
+        None => true,
+    }
+}
+
+fn fronts<'p>(plan: &'p Plan) -> Vec<Front<'p>> {
+    let mut fronts = Vec::new();
     for (case, planned_case) in plan.cases.iter().enumerate() {
         for (index, planned) in planned_case.experiments.iter().enumerate() {
             if planned.outcome.is_ok() {
-                let blocks = 0..planned.draws.div_ceil(BLOCK);
-                units.extend(blocks.map(|block| Unit { case, index, block, planned }));
+                fronts.push(Front {
+                    case,
+                    index,
+                    planned,
+                    drawn: Drawn::new(planned),
+                    blocks: 0,
+                    look: 1,
+                    ahead: VecDeque::new(),
+                    is_done: false,
+                });
             }
         }
     }
-    units.sort_by_key(|unit| unit.block);
+    fronts
+}
+
+/// The blocks up to the next look of every open experiment, block by block so that a time limit
+/// cuts all alike; and further ones while there are too few to keep all threads at work.
+fn units<'p>(fronts: &[Front<'p>]) -> Vec<(&'p Planned, u64, usize)> {
+    let enough = 4 * rayon::current_num_threads();
+    let open = || fronts.iter().enumerate().filter(|(_, front)| !front.is_done);
+    let drawn = |front: &Front| front.blocks + front.ahead.len() as u64;
+    let mut until: Vec<u64> = fronts.iter().map(|front| front.look.max(drawn(front))).collect();
+    let missing = |until: &[u64]| -> u64 {
+        open().map(|(i, front)| until[i] - drawn(front)).sum()
+    };
+    // Only where a look waits for blocks is there anything to draw.
+    if missing(&until) > 0 {
+        while missing(&until) < enough as u64 {
+            let longer: Vec<u64> = fronts
+                .iter()
+                .zip(&until)
+                .map(|(front, &until)| next_look(until, front.last()))
+                .collect();
+            if longer == until {
+                break;
+            }
+            until = longer;
+        }
+    }
+    let mut units: Vec<_> = open()
+        .flat_map(|(i, front)| {
+            (drawn(front)..until[i]).map(move |block| (front.planned, block, i))
+        })
+        .collect();
+    units.sort_by_key(|unit| unit.1);
     units
 }
 
-fn draw_block(unit: &Unit) -> Drawn {
-    // Processor time, not wall time: other processes do not count.
-    let begin = ThreadTime::now();
-    let planned = unit.planned;
-    let Ok(ready) = &planned.outcome else { return Drawn::default() };
-    let prediction = &ready.prediction;
-    let mut rng = Address { block: unit.block, ..planned.address }.stream();
-    let mut buffer = DrawBuffer::new(prediction.channels.len());
-    let sums: Vec<Vec<f64>> = planned
-        .statistics
-        .iter()
-        .map(|statistic| vec![0.0; statistic.as_ref().map_or(0, |statistic| statistic.size())])
-        .collect();
-    let mut block = Block {
-        tallies: vec![Tally::default(); prediction.channels.len()],
-        lookups: Tally::default(),
-        sums,
-    };
-    let expected_lookups = prediction.lookups.map_or(0.0, |law| law.mean);
-    let mut left = (planned.draws - unit.block * BLOCK).min(BLOCK);
-    let mut counts = Vec::with_capacity(DrawBuffer::LENGTH);
-    while left > 0 {
-        let count = left.min(DrawBuffer::LENGTH as u64);
-        #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
-        ready.experiment.fill(&mut rng, count as usize, &mut buffer);
-        for ((tally, channel), values) in
-            block.tallies.iter_mut().zip(&prediction.channels).zip(&buffer.values)
-        {
-            tally.merge(&Tally::of(values, channel.mean.value, channel.truth.value));
-        }
-        counts.clear();
-        counts.extend(buffer.lookups.iter().map(|&lookups| f64::from(lookups)));
-        block.lookups.merge(&Tally::of(&counts, expected_lookups, 1.0));
-        for (statistic, sums) in planned.statistics.iter().zip(&mut block.sums) {
-            if let Some(statistic) = statistic {
-                statistic.add(&buffer, sums);
-            }
-        }
-        left -= count;
-    }
-    let sums = block.sums.iter().map(|sums| sums.iter().map(|&x| Sum::from_iter([x])).collect());
-    Drawn {
-        tallies: block.tallies,
-        lookups: block.lookups,
-        sums: sums.collect(),
-        seconds: begin.elapsed().as_secs_f64(),
-    }
+/// The look after one at `blocks`.
+fn next_look(blocks: u64, last: u64) -> u64 {
+    (blocks + 1).max(blocks * 115 / 100).min(last)
 }
 
-struct Block {
-    tallies: Vec<Tally>,
-    lookups: Tally,
-    sums: Vec<Vec<f64>>,
+impl Front<'_> {
+    /// The last look.
+    fn last(&self) -> u64 {
+        self.planned.horizon.div_ceil(BLOCK)
+    }
+
+    /// The draws up to the next look.
+    fn stage(&self) -> u64 {
+        (self.look * BLOCK).min(self.planned.horizon) - self.drawn.draws
+    }
+
+    /// Merges what was drawn, up to the next look.
+    fn merge(&mut self) {
+        while self.blocks < self.look {
+            let Some(block) = self.ahead.pop_front() else { return };
+            self.drawn.merge(&block, self.blocks);
+            self.blocks += 1;
+        }
+    }
+
+    /// Decides what can be decided, and whether to go on.
+    fn look(&mut self, plan: &Plan) {
+        let planned = self.planned;
+        let draws = self.drawn.draws;
+        let mut is_open = draws < planned.fixed;
+        for (question, total) in planned.questions.iter().zip(&mut self.drawn.totals) {
+            let (Kind::Scalar(scalar), Total::Gate(standing)) = (&question.kind, total) else {
+                continue;
+            };
+            if standing.decision == Decision::Open {
+                let sums = standing.psi.map(|sum| sum.value());
+                standing.mean = standing.y.value() / draws as f64;
+                standing.evidence = scalar.design.evidence(sums, draws as f64);
+                standing.draws = draws;
+                let levels = &plan.levels;
+                let level =
+                    if question.expects_bias { levels.ln_biased } else { levels.ln_fail };
+                standing.decision = standing.evidence.decision(level, levels.ln_pass);
+                if standing.decision == Decision::Passed && scalar.underpowered.is_some() {
+                    standing.decision = Decision::Open;
+                }
+            }
+            let was_promised = scalar.underpowered.is_none() || draws < planned.draws;
+            is_open |= standing.decision == Decision::Open && was_promised;
+        }
+        let is_over = draws >= planned.horizon;
+        self.is_done = is_over || (!is_open && !plan.options.fixed);
+        self.look = next_look(self.look, self.last());
+    }
 }
 
 impl Drawn {
-    fn merge(&mut self, later: &Self) {
-        if self.tallies.is_empty() {
-            *self = later.clone();
-            return;
-        }
-        for (tally, other) in self.tallies.iter_mut().zip(&later.tallies) {
+    fn new(planned: &Planned) -> Self {
+        let totals = planned.questions.iter().map(|question| match &question.kind {
+            Kind::Scalar(_) => Total::Gate(Standing {
+                psi: [Sum::default(); SUMS],
+                y: Sum::default(),
+                mean: 0.0,
+                evidence: Evidence::NONE,
+                decision: Decision::Open,
+                draws: 0,
+            }),
+            Kind::Law(law) => Total::Law(vec![Sum::default(); law.size()]),
+            Kind::Always(_) => Total::Largest(0.0, 0),
+            Kind::Inspection(_) | Kind::Untestable(_) => Total::Silent,
+        });
+        let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
+        let tallies = vec![Tally::default(); channels];
+        Self { totals: totals.collect(), tallies, ..Self::default() }
+    }
+
+    /// Adds the block that follows.
+    fn merge(&mut self, block: &Block, number: u64) {
+        self.draws += block.draws;
+        for (tally, other) in self.tallies.iter_mut().zip(&block.tallies) {
             tally.merge(other);
         }
-        self.lookups.merge(&later.lookups);
-        for (sums, others) in self.sums.iter_mut().zip(&later.sums) {
-            for (sum, other) in sums.iter_mut().zip(others) {
-                sum.merge(other);
+        self.lookups.merge(&block.lookups);
+        for (total, answer) in self.totals.iter_mut().zip(&block.answers) {
+            match (total, answer) {
+                (Total::Gate(standing), Answer::Gate { psi, y }) => {
+                    standing.psi.iter_mut().zip(psi).for_each(|(sum, &x)| sum.add(x));
+                    standing.y.add(*y);
+                }
+                (Total::Law(sums), Answer::Law(others)) => {
+                    sums.iter_mut().zip(others).for_each(|(sum, &x)| sum.add(x));
+                }
+                (Total::Largest(most, at), Answer::Largest(other)) => {
+                    let largest = larger(*most, *other);
+                    if largest.to_bits() != most.to_bits() {
+                        (*most, *at) = (largest, number);
+                    }
+                }
+                _ => {}
             }
         }
-        self.seconds += later.seconds;
+        self.seconds += block.seconds;
     }
 }

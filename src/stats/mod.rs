@@ -1,6 +1,8 @@
 //! Statistics that have never heard of light. Floor 1.
 
+pub mod catoni;
 pub mod chi_square;
+pub mod gate;
 pub mod normal;
 pub mod tally;
 

@@ -69,6 +69,7 @@ fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
 
 impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

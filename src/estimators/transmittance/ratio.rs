@@ -30,6 +30,7 @@ pub struct Ratio;
 
 impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

@@ -31,6 +31,7 @@ pub struct ResidualRatio;
 
 impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

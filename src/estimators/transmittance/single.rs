@@ -51,6 +51,7 @@ fn terminating_exists(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
 
 impl Estimator<Transmittance> for SingleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let rule = settings.word("rule", &RULES);

@@ -30,6 +30,7 @@ pub struct WeightedDelta;
 
 impl Estimator<Transmittance> for WeightedDelta {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

@@ -38,6 +38,7 @@ pub fn zero_or_one(prediction: Prediction) -> Prediction {
 
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

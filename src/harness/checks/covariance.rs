@@ -1,97 +1,65 @@
-//! The covariance of every two distances of one walk against theory.
+//! The covariance of neighbouring distances of one walk against theory, by the gate.
 //!
 //! ```text
-//! z = (c − C)/√(Var[(X₁ − T₁)(X₂ − T₂)]/n),  C = T₁T₂ expm1(J₂(s₁))
+//! y = ((X₁ − T₁)(X₂ − T₂) − C)/(sd₁ sd₂),  C = T₁T₂ expm1(J₂(s₁)),  Var[y] in theory
 //! ```
 //!
-//! It applies to problems with several channels, and is reported with the farther one.
+//! It applies to problems with several channels, and is reported with the farther one. Neighbours
+//! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
 
-use super::{Check, Comparison, Evidence, Kind, Limits, Statistic, Subject};
+use super::mean::is_certain;
+use super::{Ask, Check, Kind, Known, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
-use crate::harness::record::Finding;
-use crate::theory;
+use crate::theory::prediction::Covariance as Predicted;
 
-/// The largest error of a covariance, relative to the product of the standard deviations.
-const TOLERANCE: f64 = 0.2;
+/// The largest error of a covariance, relative to the product of the standard deviations, that is
+/// still worth a promise.
+const CAP: f64 = 0.2;
+/// The same of a prediction.
+const ERROR: f64 = 1e-10;
 
 /// The check of the covariances.
 pub struct Covariance;
 
-struct Products {
-    pairs: Vec<[usize; 2]>,
-    truth: Vec<f64>,
-}
-
-impl Statistic for Products {
-    fn size(&self) -> usize {
-        self.pairs.len()
-    }
-
-    fn add(&self, draws: &DrawBuffer, sums: &mut [f64]) {
-        for (&[i, j], sum) in self.pairs.iter().zip(sums) {
-            let both = draws.values[i].iter().zip(&draws.values[j]);
-            *sum += both
-                .map(|(a, b)| (a / self.truth[i] - 1.0) * (b / self.truth[j] - 1.0))
-                .sum::<f64>();
-        }
-    }
-}
-
-/// The covariances whose channels have a spread beyond rounding.
-fn testable<'a>(
-    subject: &Subject<'a>,
-) -> impl Iterator<Item = &'a theory::prediction::Covariance> + use<'a> {
-    let channels = &subject.prediction.channels;
-    subject.prediction.covariances.iter().filter(move |covariance| {
-        covariance.variance > 0.0
-            && covariance.variance.is_finite()
-            && covariance
-                .pair
-                .iter()
-                .all(|&i| channels[i].moments.is_some_and(|moments| moments.relative[0] > 1e-20))
-    })
-}
-
 impl Check for Covariance {
-    fn kind(&self) -> Kind {
-        Kind::Scalar
-    }
-
-    fn hypotheses(&self, subject: &Subject) -> usize {
-        testable(subject).count()
-    }
-
-    fn statistic(&self, subject: &Subject) -> Option<Box<dyn Statistic>> {
-        let pairs: Vec<[usize; 2]> = testable(subject).map(|covariance| covariance.pair).collect();
-        let truth = subject.prediction.channels.iter().map(|channel| channel.truth.value).collect();
-        (!pairs.is_empty()).then(|| Box::new(Products { pairs, truth }) as Box<dyn Statistic>)
-    }
-
-    fn judge(&self, subject: &Subject, limits: &Limits, evidence: &Evidence) -> Vec<Finding> {
-        let channels = &subject.prediction.channels;
-        let draws = evidence.tallies[0].draws as f64;
-        let pairs = testable(subject).zip(evidence.sums);
-        pairs
-            .map(|(covariance, sum)| {
-                let [i, j] = covariance.pair;
-                let unit = channels[i].truth.value * channels[j].truth.value;
-                let spread = |k: usize| channels[k].moments.map_or(0.0, |m| m.relative[0].sqrt());
-                let kurtosis = |k: usize| {
-                    channels[k].moments.and_then(|m| m.kurtosis()).unwrap_or(f64::INFINITY)
-                };
-                let tail = channels[j].tails.eighth_moment_ratio;
-                let comparison = Comparison {
-                    difference: sum.value() / draws - covariance.value / unit,
-                    standard_error: (covariance.variance / draws).sqrt() / unit,
-                    allowance: 1e-10 * spread(i) * spread(j),
-                    tolerance: TOLERANCE * spread(i) * spread(j),
-                    draws_for_level: 100.0 * kurtosis(i).max(kurtosis(j)).max(tail),
-                };
-                let what = format!("the covariance with {}", channels[i].name);
-                let (verdict, reason) = comparison.verdict(&what, subject, limits);
-                let (check, channel) = ("covariance".into(), channels[j].name.clone());
-                Finding { check, channel, z: Some(comparison.z()), p: None, verdict, reason }
-            })
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        if subject.expect_biased {
+            return Vec::new();
+        }
+        let covariances = subject.prediction.covariances.iter();
+        covariances
+            .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
+            .filter_map(|covariance| ask(subject, covariance))
             .collect()
     }
+}
+
+fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
+    let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
+    if is_certain(subject, first) || is_certain(subject, second) {
+        return None;
+    }
+    let scale = [first, second].map(|channel| {
+        let variance = channel.moments.map_or(0.0, |moments| moments.variance());
+        1.0 / variance.sqrt()
+    });
+    let what = format!("the covariance with {}", first.name);
+    let unit = scale[0] * scale[1];
+    let variance = covariance.variance * unit * unit;
+    let kind = if variance.is_finite() && variance > 0.0 {
+        let known = Known { variance, error: ERROR, floor: ERROR };
+        let wanted = Wanted { tolerance: None, cap: CAP };
+        let ([i, j], truth) = (covariance.pair, [first.mean.value, second.mean.value]);
+        let expected = covariance.value * unit;
+        let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+            let both = draws.values[i].iter().zip(&draws.values[j]);
+            y.extend(both.map(|(a, b)| {
+                (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
+            }));
+        };
+        Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+    } else {
+        Kind::Untestable("its variance overflows".into())
+    };
+    Some(Ask::channel(covariance.pair[1], &what, kind))
 }

@@ -5,61 +5,76 @@
 //! P(s ≤ t) = 1 − T(t),  P(s = S) = T(S)
 //! ```
 
-use super::{Check, Evidence, Kind, Limits, Statistic, Subject, law_finding};
+use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
-use crate::harness::record::Finding;
 use crate::stats::chi_square;
-use crate::theory::Law;
+use crate::theory;
+
+/// The number of bins.
+const BINS: usize = 20;
 
 /// The check of the distances.
 pub struct Distances;
 
-struct Bins {
+/// Equally probable classes of the distances of the rays that collide.
+pub struct Classes {
+    /// The upper ends of all classes but the last.
     ends: Vec<f64>,
+    /// The distance of the rays that escape.
     escape: f64,
+    /// The probability of that.
+    escapes: f64,
 }
 
-impl Statistic for Bins {
-    fn size(&self) -> usize {
-        self.ends.len() + 2
+impl Classes {
+    /// `wanted` classes, or as many as theory has where that is less.
+    pub fn of(subject: &Subject, wanted: usize) -> Option<Self> {
+        let Some(theory::Law::Distances { bins, end, escape }) = &subject.prediction.law else {
+            return None;
+        };
+        let step = (bins.len() + 1) / wanted.min(bins.len() + 1);
+        let ends = bins.iter().skip(step - 1).step_by(step).copied().collect();
+        Some(Self { ends, escape: *end, escapes: *escape })
     }
 
-    fn add(&self, draws: &DrawBuffer, sums: &mut [f64]) {
+    /// How many classes, escape not counted.
+    pub fn len(&self) -> usize {
+        self.ends.len() + 1
+    }
+
+    /// Counts draws: the classes in order, then the rays that escape.
+    pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
         for &s in &draws.values[0] {
-            let bin = if s >= self.escape {
-                self.ends.len() + 1
+            let class = if s >= self.escape {
+                self.len()
             } else {
                 self.ends.partition_point(|&end| end <= s)
             };
-            sums[bin] += 1.0;
+            sums[class] += 1.0;
         }
     }
 }
 
+impl Law for Classes {
+    fn size(&self) -> usize {
+        self.len() + 1
+    }
+
+    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+        self.count(draws, sums);
+    }
+
+    fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
+        let mut probability = vec![(1.0 - self.escapes) / self.len() as f64; self.len()];
+        probability.push(self.escapes);
+        chi_square::p_value(sums, &probability)
+    }
+}
+
 impl Check for Distances {
-    fn kind(&self) -> Kind {
-        Kind::Law
-    }
-
-    fn hypotheses(&self, subject: &Subject) -> usize {
-        let known = matches!(subject.prediction.law, Some(Law::Distances { .. }));
-        usize::from(known && !subject.expect_biased)
-    }
-
-    fn statistic(&self, subject: &Subject) -> Option<Box<dyn Statistic>> {
-        let Some(Law::Distances { bins, end, .. }) = &subject.prediction.law else { return None };
-        Some(Box::new(Bins { ends: bins.clone(), escape: *end }))
-    }
-
-    fn judge(&self, subject: &Subject, limits: &Limits, evidence: &Evidence) -> Vec<Finding> {
-        let Some(Law::Distances { bins, escape, .. }) = &subject.prediction.law else {
-            return Vec::new();
-        };
-        let share = (1.0 - escape) / (bins.len() + 1) as f64;
-        let mut probability = vec![share; bins.len() + 1];
-        probability.push(*escape);
-        let p = chi_square::p_value(evidence.sums, &probability);
-        let what = "the distances do not follow 1 − T(s)";
-        law_finding("distances", what, p, limits).into_iter().collect()
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        let classes = Classes::of(subject, BINS).filter(|_| !subject.expect_biased);
+        let kind = classes.map(|classes| Kind::Law(Box::new(classes)));
+        kind.map(|kind| Ask::whole("the law of the distances", kind)).into_iter().collect()
     }
 }

@@ -1,148 +1,79 @@
-//! The mean of the draws against the exact answer, with the predicted variance.
+//! The mean of the draws against the exact answer, by the gate.
 //!
 //! ```text
-//! z = (x̄ − truth)/√(V/n)
+//! y = (X − T)/u,  V = Var[X]/u² in theory,  u = T, or the opacity 1 − T where τ < 0.1
 //! ```
 //!
-//! V is the variance in theory, not the draws' own: the sample variance of rare events is useless.
-//! The normal law holds well enough at the levels in use when `n ≥ 100 κ` (κ the kurtosis) and n is
-//! ten times the rare-event size; below that the check is inconclusive. Draws without spread are
-//! compared with the truth to rounding. A case that declares an experiment biased passes only if
-//! the bias is seen.
+//! The mean may pass only if the variance of the same experiment passes too; where that one is
+//! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
+//! to rounding. A case that declares an experiment biased passes only if the bias is shown; where
+//! theory has no variance for it, that of pilot draws is used, doubled.
 
-use super::{Check, Comparison, Evidence, Kind, Limits, Subject, rounding, too_short};
-use crate::harness::record::{Finding, Verdict};
-use crate::stats::Tally;
+use super::{Always, Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
+use crate::estimators::DrawBuffer;
 use crate::theory::Channel;
 
-/// The largest relative error of the mean that is still called the same.
-const TOLERANCE: f64 = 0.05;
+/// The largest relative error of the mean that is still worth a promise.
+const CAP: f64 = 0.05;
 
 /// The check of the mean.
 pub struct Mean;
 
-/// Compares the mean with the truth; `None` without draws.
-#[must_use]
-pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Comparison> {
-    let observed = tally.moments()?;
-    let truth = channel.truth.value;
-    // Tallies are in units of the truth, about the predicted mean.
-    let difference = observed.mean + (channel.mean.value - truth) / truth;
-    let (variance, draws_for_level) = match &channel.moments {
-        Some(moments) => {
-            let unit = moments.scale / truth;
-            let kurtosis = moments.kurtosis().unwrap_or(1.0);
-            let level = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
-            (moments.relative[0] * unit * unit, level)
-        }
-        // A forced experiment has no theory: the draws' own variance must do.
-        None => (observed.variance?, 1000.0),
-    };
-    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
-    Some(Comparison {
-        difference,
-        standard_error: (variance / tally.draws as f64).sqrt(),
-        allowance: channel.truth.error / truth + rounding(lookups),
-        tolerance: subject.tolerance.mean.unwrap_or(TOLERANCE),
-        draws_for_level: match (variance > 0.0, channel.moments) {
-            (true, _) => draws_for_level,
-            (false, Some(_)) => 0.0,
-            // Draws that are all the same tell nothing where theory is silent.
-            (false, None) => f64::INFINITY,
-        },
-    })
-}
-
 /// Whether the draws have no spread beyond rounding, in theory.
 #[must_use]
 pub fn is_certain(subject: &Subject, channel: &Channel) -> bool {
-    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
-    channel.moments.is_some_and(|moments| moments.relative[0].sqrt() <= rounding(lookups))
+    let floor = floor(subject, channel);
+    channel.moments.is_some_and(|moments| {
+        moments.relative[0].sqrt() * moments.scale / channel.unit <= 1e3 * floor
+    })
+}
+
+/// δ: what the truth's own error and rounding may add, in units of the channel.
+fn floor(subject: &Subject, channel: &Channel) -> f64 {
+    let truth = channel.truth;
+    (truth.error + truth.value.abs() * rounding_of(subject)) / channel.unit
 }
 
 impl Check for Mean {
-    fn kind(&self) -> Kind {
-        Kind::Scalar
-    }
-
-    fn hypotheses(&self, subject: &Subject) -> usize {
-        subject.prediction.channels.len()
-    }
-
-    fn judge(&self, subject: &Subject, limits: &Limits, evidence: &Evidence) -> Vec<Finding> {
-        let channels = subject.prediction.channels.iter().zip(evidence.tallies);
-        let judged =
-            channels.map(|(channel, tally)| judge_channel(subject, limits, channel, tally));
-        let mut findings: Vec<Finding> = judged.collect();
-        // A bias somewhere along a curve is a bias; it need not be everywhere.
-        let shown = |finding: &Finding| finding.verdict == Verdict::Pass;
-        if subject.expect_biased && findings.iter().any(shown) {
-            for finding in findings.iter_mut().filter(|finding| !shown(finding)) {
-                finding.verdict = Verdict::Pass;
-                finding.reason = "biased elsewhere".into();
-            }
-        }
-        findings
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        let channels = subject.prediction.channels.iter().enumerate();
+        channels
+            .map(|(index, channel)| Ask::channel(index, "the mean", kind(subject, index, channel)))
+            .collect()
     }
 }
 
-fn judge_channel(subject: &Subject, limits: &Limits, channel: &Channel, tally: &Tally) -> Finding {
-    let comparison = compare(subject, channel, tally);
-    let certain = is_certain(subject, channel);
-    let z = comparison.filter(|_| !certain).map(|comparison| comparison.z());
-    let (verdict, reason) = match comparison {
-        _ if tally.not_finite > 0 => {
-            (Verdict::Fail, format!("{} draws are not finite numbers", tally.not_finite))
-        }
-        None => (Verdict::Inconclusive, "nothing was drawn".into()),
-        Some(comparison) if subject.expect_biased => biased(subject, limits, comparison, certain),
-        Some(comparison) if certain => {
-            let spread = tally.mean_square().unwrap_or(0.0).sqrt();
-            if spread > 4.0 * comparison.allowance && !biased_by_theory(channel) {
-                (Verdict::Fail, format!("draws spread by {spread:.1e} where theory has none"))
-            } else if comparison.difference.abs() <= comparison.allowance {
-                (Verdict::Pass, String::new())
-            } else {
-                let bias = 100.0 * comparison.difference;
-                (Verdict::Fail, format!("the mean is off by {bias:+.2e} % without any spread"))
-            }
-        }
-        // Draws that all are the truth to rounding are no chance, even where theory is silent.
-        Some(comparison) if comparison.standard_error == 0.0 && comparison.is_rounding() => {
-            (Verdict::Pass, String::new())
-        }
-        Some(comparison) => comparison.verdict("the mean", subject, limits),
-    };
-    let z = z.filter(|z| z.is_finite());
-    Finding { check: "mean".into(), channel: channel.name.clone(), z, p: None, verdict, reason }
-}
-
-/// Whether theory says that the draws are not the truth on average.
-fn biased_by_theory(channel: &Channel) -> bool {
-    (channel.mean.value - channel.truth.value).abs() > channel.mean.error + channel.truth.error
-}
-
-/// The verdict on an experiment that must show its bias.
-fn biased(
-    subject: &Subject,
-    limits: &Limits,
-    comparison: Comparison,
-    certain: bool,
-) -> (Verdict, String) {
-    let bias = format!("{:+.2e} %", 100.0 * comparison.difference);
-    let beyond = comparison.difference.abs() - comparison.allowance;
-    let shown = beyond > if certain { 0.0 } else { limits.z * comparison.standard_error };
-    if shown && subject.draws as f64 >= comparison.draws_for_level {
-        (Verdict::Pass, format!("biased-as-expected: {bias}"))
-    } else if (subject.draws as f64) < comparison.draws_for_level {
-        let needed = comparison.draws_for_level;
-        let reason = if needed.is_finite() {
-            format!("the bias needs {needed:.1e} draws")
-        } else {
-            "all draws are the same, which tells nothing here".to_owned()
+fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
+    let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
+    let floor = floor(subject, channel);
+    if is_certain(subject, channel) {
+        let largest = move |draws: &DrawBuffer| {
+            draws.values[index].iter().fold(0.0, |most: f64, x| {
+                let y = ((x - truth) * scale).abs();
+                if y.is_nan() { y } else { most.max(y) }
+            })
         };
-        (too_short(subject), reason)
-    } else {
-        (Verdict::Fail, format!("expected a bias, found {bias}"))
+        return Kind::Always(Always { largest: Box::new(largest), bound: floor });
     }
+    let known = match (channel.moments, subject.pilot_variance) {
+        (Some(moments), _) => {
+            let unit = moments.scale * scale;
+            Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
+        }
+        (None, Some(pilot)) => {
+            Known { variance: 2.0 * pilot * scale * scale, error: 0.0, floor }
+        }
+        (None, None) => return Kind::Untestable("theory has no variance for it".into()),
+    };
+    if !known.variance.is_finite() {
+        return Kind::Untestable("the variance overflows".into());
+    }
+    if known.variance == 0.0 {
+        return Kind::Untestable("all pilot draws are the same, which tells nothing here".into());
+    }
+    let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+        y.extend(draws.values[index].iter().map(|x| (x - truth) * scale));
+    };
+    let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
+    Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
 }

@@ -1,87 +1,224 @@
 //! What is asked of the draws, one check per page.
 //!
-//! A check says beforehand whether it applies and how many hypotheses it tests; the levels are then
-//! shared among all checks of the run, before the first draw. It may ask for sums of its own over
-//! the draws; means, variances and lookups are summed for all.
+//! A check turns what theory says of an experiment into questions, all of them before the first
+//! draw: the levels are then shared among all questions of the run. Questions are of four kinds.
+//! Scalars go through the sequential gate and may stop the drawing; laws are tested by a p-value on
+//! a number of draws fixed beforehand; what must hold for every draw is watched on every draw; and
+//! the streams of random numbers are looked at themselves.
 
 use super::case::Tolerance;
-use super::record::{Finding, Verdict};
 use crate::catalogue::Catalogue;
-use crate::estimators::DrawBuffer;
-use crate::numeric::sum::Sum;
-use crate::stats::Tally;
+use crate::estimators::{DrawBuffer, Experiment};
+use crate::rng::Stream;
+use crate::stats::gate::{self, Design};
 use crate::theory::Prediction;
-
-/// What a check tests.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A mean against its prediction, by a z-score.
-    Scalar,
-    /// A whole law, by a p-value.
-    Law,
-}
 
 /// What a check knows before the first draw.
 #[derive(Clone, Copy)]
 pub struct Subject<'a> {
     /// What theory says.
     pub prediction: &'a Prediction,
-    /// How many draws will be made.
+    /// How many draws are planned.
     pub draws: u64,
-    /// The differences that matter.
+    /// How many draws the plan may ask for at most.
+    pub most: u64,
+    /// How many of the first draws the tests of laws get, whatever the gate decides.
+    pub fixed: u64,
+    /// The differences that matter, where the case says.
     pub tolerance: Tolerance,
     /// Whether the case declares the experiment biased.
     pub expect_biased: bool,
-    /// Whether the case allows checks that are too short to pass.
-    pub allow_underpowered: bool,
+    /// Whether each draw keeps its books, see [`crate::estimators::walk::Books`].
+    pub keeps_books: bool,
+    /// The variance of one draw by pilot draws, where theory has none.
+    pub pilot_variance: Option<f64>,
 }
 
-/// The levels that the run's checks share.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// A z-score beyond this fails.
-    pub z: f64,
-    /// A p-value below this fails.
-    pub p: f64,
-    /// A difference of `z + power` standard errors is seen all but β of the time.
-    pub power: f64,
+/// One question.
+pub struct Question {
+    /// The name of the check that asks.
+    pub check: String,
+    /// The channel it is about; `None` for the experiment as a whole.
+    pub channel: Option<usize>,
+    /// What it is about, as in `the mean`.
+    pub what: String,
+    /// How it is answered.
+    pub kind: Kind,
+    /// Whether the case declares a bias, which the answer must show.
+    pub expects_bias: bool,
 }
 
-/// What was drawn.
-pub struct Evidence<'a> {
-    /// One tally per channel, of draws less the predicted mean in units of the truth.
-    pub tallies: &'a [Tally],
-    /// The tally of the lookups, less the predicted mean.
-    pub lookups: &'a Tally,
-    /// The sums that the check asked for.
-    pub sums: &'a [Sum],
+/// How a question is answered.
+pub enum Kind {
+    /// By the gate: a mean of 0 with a known variance.
+    Scalar(Scalar),
+    /// By a p-value over the first draws.
+    Law(Box<dyn Law>),
+    /// By every draw.
+    Always(Always),
+    /// By a p-value found by looking at the experiment and its streams afterwards.
+    Inspection(Box<dyn Fn(&Inspected) -> f64 + Send + Sync>),
+    /// Not at all: why not.
+    Untestable(String),
 }
 
-/// Sums over draws that a check asks for.
-pub trait Statistic: Send + Sync {
+/// Replaces the second argument by a y for every draw of the buffer.
+pub type Observe = Box<dyn Fn(&DrawBuffer, &mut Vec<f64>) + Send + Sync>;
+
+/// A quantity y of each draw that has mean 0 and a known variance when all is well.
+pub struct Scalar {
+    /// y.
+    pub observe: Observe,
+    /// What is asked of it.
+    pub design: Design,
+    /// How many draws the question is planned for.
+    pub draws: f64,
+    /// Whether the case says how large a difference matters.
+    pub by_case: bool,
+    /// The draws that it would need to pass, where more than are planned: it may fail, but was
+    /// never promised to pass.
+    pub underpowered: Option<f64>,
+}
+
+/// What is known of a scalar.
+#[derive(Debug, Clone, Copy)]
+pub struct Known {
+    /// Its variance in theory.
+    pub variance: f64,
+    /// The relative error bound of that.
+    pub error: f64,
+    /// What rounding and the prediction's own error may add to its mean.
+    pub floor: f64,
+}
+
+/// What is wanted of a scalar.
+#[derive(Debug, Clone, Copy)]
+pub struct Wanted {
+    /// ε as the case has it.
+    pub tolerance: Option<f64>,
+    /// The largest ε that is still worth a promise.
+    pub cap: f64,
+}
+
+impl Scalar {
+    /// Plans a question: ε from the case, or from the planned draws.
+    #[must_use]
+    pub fn new(subject: &Subject, known: Known, wanted: Wanted, observe: Observe) -> Self {
+        let variance = known.variance * (1.0 + known.error);
+        let draws = subject.draws as f64;
+        let budget = gate::tolerance_of(variance, draws);
+        let design = Design::new(variance, wanted.tolerance.unwrap_or(budget), known.floor);
+        let widest = wanted.tolerance.unwrap_or(wanted.cap);
+        let needs = |tolerance| gate::draws_of(variance, tolerance);
+        // A question too fine for the prediction's own error never gets its promise.
+        let blurred = design.tolerance > widest * (1.0 + 1e-9) && 4.0 * known.floor > widest;
+        let underpowered = if blurred {
+            Some(f64::INFINITY)
+        } else {
+            let least = needs(design.tolerance.min(widest));
+            (least > draws * (1.0 + 1e-6)).then_some(least)
+        };
+        let by_case = wanted.tolerance.is_some();
+        Self { observe, design, draws: needs(design.tolerance), by_case, underpowered }
+    }
+}
+
+/// A test of a whole law by sums over the first draws.
+pub trait Law: Send + Sync {
     /// How many sums.
     fn size(&self) -> usize;
 
-    /// Adds the draws of a buffer to the sums.
-    fn add(&self, draws: &DrawBuffer, sums: &mut [f64]);
+    /// Adds the draws of a buffer, of which the first is the block's draw number `first`, to the
+    /// sums of the block.
+    fn add(&self, draws: &DrawBuffer, first: usize, sums: &mut [f64]);
+
+    /// Turns the sums of a block of `draws` draws into what is summed over blocks.
+    fn close(&self, draws: usize, sums: &mut [f64]) {
+        let _ = (draws, sums);
+    }
+
+    /// The p-value of the sums over `draws` draws; `None` where they test nothing.
+    fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
+}
+
+/// An experiment with its streams, for checks that look for themselves.
+pub struct Inspected<'a> {
+    /// The experiment.
+    pub experiment: &'a dyn Experiment,
+    /// The channels of a draw.
+    pub channels: usize,
+    /// The stream of each block.
+    pub stream: &'a dyn Fn(u64) -> Stream,
+    /// How many blocks there are.
+    pub blocks: u64,
+}
+
+impl Inspected<'_> {
+    /// The first `count` values of the first block's draws, last channel.
+    #[must_use]
+    pub fn first_draws(&self, count: u64) -> Vec<f64> {
+        let mut stream = (self.stream)(0);
+        let mut buffer = DrawBuffer::new(self.channels);
+        let mut values = Vec::new();
+        while (values.len() as u64) < count {
+            self.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+            values.extend(buffer.values.iter().last().into_iter().flatten());
+        }
+        values
+    }
+}
+
+/// A bound that every draw must keep.
+pub struct Always {
+    /// The largest value over a buffer; not a number where a draw is none.
+    pub largest: Box<dyn Fn(&DrawBuffer) -> f64 + Send + Sync>,
+    /// What it may not exceed.
+    pub bound: f64,
 }
 
 /// A page of the catalogue of checks.
 pub trait Check: Sync {
-    /// What it tests.
-    fn kind(&self) -> Kind;
+    /// What it asks of an experiment; nothing where it does not apply.
+    fn questions(&self, subject: &Subject) -> Vec<Ask>;
+}
 
-    /// How many hypotheses it tests of an experiment; 0 where it does not apply.
-    fn hypotheses(&self, subject: &Subject) -> usize;
+/// A question without the name of its check.
+pub struct Ask {
+    /// See [`Question::channel`].
+    pub channel: Option<usize>,
+    /// See [`Question::what`].
+    pub what: String,
+    /// See [`Question::kind`].
+    pub kind: Kind,
+}
 
-    /// The sums it needs.
-    fn statistic(&self, subject: &Subject) -> Option<Box<dyn Statistic>> {
-        let _ = subject;
-        None
+impl Ask {
+    /// A question about the experiment as a whole.
+    #[must_use]
+    pub fn whole(what: &str, kind: Kind) -> Self {
+        Self { channel: None, what: what.to_owned(), kind }
     }
 
-    /// What it found.
-    fn judge(&self, subject: &Subject, limits: &Limits, evidence: &Evidence) -> Vec<Finding>;
+    /// A question about one channel.
+    #[must_use]
+    pub fn channel(channel: usize, what: &str, kind: Kind) -> Self {
+        Self { channel: Some(channel), what: what.to_owned(), kind }
+    }
+}
+
+/// All questions of all checks, in the order of the catalogue.
+#[must_use]
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let pages = CATALOGUE.pages.iter().zip(ALL);
+    let asked = pages.flat_map(|(page, check)| {
+        let check_name = page.name();
+        check.questions(subject).into_iter().map(move |ask| {
+            let Ask { channel, what, kind } = ask;
+            let expects_bias = subject.expect_biased && check_name == "mean";
+            Question { check: check_name.clone(), channel, what, kind, expects_bias }
+        })
+    });
+    asked.collect()
 }
 
 /// Lists the checks: from one line each come the module, the name and the row in `list`.
@@ -94,7 +231,7 @@ macro_rules! checks {
             Catalogue { name: "checks", pages: &[$($crate::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
-        pub const ALL: &[&dyn Check] = &[$(&$module::$Page),*];
+        const ALL: &[&dyn Check] = &[$(&$module::$Page),*];
     };
 }
 
@@ -102,10 +239,18 @@ checks! {
     mean::Mean,
     variance::Variance,
     lookups::Lookups,
-    poisson::Poisson,
+    covariance::Covariance,
+    counts::Counts,
     atoms::Atoms,
     distances::Distances,
-    covariance::Covariance,
+    depth::Depth,
+    curve::Curve,
+    dispersion::Dispersion,
+    streams::Streams,
+    generator::Generator,
+    resolution::Resolution,
+    invariant::Invariant,
+    numeric::Numeric,
 }
 
 /// Rounding of a product of `lookups` factors, relative to the result.
@@ -114,84 +259,8 @@ pub fn rounding(lookups: f64) -> f64 {
     16.0 * f64::EPSILON * (1.0 + lookups)
 }
 
-/// A mean that was compared with its prediction.
-#[derive(Debug, Clone, Copy)]
-pub struct Comparison {
-    /// Observed less predicted.
-    pub difference: f64,
-    /// The predicted standard error of the difference.
-    pub standard_error: f64,
-    /// The prediction's own error bound.
-    pub allowance: f64,
-    /// The difference that matters.
-    pub tolerance: f64,
-    /// The fewest draws for which the test is near its level, whatever the tolerance.
-    pub draws_for_level: f64,
-}
-
-impl Comparison {
-    /// The z-score.
-    #[must_use]
-    pub fn z(&self) -> f64 {
-        self.difference / self.standard_error
-    }
-
-    /// Whether the difference is within the prediction's own error.
-    #[must_use]
-    pub fn is_rounding(&self) -> bool {
-        self.difference.abs() <= self.allowance
-    }
-
-    /// The smallest difference that would have been seen.
-    #[must_use]
-    pub fn detectable(&self, limits: &Limits) -> f64 {
-        (limits.z + limits.power) * self.standard_error
-    }
-
-    /// Fail beyond the level and the prediction's own error; pass if a difference that matters
-    /// would have been seen; otherwise inconclusive, with the draws it would need.
-    #[must_use]
-    pub fn verdict(&self, what: &str, subject: &Subject, limits: &Limits) -> (Verdict, String) {
-        let draws = subject.draws as f64;
-        let beyond = self.difference.abs() - self.allowance;
-        let sound = draws >= self.draws_for_level;
-        if sound && beyond > limits.z * self.standard_error {
-            let z = self.z();
-            return (Verdict::Fail, format!("{what} is off by {z:+.1} standard errors"));
-        }
-        let room = self.tolerance - self.allowance;
-        if room <= 0.0 {
-            let reason =
-                format!("the prediction of {what} is known to {:.0e} only", self.allowance);
-            return (too_short(subject), reason);
-        }
-        let needed = draws * (self.detectable(limits) / room).powi(2);
-        let needed = needed.max(self.draws_for_level);
-        if needed <= draws * (1.0 + 1e-9) {
-            return (Verdict::Pass, String::new());
-        }
-        let reason = if needed.is_finite() {
-            format!("{what} needs {needed:.1e} draws")
-        } else {
-            format!("{what} cannot be tested: its moments overflow")
-        };
-        (too_short(subject), reason)
-    }
-}
-
-/// The verdict on a check that has too few draws.
+/// The same for an experiment: by its expected lookups.
 #[must_use]
-pub fn too_short(subject: &Subject) -> Verdict {
-    if subject.allow_underpowered { Verdict::Underpowered } else { Verdict::Inconclusive }
-}
-
-/// A finding about a p-value.
-#[must_use]
-pub fn law_finding(check: &str, what: &str, p: Option<f64>, limits: &Limits) -> Option<Finding> {
-    let p = p?;
-    let fails = p < limits.p;
-    let verdict = if fails { Verdict::Fail } else { Verdict::Pass };
-    let reason = if fails { format!("{what}: p = {p:.1e}") } else { String::new() };
-    let channel = String::new();
-    Some(Finding { check: check.to_owned(), channel, z: None, p: Some(p), verdict, reason })
+pub fn rounding_of(subject: &Subject) -> f64 {
+    rounding(subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean))
 }

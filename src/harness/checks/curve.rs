@@ -1,0 +1,106 @@
+//! The whole curve of one walk: the mean of `T̂(s)/T(s) − 1` as a process in s.
+//!
+//! ```text
+//! R(s) = mean of X(s)/T(s) − 1 is a martingale with the clock g(s) = expm1(J₂(s))
+//! Σ_j n (ΔR_j)²/Δg_j is χ²;   √n max|R|/√g(S) has P(D > x) ≤ 4 Σ (−1)^k Φ̄((2k + 1)x)
+//! ```
+//!
+//! It sees a walk that goes wrong on the way and is right at the end. Both limits need
+//! `n ≥ 100 κ`, κ the kurtosis of an increment, and ten times the rare-event size; below that each
+//! increment goes through the gate instead.
+//!
+//! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, whose increments over disjoint
+//! stretches are independent; the supremum is the reflection principle of Brownian motion.
+
+use super::{Ask, Check, Kind, Known, Law, Scalar, Subject, Wanted, rounding_of};
+use crate::estimators::DrawBuffer;
+use crate::stats::{chi_square, reflection};
+
+/// The largest bias of an increment, relative to T, that is still worth a promise.
+const CAP: f64 = 0.05;
+/// The relative error of a clock.
+const ERROR: f64 = 1e-9;
+
+/// The check of the curve.
+pub struct Curve;
+
+/// The increments `X_j/T_j − X_{j−1}/T_{j−1}`.
+struct Increments {
+    /// `1/T_j`.
+    scale: Vec<f64>,
+    /// `Δg_j`.
+    clock: Vec<f64>,
+}
+
+impl Law for Increments {
+    fn size(&self) -> usize {
+        self.scale.len()
+    }
+
+    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+        for i in 0..draws.lookups.len() {
+            let mut before = 1.0;
+            for ((values, scale), sum) in draws.values.iter().zip(&self.scale).zip(&mut *sums) {
+                let now = values[i] * scale;
+                *sum += now - before;
+                before = now;
+            }
+        }
+    }
+
+    fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
+        let (mut square, mut degrees) = (0.0, 0.0);
+        let (mut path, mut furthest, mut clock) = (0.0, 0.0f64, 0.0);
+        for (&sum, &step) in sums.iter().zip(&self.clock) {
+            if step > 0.0 {
+                square += sum * sum / (draws * step);
+                degrees += 1.0;
+            }
+            path += sum;
+            furthest = furthest.max(f64::abs(path));
+            clock += step;
+        }
+        if degrees == 0.0 {
+            return None;
+        }
+        let supremum = reflection::upper_tail(furthest / (draws * clock).sqrt());
+        // Two looks at the same draws.
+        Some((2.0 * chi_square::upper(square, degrees).min(supremum)).min(1.0))
+    }
+}
+
+impl Check for Curve {
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        let increments = &subject.prediction.increments;
+        if subject.expect_biased || increments.is_empty() {
+            return Vec::new();
+        }
+        let channels = &subject.prediction.channels;
+        let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
+        let rare = channels.iter().fold(0.0f64, |most, c| most.max(c.tails.rare_event_size));
+        let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
+        let clock: Vec<f64> = increments.iter().map(|step| step.variance).collect();
+        if clock.iter().all(|&step| step <= 0.0) {
+            return Vec::new();
+        }
+        if subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare) {
+            let law = Increments { scale, clock };
+            return vec![Ask::whole("the curve along one walk", Kind::Law(Box::new(law)))];
+        }
+        let steps = clock.iter().enumerate().filter(|step| *step.1 > 0.0 && step.1.is_finite());
+        steps.map(|(j, &variance)| Ask::channel(j, "the step to it", step(subject, j, &scale, variance))).collect()
+    }
+}
+
+fn step(subject: &Subject, j: usize, scale: &[f64], variance: f64) -> Kind {
+    let (here, before) = (scale[j], j.checked_sub(1).map(|i| (i, scale[i])));
+    let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+        y.extend((0..draws.lookups.len()).map(|draw| {
+            let last = before.map_or(1.0, |(i, scale)| draws.values[i][draw] * scale);
+            draws.values[j][draw] * here - last
+        }));
+    };
+    let known = Known { variance, error: ERROR, floor: rounding_of(subject) };
+    let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
+    Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+}

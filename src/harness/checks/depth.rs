@@ -1,0 +1,44 @@
+//! Free-flight distances against their law by the Anderson–Darling statistic, which weighs the
+//! tails: very near and very far collisions.
+//!
+//! ```text
+//! A² = n ∫ (F_n − F)²/(F(1 − F)) dF,  F = (1 − T(s))/(1 − T(S)) of the rays that collide
+//! ```
+//!
+//! Distances are counted in about a thousand equally probable classes, so that memory does not grow
+//! with the draws; the law of A² is not changed visibly by that.
+//!
+//! Source: T. W. Anderson, D. A. Darling, *Asymptotic theory of certain "goodness of fit" criteria
+//! based on stochastic processes*, Annals of Mathematical Statistics 23 (1952), 193–212.
+
+use super::distances::Classes;
+use super::{Ask, Check, Kind, Law, Subject};
+use crate::estimators::DrawBuffer;
+use crate::stats::anderson_darling;
+
+/// The check of the depth.
+pub struct Depth;
+
+struct Empirical(Classes);
+
+impl Law for Empirical {
+    fn size(&self) -> usize {
+        self.0.len() + 1
+    }
+
+    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+        self.0.count(draws, sums);
+    }
+
+    fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
+        anderson_darling::p_value_of_classes(&sums[..self.0.len()])
+    }
+}
+
+impl Check for Depth {
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        let classes = Classes::of(subject, usize::MAX).filter(|_| !subject.expect_biased);
+        let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
+        kind.map(|kind| Ask::whole("the tails of the distances", kind)).into_iter().collect()
+    }
+}

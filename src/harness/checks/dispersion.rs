@@ -1,0 +1,61 @@
+//! The spread of the blocks' means: neither too large nor too small.
+//!
+//! ```text
+//! z_b = Σ (X − E[X])/√(n_b V),  Σ_b z_b² is χ² with as many degrees of freedom as blocks
+//! ```
+//!
+//! Blocks have streams of their own. Streams that repeat each other make blocks agree too well;
+//! streams that depend on each other make them differ too much. Neither need show in the mean of
+//! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
+
+use super::mean::is_certain;
+use super::{Ask, Check, Kind, Law, Subject};
+use crate::estimators::DrawBuffer;
+use crate::harness::plan::BLOCK;
+use crate::stats::chi_square;
+
+/// The fewest blocks that make a test.
+const FEWEST: u64 = 4;
+
+/// The check of the dispersion.
+pub struct Dispersion;
+
+struct BlockMeans {
+    mean: f64,
+    scale: f64,
+}
+
+impl Law for BlockMeans {
+    fn size(&self) -> usize {
+        2
+    }
+
+    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+        let last = draws.values.last().map_or(&[][..], Vec::as_slice);
+        sums[0] += last.iter().map(|x| (x - self.mean) * self.scale).sum::<f64>();
+    }
+
+    fn close(&self, draws: usize, sums: &mut [f64]) {
+        sums[0] = sums[0] * sums[0] / draws as f64;
+        sums[1] = 1.0;
+    }
+
+    fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
+        (sums[1] > 0.0).then(|| chi_square::two_sided(sums[0], sums[1]))
+    }
+}
+
+impl Check for Dispersion {
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
+        let Some(moments) = channel.moments else { return Vec::new() };
+        let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
+        let needed = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
+        let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
+        if subject.expect_biased || is_certain(subject, channel) || !enough {
+            return Vec::new();
+        }
+        let law = BlockMeans { mean: channel.mean.value, scale: 1.0 / moments.variance().sqrt() };
+        vec![Ask::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
+    }
+}

@@ -1,0 +1,75 @@
+//! The streams of random numbers themselves: no overlap, all bits, no correlation.
+//!
+//! ```text
+//! overlap      no 64-bit word occurs twice among the marked words of all streams
+//! resolution   each of the 53 bits of a uniform number is set somewhere in 256 words
+//! correlation  |z| of Σ (u_{b,i} − ½)(u_{b+1,i+l} − ½) over lags |l| ≤ 16, all neighbours b
+//! ```
+//!
+//! A word is marked when its upper eight bits are zero: two streams that overlap by any shift share
+//! all marked words of the overlap, and few words need to be compared. The first two are certain;
+//! the third gives the p-value.
+
+use rand::Rng;
+
+use super::{Ask, Check, Inspected, Kind, Subject};
+use crate::rng::unit;
+use crate::stats::{correlation, ties};
+
+/// How many streams are compared.
+const STREAMS: u64 = 16;
+/// How many words of each are searched for overlaps.
+const WORDS: usize = 1 << 14;
+/// How many numbers of each enter the correlations.
+const NUMBERS: usize = 1024;
+/// The largest lag.
+const LAG: i32 = 16;
+/// How many words must show all bits.
+const SHORT: usize = 256;
+
+/// The check of the generator.
+pub struct Generator;
+
+impl Check for Generator {
+    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+        // One look at the streams needs draws that use them.
+        let random = subject.prediction.channels.iter().any(|channel| {
+            channel.moments.is_some_and(|moments| moments.relative[0] > 0.0)
+        });
+        if subject.expect_biased || !random {
+            return Vec::new();
+        }
+        vec![Ask::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
+    }
+}
+
+fn p_value(inspected: &Inspected) -> f64 {
+    // Neighbouring blocks follow each other, and so do blocks far apart.
+    let blocks = inspected.blocks.clamp(2, STREAMS);
+    let mut marked = Vec::new();
+    for block in 0..blocks {
+        let mut stream = (inspected.stream)(block);
+        let words: Vec<u64> = (0..WORDS).map(|_| stream.next_u64()).collect();
+        let bits = ties::or_of_words(words[..SHORT].iter().map(|word| word >> 11));
+        if bits != (1 << 53) - 1 {
+            return 0.0;
+        }
+        marked.extend(words.into_iter().filter(|word| word >> 56 == 0));
+    }
+    marked.sort_unstable();
+    if marked.windows(2).any(|pair| pair[0] == pair[1]) {
+        return 0.0;
+    }
+    let numbers = |block| -> Vec<f64> {
+        let mut stream = (inspected.stream)(block);
+        (0..NUMBERS).map(|_| 12f64.sqrt() * (unit(&mut stream) - 0.5)).collect()
+    };
+    let mut least: f64 = 1.0;
+    let mut before = numbers(0);
+    for block in 1..blocks {
+        let here = numbers(block);
+        least = least.min(correlation::lagged(&before, &here, -LAG..=LAG).1);
+        before = here;
+    }
+    (least * (blocks - 1) as f64).min(1.0)
+}

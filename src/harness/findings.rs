@@ -1,0 +1,264 @@
+//! From totals to findings: what each question's answer means.
+//!
+//! ```text
+//! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
+//! law    p-values of the whole run together, by Holm
+//! bound  broken by any draw ⇒ fail
+//! ```
+//!
+//! A mean passes on the strength of its variance; where that one is underpowered the finding says
+//! `variance assumed`. A mean that is underpowered makes its experiment inconclusive unless the
+//! case allows it.
+
+use super::checks::{Always, Inspected, Kind, Question, Scalar};
+use super::plan::{BLOCK, Plan, Planned, PlannedCase};
+use super::record::{Finding, GateFinding, Verdict};
+use super::run::{Drawn, Standing, Total};
+use crate::stats::gate::Decision;
+use crate::stats::multiplicity;
+
+/// The reason of a mean that passed although its variance could not be tested.
+pub const ASSUMED: &str = "variance assumed";
+
+/// What is found of one experiment; laws still have to be judged together.
+#[must_use]
+pub fn of_experiment(
+    plan: &Plan,
+    case: &PlannedCase,
+    planned: &Planned,
+    drawn: &Drawn,
+) -> Vec<Finding> {
+    if drawn.draws == 0 {
+        let reason = "the time limit came before the first draw".to_owned();
+        return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
+    }
+    let both = planned.questions.iter().zip(&drawn.totals);
+    let mut findings: Vec<Finding> = both
+        .filter_map(|(question, total)| of_question(plan, case, planned, drawn, question, total))
+        .collect();
+    rely_on_variance(&mut findings);
+    if planned.expect_biased {
+        shown_anywhere(&mut findings);
+    }
+    findings
+}
+
+/// A finding without an answer.
+fn blank(check: &str, what: &str, channel: String) -> Finding {
+    Finding {
+        check: check.to_owned(),
+        what: what.to_owned(),
+        expects_bias: false,
+        channel,
+        z: None,
+        p: None,
+        gate: None,
+        block: None,
+        verdict: Verdict::Inconclusive,
+        reason: String::new(),
+    }
+}
+
+fn of_question(
+    plan: &Plan,
+    case: &PlannedCase,
+    planned: &Planned,
+    drawn: &Drawn,
+    question: &Question,
+    total: &Total,
+) -> Option<Finding> {
+    let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
+    let channel = question.channel.map_or(String::new(), |index| channels[index].name.clone());
+    let expects_bias = question.expects_bias;
+    let finding = Finding { expects_bias, ..blank(&question.check, &question.what, channel) };
+    Some(match (&question.kind, total) {
+        (Kind::Scalar(scalar), Total::Gate(standing)) => {
+            let (verdict, reason) = if question.expects_bias {
+                biased(plan, planned, drawn, standing)
+            } else {
+                decided(plan, case, question, scalar, standing)
+            };
+            let gate = Some(gate_finding(plan, question, scalar, standing));
+            let block = Some(standing.draws.saturating_sub(1) / BLOCK);
+            Finding { verdict, reason, gate, block, ..finding }
+        }
+        (Kind::Law(law), Total::Law(sums)) => {
+            let sums: Vec<f64> = sums.iter().map(crate::numeric::sum::Sum::value).collect();
+            let draws = drawn.draws.min(planned.fixed);
+            let p = law.p_value(&sums, draws as f64)?;
+            Finding { p: Some(p), verdict: Verdict::Pass, ..finding }
+        }
+        (Kind::Inspection(look), _) => {
+            let ready = planned.outcome.as_ref().ok()?;
+            let inspected = Inspected {
+                experiment: ready.experiment.as_ref(),
+                channels: channels.len(),
+                stream: &|block| planned.stream(block),
+                blocks: drawn.draws.div_ceil(BLOCK),
+            };
+            Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
+        }
+        (Kind::Always(always), &Total::Largest(largest, block)) => {
+            let (verdict, reason) = kept(question, always, largest);
+            let block = (verdict == Verdict::Fail).then_some(block);
+            Finding { verdict, reason, block, ..finding }
+        }
+        (Kind::Untestable(why), _) => {
+            let reason = format!("{} cannot be tested: {why}", question.what);
+            let verdict = too_weak(plan, case, question);
+            Finding { verdict, reason, ..finding }
+        }
+        _ => return None,
+    })
+}
+
+fn gate_finding(
+    plan: &Plan,
+    question: &Question,
+    scalar: &Scalar,
+    standing: &Standing,
+) -> GateFinding {
+    let levels = &plan.levels;
+    GateFinding {
+        tolerance: scalar.design.tolerance,
+        variance: scalar.design.variance,
+        mean: standing.mean,
+        planned: scalar.draws,
+        draws: standing.draws,
+        ln_e: standing.evidence.ln_e,
+        ln_e_limit: if question.expects_bias { levels.ln_biased } else { levels.ln_fail },
+        ln_p: standing.evidence.ln_pass,
+        ln_p_limit: levels.ln_pass,
+        needed: scalar.underpowered,
+        is_decided: standing.decision != Decision::Open,
+    }
+}
+
+fn decided(
+    plan: &Plan,
+    case: &PlannedCase,
+    question: &Question,
+    scalar: &Scalar,
+    standing: &Standing,
+) -> (Verdict, String) {
+    let what = &question.what;
+    let evidence = &standing.evidence;
+    match standing.decision {
+        Decision::Passed => (Verdict::Pass, String::new()),
+        Decision::Failed => {
+            let error = (scalar.design.variance / standing.draws as f64).sqrt();
+            let (off, z) = (standing.mean, standing.mean / error);
+            let reason = format!(
+                "{what} is off by {off:+.2e}, {z:+.1} standard errors (ln E = {:.1} ≥ {:.1} after \
+                 {} draws)",
+                evidence.ln_e, plan.levels.ln_fail, standing.draws
+            );
+            (Verdict::Fail, reason)
+        }
+        Decision::Open => match scalar.underpowered {
+            Some(needed) => {
+                let reason = if needed.is_finite() {
+                    format!("{what} needs {needed:.1e} draws")
+                } else {
+                    format!("the prediction of {what} is known to {:.0e} only", scalar.design.floor)
+                };
+                (too_weak(plan, case, question), reason)
+            }
+            None => {
+                let [above, below] = evidence.ln_pass;
+                let reason = format!(
+                    "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
+                    standing.draws, plan.levels.ln_pass
+                );
+                (Verdict::Inconclusive, reason)
+            }
+        },
+    }
+}
+
+/// The verdict on a question that was never promised to pass.
+fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict {
+    let counts = question.check == "mean" && !case.case.allow_underpowered;
+    if counts || plan.options.strict { Verdict::Inconclusive } else { Verdict::Underpowered }
+}
+
+/// The verdict on a bias that the case declares.
+fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, standing: &Standing) -> (Verdict, String) {
+    let bias = format!("{:+.2e} %", 100.0 * standing.mean);
+    let was_cut = drawn.draws < planned.draws;
+    match standing.decision {
+        Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
+        Decision::Open if was_cut => {
+            let reason = format!("the bias is not shown after {} draws", standing.draws);
+            (Verdict::Inconclusive, reason)
+        }
+        _ => {
+            let (found, limit) = (standing.evidence.ln_e, plan.levels.ln_biased);
+            let reason = format!("expected a bias, found {bias} (ln E = {found:.1} of {limit:.1})");
+            (Verdict::Fail, reason)
+        }
+    }
+}
+
+/// The verdict on a bound that every draw must keep.
+fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String) {
+    let what = &question.what;
+    let is_kept = largest <= always.bound;
+    if question.expects_bias {
+        return if is_kept {
+            (Verdict::Fail, "expected a bias, found none".into())
+        } else {
+            (Verdict::Pass, format!("biased-as-expected: {:+.2e} %", 100.0 * largest))
+        };
+    }
+    if is_kept {
+        (Verdict::Pass, String::new())
+    } else if largest.is_nan() {
+        (Verdict::Fail, "draws are not finite numbers".into())
+    } else {
+        let bound = always.bound;
+        (Verdict::Fail, format!("{what} is off by {largest:.1e} in a draw; {bound:.1e} is rounding"))
+    }
+}
+
+/// A mean passes if the variance of its channel does, or could not be tested.
+fn rely_on_variance(findings: &mut [Finding]) {
+    let unsure: Vec<String> = findings
+        .iter()
+        .filter(|finding| finding.check == "variance" && finding.verdict != Verdict::Pass)
+        .map(|finding| finding.channel.clone())
+        .collect();
+    for finding in findings.iter_mut() {
+        let relies = finding.check == "mean" && finding.verdict == Verdict::Pass;
+        if relies && finding.reason.is_empty() && unsure.contains(&finding.channel) {
+            ASSUMED.clone_into(&mut finding.reason);
+        }
+    }
+}
+
+/// A bias somewhere on a curve is a bias; it need not be everywhere.
+fn shown_anywhere(findings: &mut [Finding]) {
+    let shown = |finding: &Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
+    if findings.iter().any(shown) {
+        for finding in findings.iter_mut().filter(|finding| finding.check == "mean") {
+            if finding.verdict != Verdict::Pass {
+                finding.verdict = Verdict::Pass;
+                finding.reason = "biased elsewhere".into();
+            }
+        }
+    }
+}
+
+/// Judges the p-values of a run together.
+pub fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
+    let p: Vec<f64> = findings.iter().filter_map(|finding| finding.p).collect();
+    let rejected = multiplicity::holm(&p, plan.levels.law_alpha);
+    let laws = findings.iter_mut().filter(|finding| finding.p.is_some());
+    for (finding, rejected) in laws.zip(rejected) {
+        if rejected {
+            finding.verdict = Verdict::Fail;
+            let p = finding.p.unwrap_or(0.0);
+            finding.reason = format!("{} differs from theory: p = {p:.1e}", finding.what);
+        }
+    }
+}
