@@ -132,7 +132,7 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
         }
     };
     let prediction = &ready.prediction;
-    let lookups = prediction.lookups.map(|law| law.mean);
+    let lookups = prediction.lookups.as_ref().map(|law| law.mean);
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
         let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
@@ -191,10 +191,11 @@ fn judge(plan: &Plan, case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> V
         row.z_variance =
             finite(variance::compare(&subject, channel, tally).map(|comparison| comparison.z()));
         let lookups = drawn.lookups.moments();
-        let predicted = subject.prediction.lookups.map_or(0.0, |law| law.mean);
+        let predicted = subject.prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
         row.lookups_per_draw = lookups.map(|m| m.mean + predicted);
         row.z_lookups = lookups::compare(&subject, &drawn.lookups).map(|comparison| comparison.z());
-        row.lookups_deviation = subject.prediction.lookups.map(|law| (law.variance / n).sqrt());
+        row.lookups_deviation =
+            subject.prediction.lookups.as_ref().map(|law| (law.variance / n).sqrt());
         let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
         row.fom = finite(fom.filter(|_| !certain));
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);

@@ -115,7 +115,7 @@ fn draw_block(unit: &Unit) -> Drawn {
         lookups: Tally::default(),
         sums,
     };
-    let expected_lookups = prediction.lookups.map_or(0.0, |law| law.mean);
+    let expected_lookups = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
     let mut left = (planned.draws - unit.block * BLOCK).min(BLOCK);
     let mut counts = Vec::with_capacity(DrawBuffer::LENGTH);
     while left > 0 {

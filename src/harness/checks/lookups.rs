@@ -20,7 +20,7 @@ pub struct Lookups;
 /// Compares the lookups with their prediction; `None` where none is known or all are the same.
 #[must_use]
 pub fn compare(subject: &Subject, tally: &Tally) -> Option<Comparison> {
-    let law = subject.prediction.lookups?;
+    let law = subject.prediction.lookups.as_ref()?;
     let observed = tally.moments()?;
     if law.variance <= 0.0 {
         return None;
@@ -53,7 +53,7 @@ impl Check for Lookups {
             let z = Some(comparison.z());
             return finding(z, comparison.verdict("the number of lookups", subject, limits));
         }
-        let Some(law) = subject.prediction.lookups else { return Vec::new() };
+        let Some(law) = &subject.prediction.lookups else { return Vec::new() };
         // The law's own number may be rounded; a draw that differs by one is far beyond that.
         let rounding = 1e-6 * (1.0 + law.mean) / (1.0 + tally.draws as f64).sqrt();
         let same = tally.mean_square().is_none_or(|square| square.sqrt() <= rounding);

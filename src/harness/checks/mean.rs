@@ -38,7 +38,7 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
         // A forced experiment has no theory: the draws' own variance must do.
         None => (observed.variance?, 1000.0),
     };
-    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
+    let lookups = subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
     Some(Comparison {
         difference,
         standard_error: (variance / tally.draws as f64).sqrt(),
@@ -56,7 +56,7 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
 /// Whether the draws have no spread beyond rounding, in theory.
 #[must_use]
 pub fn is_certain(subject: &Subject, channel: &Channel) -> bool {
-    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
+    let lookups = subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
     channel.moments.is_some_and(|moments| moments.relative[0].sqrt() <= rounding(lookups))
 }
 

@@ -27,7 +27,7 @@ impl Statistic for Counts {
 }
 
 fn probabilities(subject: &Subject) -> Option<Vec<f64>> {
-    let law = subject.prediction.lookups.filter(|law| law.poisson && law.mean > 0.0)?;
+    let law = subject.prediction.lookups.as_ref().filter(|law| law.poisson && law.mean > 0.0)?;
     let most = law.mean + 10.0 * law.mean.sqrt() + 20.0;
     let probability: Vec<f64> =
         (0..u32::MAX).take_while(|&n| f64::from(n) <= most).map(|n| poisson(n, law.mean)).collect();

@@ -38,7 +38,7 @@ pub fn compare(subject: &Subject, channel: &Channel, tally: &Tally) -> Option<Co
     let unit = moments.scale / channel.truth.value;
     let predicted = moments.relative[0] * unit * unit;
     let observed = tally.mean_square()?;
-    let lookups = subject.prediction.lookups.map_or(0.0, |lookups| lookups.mean);
+    let lookups = subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
     let noise = rounding(lookups) / predicted.sqrt();
     Some(Comparison {
         difference: observed / predicted - 1.0,
