@@ -33,6 +33,8 @@ pub struct Setup<P> {
     pub control_transmittance: f64,
     /// `T` over the support.
     pub transmittance: f64,
+    /// Whether whole laws are asked for; a search for optima leaves them out.
+    pub laws: bool,
 }
 
 impl<P: Problem> Setup<P> {
@@ -49,7 +51,7 @@ impl<P: Problem> Setup<P> {
         // Both enter draws: this crate's exponential, the same on every machine.
         let control_transmittance = elementary::exp(-control.optical_depth(support).value);
         let transmittance = elementary::exp(-mesh.optical_depth().value);
-        Self { problem, mesh, sampling, control, control_transmittance, transmittance }
+        Self { problem, mesh, sampling, control, control_transmittance, transmittance, laws: true }
     }
 
     /// `r`, where medium, control and σ̂ are each one constant on the support.
@@ -69,6 +71,7 @@ impl<P: Problem> Setup<P> {
     /// The product estimator with the given rule, for theory.
     #[must_use]
     pub fn product<'a>(&'a self, rule: &'a dyn Rule) -> Product<'a> {
-        Product::new(&self.mesh, &self.sampling, &self.control, rule)
+        let product = Product::new(&self.mesh, &self.sampling, &self.control, rule);
+        Product { laws: self.laws, ..product }
     }
 }

@@ -78,7 +78,7 @@ fn point(
     let prediction: Prediction =
         case.scenario.predict(estimator, variation, pilot_address(seed, case, estimator))?;
     let variance = prediction.channels.last()?.moments?.variance();
-    let lookups = prediction.lookups?.mean;
+    let lookups = prediction.lookups.as_ref()?.mean;
     let fom = 1.0 / (variance * lookups);
     (variance.is_finite() && fom.is_finite()).then_some(CurvePoint { x, variance, lookups, fom })
 }

@@ -317,7 +317,7 @@ impl<P: Estimated> AnyScenario for Scenario<P> {
     ) -> Option<Prediction> {
         let varied = self.varied_entry(estimator, variation);
         let entry = varied.as_deref().unwrap_or(&*self.written[estimator].entry);
-        let setup = self.setup(estimator, variation, pilots).ok()?;
+        let setup = Setup { laws: false, ..self.setup(estimator, variation, pilots).ok()? };
         entry.domain(&setup).ok()?;
         Some(entry.predict(&setup))
     }
@@ -356,7 +356,7 @@ fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
             return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
         }
     }
-    match ready.prediction.lookups {
+    match &ready.prediction.lookups {
         Some(lookups) if lookups.mean.is_nan() || lookups.mean > MOST_LOOKUPS => {
             let needs = "at most a million lookups a draw";
             Err(Refusal::mismatch(needs, format!("theory expects {:e}", lookups.mean)))

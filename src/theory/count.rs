@@ -1,7 +1,12 @@
 //! How many lookups a draw makes.
 
+/// Above this mean a law is left without probabilities.
+pub const LARGEST_MEAN: f64 = 2000.0;
+/// Probabilities below this, relative to the largest, are left out.
+const FAINT: f64 = 1e-20;
+
 /// The law of the number of lookups of one draw.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct CountLaw {
     /// `E[M]`.
     pub mean: f64,
@@ -11,20 +16,80 @@ pub struct CountLaw {
     pub kurtosis: f64,
     /// Whether the law is Poisson.
     pub poisson: bool,
+    /// `P(M = 0), P(M = 1), …` up to where the rest is below 1e-15; empty where they are unknown,
+    /// not asked for, or too many because the mean exceeds 2000.
+    pub pmf: Vec<f64>,
 }
 
 impl CountLaw {
     /// The same number every time.
     #[must_use]
     pub fn always(number: f64) -> Self {
-        Self { mean: number, variance: 0.0, kurtosis: 1.0, poisson: false }
+        let mut pmf = Vec::new();
+        if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
+            Window::default().add(&mut pmf, 1.0, 0.0, whole(number));
+        }
+        Self { mean: number, variance: 0.0, kurtosis: 1.0, poisson: false, pmf }
     }
 
     /// Poisson with the given mean: a walk through `∫σ̂` that nothing ends early.
     #[must_use]
     pub fn poisson(mean: f64) -> Self {
-        Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true }
+        let mut pmf = Vec::new();
+        if (0.0..=LARGEST_MEAN).contains(&mean) {
+            Window::default().add(&mut pmf, 1.0, mean, 0);
+        }
+        Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
     }
+}
+
+/// The Poisson probabilities that are not negligible, by recurrence from the mode outwards.
+///
+/// ```text
+/// P(n) = P(n − 1) m/n,  normalised by their own sum: no factorial, no logarithm, nothing to cancel
+/// ```
+#[derive(Debug, Default)]
+pub struct Window {
+    above: Vec<f64>,
+    below: Vec<f64>,
+}
+
+impl Window {
+    /// Adds `weight · P(N = n)` of a Poisson number of the given mean to `pmf[n + shift]`.
+    pub fn add(&mut self, pmf: &mut Vec<f64>, weight: f64, mean: f64, shift: usize) {
+        let mode = whole(mean);
+        self.above.clear();
+        self.below.clear();
+        let (mut n, mut p) = (mean.floor(), 1.0);
+        while p > FAINT {
+            self.above.push(p);
+            n += 1.0;
+            p *= mean / n;
+        }
+        (n, p) = (mean.floor(), 1.0);
+        while n > 0.0 {
+            p *= n / mean;
+            n -= 1.0;
+            if p <= FAINT {
+                break;
+            }
+            self.below.push(p);
+        }
+        let scale = weight / (self.above.iter().sum::<f64>() + self.below.iter().sum::<f64>());
+        let most = shift + mode + self.above.len();
+        if pmf.len() < most {
+            pmf.resize(most, 0.0);
+        }
+        let (low, high) = pmf.split_at_mut(shift + mode);
+        high.iter_mut().zip(&self.above).for_each(|(sum, p)| *sum += scale * p);
+        low.iter_mut().rev().zip(&self.below).for_each(|(sum, p)| *sum += scale * p);
+    }
+}
+
+/// The floor of a number that is checked to be small and not negative.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+fn whole(x: f64) -> usize {
+    x as usize
 }
 
 /// `P(N = n)` for a Poisson number `N` of the given mean.

@@ -41,7 +41,7 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
     let length = support.length();
     Prediction {
         channels,
-        lookups: Some(whole.count()),
+        lookups: Some(product.lookups(&mesh, &whole)),
         law: None,
         covariances,
         stable_share: (length > 0.0).then(|| (whole.stable / length).min(1.0)),

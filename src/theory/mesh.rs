@@ -221,7 +221,8 @@ impl Mesh {
         }
     }
 
-    fn nodes(&self, span: Span) -> Vec<f64> {
+    /// The distances of the nodes of a panel.
+    pub(super) fn nodes(&self, span: Span) -> Vec<f64> {
         self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect()
     }
 
@@ -238,6 +239,11 @@ impl Mesh {
     #[must_use]
     pub fn integral(&self, panel: Panel<'_>, f: &[f64]) -> f64 {
         panel.span.length() * dot(&self.rule.weights, f)
+    }
+
+    /// The weights of the nodes of a panel of length 1.
+    pub(super) fn weights(&self) -> &[f64] {
+        &self.rule.weights
     }
 
     /// `∫ f` from the panel's beginning to each of its nodes.

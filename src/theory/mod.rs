@@ -6,6 +6,7 @@
 pub mod count;
 pub mod curve;
 pub mod flight;
+pub mod lookups;
 pub mod mesh;
 pub mod moments;
 pub mod optimum;

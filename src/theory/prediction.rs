@@ -106,7 +106,7 @@ impl Prediction {
     #[must_use]
     pub fn figure_of_merit(&self) -> Option<f64> {
         let variance = self.channels.last()?.moments?.variance();
-        let cost = self.lookups?.mean;
+        let cost = self.lookups.as_ref()?.mean;
         (variance > 0.0 && cost > 0.0).then(|| 1.0 / (variance * cost))
     }
 }

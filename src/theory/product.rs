@@ -28,6 +28,8 @@ pub struct Product<'a> {
     /// The rate at which the walk also ends without a lookup, 1/length: that of a control which
     /// is sampled instead of integrated.
     pub killing: f64,
+    /// Whether the whole law of the lookups is asked for; a search for optima leaves it out.
+    pub laws: bool,
 }
 
 /// The integrals that moments and costs are made of.
@@ -49,9 +51,9 @@ pub struct Integrals {
 }
 
 /// σ̂ and the outcome at the nodes of one panel.
-struct Nodes {
-    sampling: Vec<f64>,
-    outcome: Vec<Outcome>,
+pub(super) struct Nodes {
+    pub(super) sampling: Vec<f64>,
+    pub(super) outcome: Vec<Outcome>,
 }
 
 impl<'a> Product<'a> {
@@ -63,7 +65,7 @@ impl<'a> Product<'a> {
         control: &'a Control,
         rule: &'a dyn Rule,
     ) -> Self {
-        Self { mesh, sampling, control, rule, killing: 0.0 }
+        Self { mesh, sampling, control, rule, killing: 0.0, laws: true }
     }
 
     fn ratio(&self, t: f64, extinction: f64) -> f64 {
@@ -72,7 +74,7 @@ impl<'a> Product<'a> {
         if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
     }
 
-    fn nodes(&self, panel: Panel<'_>) -> Nodes {
+    pub(super) fn nodes(&self, panel: Panel<'_>) -> Nodes {
         let sampling = panel.t.iter().map(|&t| self.sampling.value(t)).collect();
         let at = panel.t.iter().zip(panel.extinction);
         let outcome = at.map(|(&t, &sigma)| self.rule.outcome(self.ratio(t, sigma))).collect();
@@ -143,7 +145,7 @@ impl<'a> Product<'a> {
         let channel = Channel::unbiased(truth, moments, all.tails());
         let length = mesh.support().length();
         let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
-        Prediction { stable_share, ..Prediction::single(channel, all.count()) }
+        Prediction { stable_share, ..Prediction::single(channel, self.lookups(&mesh, &all)) }
     }
 }
 
@@ -158,7 +160,8 @@ impl Integrals {
         }
     }
 
-    /// The law of the number of lookups.
+    /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the law
+    /// is Poisson or certain, see [`Product::lookups`].
     #[must_use]
     pub fn count(&self) -> CountLaw {
         let [mean, pairs, triples, quadruples] = self.lookups;
@@ -175,7 +178,7 @@ impl Integrals {
         let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
         let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
-        CountLaw { mean, variance, kurtosis, poisson: false }
+        CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
     }
 }
 

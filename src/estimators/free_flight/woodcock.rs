@@ -36,8 +36,8 @@ impl Estimator<FreeFlight> for Woodcock {
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {
         let product = setup.product(&Null);
         let mesh = product.mesh(&[]);
-        let lookups = product.integrals(&mesh, &[mesh.support().to])[0].count();
-        flight::predict(&setup.mesh, lookups)
+        let all = product.integrals(&mesh, &[mesh.support().to])[0];
+        flight::predict(&setup.mesh, product.lookups(&mesh, &all))
     }
 
     fn draw<M: Extinction>(

@@ -44,7 +44,7 @@ pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusa
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
     let law = setup.constant_ratio().map(|ratio| {
-        let mean = prediction.lookups.map_or(0.0, |lookups| lookups.mean);
+        let mean = prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean);
         Law::Atoms(powers(setup.control_transmittance, 1.0 - ratio, mean))
     });
     Prediction { law, ..prediction }
