@@ -1,7 +1,7 @@
 //! `trueflight predict`: theory only, no draws.
 
 use clap::Args;
-use trueflight::harness::judge;
+use trueflight::harness::{Amount, judge};
 use trueflight::report::console::View;
 
 use super::Console;
@@ -22,7 +22,7 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
-    let options = selection.options(None)?;
+    let options = selection.options(Amount::Case)?;
     let record =
         selection.on_threads(|| Ok(judge::predicted(&selection.plan(&cases, &options)?)))?;
     output::print_record(&record, View::Predict, arguments.format, console)?;

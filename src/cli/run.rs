@@ -8,7 +8,7 @@ use anyhow::Context;
 use clap::Args;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use trueflight::harness::record::{Record, Verdict};
-use trueflight::harness::{Plan, judge, run};
+use trueflight::harness::{Amount, Options, Plan, judge, run};
 use trueflight::report::{self, console::View};
 
 use super::output::{self, Format};
@@ -26,6 +26,12 @@ pub struct Arguments {
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
     #[arg(long, value_name = "T", value_parser = seconds)]
     time: Option<f64>,
+    /// Draw exactly what is planned: no check stops the drawing, none prolongs it
+    #[arg(long)]
+    fixed_draws: bool,
+    /// Let every underpowered check make its experiment inconclusive
+    #[arg(long)]
+    strict: bool,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -35,7 +41,12 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
-    let options = selection.options(arguments.time)?;
+    let options = Options {
+        seconds: arguments.time,
+        fixed: arguments.fixed_draws,
+        strict: arguments.strict,
+        ..selection.options(Amount::Case)?
+    };
     // Better to learn now than after the drawing that nothing can be written.
     writable(&arguments.out)?;
     let record = selection.on_threads(|| {

@@ -7,7 +7,7 @@ use anyhow::Context;
 use clap::Args;
 use trueflight::harness::case::Case;
 use trueflight::harness::source::CaseError;
-use trueflight::harness::{Filter, Options, Plan, suite};
+use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
 use super::Console;
 
@@ -63,11 +63,12 @@ impl Selection {
         anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
     }
 
-    /// The options of a plan.
-    pub fn options(&self, seconds: Option<f64>) -> anyhow::Result<Options> {
+    /// The options of a plan; `usual` is what is drawn where no argument says.
+    pub fn options(&self, usual: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        Ok(Options { seed: self.seed, draws: self.draws, alpha: self.alpha, seconds, filter })
+        let draws = self.draws.map_or(usual, Amount::Exactly);
+        Ok(Options { seed: self.seed, draws, alpha: self.alpha, filter, ..Options::default() })
     }
 
     /// Plans the cases; a selection that keeps nothing is an error.

@@ -161,7 +161,7 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
         }
     };
     let prediction = &ready.prediction;
-    let lookups = prediction.lookups.map(|law| law.mean);
+    let lookups = prediction.lookups.as_ref().map(|law| law.mean);
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
         let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));

@@ -23,6 +23,6 @@ mod written;
 
 pub use case::Case;
 pub use filter::Filter;
-pub use plan::{Options, Plan};
+pub use plan::{Amount, Options, Plan};
 pub use record::Record;
 pub use source::{CaseError, Source};

@@ -35,7 +35,7 @@ pub struct Options {
     /// The seed of all random numbers.
     pub seed: u64,
     /// How many draws.
-    pub draws: Draws,
+    pub draws: Amount,
     /// The chance that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
@@ -52,7 +52,7 @@ pub struct Options {
 
 /// How many draws an experiment makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Draws {
+pub enum Amount {
     /// So many, whatever the cases say.
     Exactly(u64),
     /// What the case says; without a word of it, [`DRAWS`].
@@ -61,7 +61,7 @@ pub enum Draws {
     AtMost(u64),
 }
 
-impl Draws {
+impl Amount {
     fn of(self, case: Option<u64>) -> u64 {
         match self {
             Self::Exactly(draws) => draws,
@@ -75,7 +75,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             seed: 1,
-            draws: Draws::Case,
+            draws: Amount::Case,
             alpha: 1e-3,
             seconds: None,
             budget: None,

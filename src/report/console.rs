@@ -143,8 +143,11 @@ fn closing(text: &mut String, pen: layout::Pen, record: &Record, view: View) {
     let all = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
     let _ = writeln!(text, "{all}");
     let mut facts = Vec::new();
-    if results.checks > 0 {
-        facts.push(format!("{} checks share α = {}", results.checks, short(results.alpha, 3)));
+    let gate = &results.gate;
+    if gate.scalars + gate.laws > 0 {
+        let (scalars, laws) = (gate.scalars, gate.laws);
+        let alpha = short(results.alpha, 3);
+        facts.push(format!("{scalars} scalars and {laws} laws share α = {alpha}"));
     }
     facts.push(format!("seed {}", results.seed));
     if view == View::Run {

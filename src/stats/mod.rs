@@ -1,9 +1,15 @@
 //! Statistics that have never heard of light. Floor 1.
 
+pub mod anderson_darling;
+pub mod binomial;
 pub mod catoni;
 pub mod chi_square;
+pub mod correlation;
 pub mod gate;
+pub mod multiplicity;
 pub mod normal;
+pub mod reflection;
 pub mod tally;
+pub mod ties;
 
 pub use tally::{Moments2, Tally};

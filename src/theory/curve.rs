@@ -44,6 +44,7 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
         lookups: Some(product.lookups(&mesh, &whole)),
         law: None,
         covariances,
+        increments: Vec::new(),
         stable_share: (length > 0.0).then(|| (whole.stable / length).min(1.0)),
     }
 }

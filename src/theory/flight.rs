@@ -10,8 +10,8 @@ use super::{Channel, CountLaw, Law, Mesh, Moments, Prediction, Tails};
 use crate::numeric::sum::Sum;
 use crate::numeric::{Known, Span};
 
-/// The number of equally probable bins of the flight distances.
-pub const BINS: usize = 20;
+/// The number of equally probable classes of the flight distances: tests may join neighbours.
+pub const CLASSES: usize = 1020;
 
 /// Mean depth and its moments, and the law of the distance, measured from the ray's beginning.
 #[must_use]
@@ -71,9 +71,9 @@ fn distances(mesh: &Mesh, ray: Span, escape: f64) -> Option<Law> {
         return None;
     }
     let collided = 1.0 - escape;
-    let bins: Option<Vec<f64>> = (1..BINS)
+    let bins: Option<Vec<f64>> = (1..CLASSES)
         .map(|i| {
-            let depth = -(-collided * i as f64 / BINS as f64).ln_1p();
+            let depth = -(-collided * i as f64 / CLASSES as f64).ln_1p();
             mesh.medium().free_flight(depth).map(|t| t - ray.from)
         })
         .collect();

@@ -14,6 +14,8 @@ pub struct Prediction {
     pub law: Option<Law>,
     /// The covariances of the channels, where there are several.
     pub covariances: Vec<Covariance>,
+    /// The increments along one walk, where the value is a curve.
+    pub increments: Vec<Increment>,
     /// The share of the ray on which the variance stays bounded, `w ≤ 2σ_t`; `None` where the
     /// estimator has no variance introduction density.
     pub stable_share: Option<f64>,
@@ -28,6 +30,8 @@ pub struct Channel {
     pub truth: Known,
     /// What its draws are on average; equal to `truth` if it is unbiased.
     pub mean: Known,
+    /// What relative tolerances refer to: the truth, or the opacity where that is small.
+    pub unit: f64,
     /// Its central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
     /// How heavy its tails are.
@@ -54,7 +58,7 @@ impl Channel {
     #[must_use]
     pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
         let name = String::new();
-        Self { name, truth, mean: truth, moments: Some(moments), tails }
+        Self { name, truth, mean: truth, unit: truth.value, moments: Some(moments), tails }
     }
 }
 
@@ -67,6 +71,15 @@ pub struct Covariance {
     pub value: f64,
     /// `Var[(X₁ − T₁)(X₂ − T₂)]`.
     pub variance: f64,
+}
+
+/// An increment.
+#[derive(Debug, Clone, Copy)]
+pub struct Increment {
+    /// variance
+    pub variance: f64,
+    /// kurtosis
+    pub kurtosis: f64,
 }
 
 /// A law that is known as a whole.
@@ -97,6 +110,7 @@ impl Prediction {
             lookups: Some(lookups),
             law: None,
             covariances: Vec::new(),
+            increments: Vec::new(),
             stable_share: None,
         }
     }

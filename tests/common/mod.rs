@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 use trueflight::catalogue::Settings;
 use trueflight::harness::record::{Finding, Row, Verdict};
-use trueflight::harness::{Case, CaseError, Options, Plan, Record, Source, judge, run};
+use trueflight::harness::{Amount, Case, CaseError, Options, Plan, Record, Source, judge, run};
 use trueflight::media::{Body, Medium};
 
 /// The level of every run in the tests: a false alarm does not happen.
@@ -30,7 +30,7 @@ pub fn mistakes(text: &str) -> Option<CaseError> {
 
 /// A seed and a number of draws at the level of the tests.
 pub fn options(seed: u64, draws: u64) -> Options {
-    Options { seed, draws: Some(draws), alpha: ALPHA, ..Options::default() }
+    Options { seed, draws: Amount::Exactly(draws), alpha: ALPHA, ..Options::default() }
 }
 
 /// Draws and judges cases.

@@ -68,7 +68,8 @@ fn p_value(inspected: &Inspected) -> f64 {
     let mut before = numbers(0);
     for block in 1..blocks {
         let here = numbers(block);
-        least = least.min(correlation::lagged(&before, &here, -LAG..=LAG).1);
+        let lagged = correlation::lagged(&before, &here, -LAG..=LAG);
+        least = lagged.map_or(least, |lagged| least.min(lagged.p_value));
         before = here;
     }
     (least * (blocks - 1) as f64).min(1.0)

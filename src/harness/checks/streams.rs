@@ -47,8 +47,9 @@ impl Law for IndexSums {
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
-        let blocks = sums[FIRST];
-        (blocks >= 1.0).then(|| correlation::index_sums(&sums[..FIRST], blocks, self.kurtosis))
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count of blocks
+        let blocks = sums[FIRST] as usize;
+        correlation::index_sums(&sums[..FIRST], blocks, self.kurtosis - 3.0)
     }
 }
 
