@@ -1,7 +1,13 @@
 //! Statistics that have never heard of light. Floor 1.
 
+pub mod anderson_darling;
+pub mod binomial;
 pub mod chi_square;
+pub mod correlation;
+pub mod multiplicity;
 pub mod normal;
+pub mod reflection;
 pub mod tally;
+pub mod ties;
 
 pub use tally::{Moments2, Tally};
