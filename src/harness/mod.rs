@@ -8,6 +8,7 @@ pub mod case;
 pub mod checks;
 pub mod curves;
 pub mod filter;
+pub mod foreign;
 pub mod judge;
 pub mod plan;
 pub mod record;
