@@ -244,7 +244,7 @@ impl Draws {
         let unreadable = |cause| ForeignError::unreadable(&name, cause);
         let file = File::open(path).map_err(unreadable)?;
         let data = file.metadata().map_err(unreadable)?;
-        let bytes = data.is_file().then(|| data.len());
+        let bytes = data.is_file().then_some(data.len());
         Self::new(Box::new(file), &name, format, bytes)
     }
 
