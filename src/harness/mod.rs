@@ -10,6 +10,7 @@ pub mod curves;
 pub mod draw;
 pub mod findings;
 pub mod filter;
+pub mod foreign;
 pub mod judge;
 pub mod plan;
 pub mod record;

@@ -75,7 +75,8 @@ fn statistic(sorted: &[f64]) -> f64 {
     let n = sorted.len() as f64;
     let pairs = sorted.iter().zip(sorted.iter().rev());
     let term = |(i, (&low, &high)): (usize, (&f64, &f64))| {
-        let ends = low.max(rounding).ln() + if high < 1.0 { (-high).ln_1p() } else { rounding.ln() };
+        let ends =
+            low.max(rounding).ln() + if high < 1.0 { (-high).ln_1p() } else { rounding.ln() };
         (2 * i + 1) as f64 * ends
     };
     -n - pairs.enumerate().map(term).sum::<f64>() / n

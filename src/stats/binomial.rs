@@ -90,7 +90,9 @@ fn ln_mass(k: f64, n: f64, chance: Chance) -> f64 {
     if k == n {
         return n * (-chance.q).ln_1p();
     }
-    remainder(n) - remainder(k) - remainder(n - k)
+    remainder(n)
+        - remainder(k)
+        - remainder(n - k)
         - deviance(k, n * chance.p)
         - deviance(n - k, n * chance.q)
         - 0.5 * (2.0 * PI * k * (n - k) / n).ln()

@@ -1,0 +1,330 @@
+//! One column of a table of text.
+//!
+//! ```text
+//! T,X          a first line of names is optional, unless the column is chosen by name
+//! 0.5,0.25     numbers as 1, 0.5, −1.25e-3, nan, inf; spaces around them do not matter
+//! ```
+//!
+//! Empty lines, and lines that begin with `#`, hold no draws.
+
+use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
+
+use super::{Bytes, Column, ForeignError};
+
+/// How many bytes are asked for at a time.
+const CHUNK: usize = 1 << 17;
+
+/// An open table.
+pub(super) struct Table {
+    reader: Reader<Lines>,
+    file: String,
+    /// The column that is read.
+    column: usize,
+    /// How many columns the first line has.
+    columns: u64,
+    record: ByteRecord,
+    /// The draw in `record`, read when the table was opened.
+    first: Option<f64>,
+}
+
+impl Table {
+    /// Opens a table, finds the column, and reads its first draw.
+    pub(super) fn open(
+        bytes: Bytes,
+        file: &str,
+        column: Option<&Column>,
+    ) -> Result<Self, ForeignError> {
+        let reader = ReaderBuilder::new()
+            .has_headers(false)
+            .flexible(true)
+            .comment(Some(b'#'))
+            .buffer_capacity(CHUNK)
+            .from_reader(Lines { bytes, before: 0, start: 0, chunk: Vec::new() });
+        let record = ByteRecord::new();
+        let file_name = file.to_owned();
+        let mut table =
+            Self { reader, file: file_name, column: 0, columns: 0, record, first: None };
+        let empty = || Err(ForeignError::Empty { file: file.to_owned() });
+        if !table.advance()? {
+            return empty();
+        }
+        table.columns = table.record.len() as u64;
+        let named = table.choose(column)?;
+        if named && !table.advance()? {
+            return empty();
+        }
+        table.first = Some(table.draw()?);
+        Ok(table)
+    }
+
+    /// Appends the next draws, until the buffer holds `at_most`.
+    pub(super) fn read(
+        &mut self,
+        draws: &mut Vec<f64>,
+        at_most: usize,
+    ) -> Result<(), ForeignError> {
+        if at_most > draws.len() {
+            draws.extend(self.first.take());
+        }
+        while draws.len() < at_most && self.advance()? {
+            draws.push(self.draw()?);
+        }
+        Ok(())
+    }
+
+    /// Finds the column by the first line; answers whether that is a line of names.
+    fn choose(&mut self, column: Option<&Column>) -> Result<bool, ForeignError> {
+        let file = || self.file.clone();
+        let names: Vec<String> = self.record.iter().map(text).collect();
+        let is_name = |field: &[u8]| number(field).is_none() && !like_a_number(field);
+        let listed = || {
+            let named = self.record.iter().all(|field| field.is_empty() || is_name(field));
+            if named { names.clone() } else { (0..names.len()).map(|k| k.to_string()).collect() }
+        };
+        match column {
+            None if names.len() > 1 => {
+                return Err(ForeignError::ManyColumns { file: file(), columns: listed() });
+            }
+            None => {}
+            Some(&Column::Index(index)) if index < names.len() => self.column = index,
+            Some(Column::Name(name)) => {
+                let mut found = (0..names.len()).filter(|&k| names[k] == name.trim());
+                if let Some(index) = found.next() {
+                    let count = 1 + found.count();
+                    if count > 1 {
+                        let name = name.clone();
+                        return Err(ForeignError::SameName { file: file(), name, count });
+                    }
+                    self.column = index;
+                    return Ok(true);
+                }
+                let (column, columns) = (Column::Name(name.clone()), listed());
+                return Err(ForeignError::NoColumn { file: file(), column, columns });
+            }
+            Some(column) => {
+                let (column, columns) = (column.clone(), listed());
+                return Err(ForeignError::NoColumn { file: file(), column, columns });
+            }
+        }
+        Ok(self.record.get(self.column).is_some_and(is_name))
+    }
+
+    /// Reads the next line; false at the end.
+    fn advance(&mut self) -> Result<bool, ForeignError> {
+        self.reader.read_byte_record(&mut self.record).map_err(|error| {
+            let cause = match error.into_kind() {
+                ErrorKind::Io(cause) => cause,
+                other => std::io::Error::other(format!("{other:?}")),
+            };
+            ForeignError::unreadable(&self.file, cause)
+        })
+    }
+
+    /// The draw in the line at hand.
+    #[inline]
+    fn draw(&self) -> Result<f64, ForeignError> {
+        if self.record.len() as u64 == self.columns
+            && let Some(value) = self.record.get(self.column).and_then(number)
+        {
+            return Ok(value);
+        }
+        Err(self.fault())
+    }
+
+    /// What is wrong with the line at hand.
+    #[cold]
+    fn fault(&self) -> ForeignError {
+        let line = self.reader.get_ref().line(self.reader.position().byte());
+        let file = self.file.clone();
+        let found = self.record.len() as u64;
+        if found != self.columns {
+            return ForeignError::RaggedLine { file, line, found, expected: self.columns };
+        }
+        let text = self.record.get(self.column).map(text).unwrap_or_default();
+        ForeignError::NotANumber { file, line, column: self.column, text }
+    }
+}
+
+/// Remembers the last bytes it passed on, so that a line can be counted when something is wrong with
+/// it: the csv crate's own count is that of the line before, after empty lines or Windows' line ends.
+struct Lines {
+    bytes: Bytes,
+    /// How many lines ended before the chunk.
+    before: u64,
+    /// How many bytes came before the chunk.
+    start: u64,
+    chunk: Vec<u8>,
+}
+
+impl Lines {
+    /// The line, from 1 on, that holds the last of the first `end` bytes.
+    fn line(&self, end: u64) -> u64 {
+        let last = usize::try_from(end.saturating_sub(self.start + 1)).unwrap_or(usize::MAX);
+        1 + self.before + ends(&self.chunk[..last.min(self.chunk.len())])
+    }
+}
+
+impl std::io::Read for Lines {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.bytes.read(buffer)?;
+        // At the end of the source the last chunk stays.
+        if count > 0 {
+            self.before += ends(&self.chunk);
+            self.start += self.chunk.len() as u64;
+            self.chunk.clear();
+            self.chunk.extend_from_slice(&buffer[..count]);
+        }
+        Ok(count)
+    }
+}
+
+/// How many lines end within the bytes.
+fn ends(bytes: &[u8]) -> u64 {
+    // Sums of bytes are fast, and a chunk of 255 cannot overflow one.
+    let few = |chunk: &[u8]| chunk.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>();
+    bytes.chunks(255).map(|chunk| u64::from(few(chunk))).sum()
+}
+
+/// The number that a field is.
+#[inline]
+fn number(field: &[u8]) -> Option<f64> {
+    std::str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+/// Whether a field begins as numbers do: then it is a number gone wrong, not a name.
+fn like_a_number(field: &[u8]) -> bool {
+    let begins = |byte: &u8| byte.is_ascii_digit() || b"+-.".contains(byte);
+    field.trim_ascii().first().is_none_or(begins)
+}
+
+/// A field as text, to show or to compare.
+fn text(field: &[u8]) -> String {
+    String::from_utf8_lossy(field.trim_ascii()).into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use super::super::{Draws, Format, all};
+    use super::*;
+
+    fn read(text: &str, column: Option<&str>) -> Result<Vec<f64>, ForeignError> {
+        let column = column.and_then(|column| column.parse().ok());
+        let reader = Cursor::new(text.as_bytes().to_vec());
+        all(Draws::from_reader(reader, "x.csv", Format::Csv { column })?)
+    }
+
+    fn error(text: &str, column: Option<&str>) -> String {
+        read(text, column).expect_err("an error").to_string()
+    }
+
+    #[test]
+    fn one_column_needs_neither_name_nor_header() {
+        for text in
+            ["0.5\n-1e-3\n2\n", "T\n0.5\n-1e-3\n2", "\u{feff}T\r\n 0.5 \r\n-1e-3\r\n\r\n+2\r\n"]
+        {
+            assert_eq!(read(text, None).expect("draws"), [0.5, -1e-3, 2.0], "{text:?}");
+        }
+        assert_eq!(read("# numpy.savetxt\n1.0e+00\n", None).expect("draws"), [1.0]);
+    }
+
+    #[test]
+    fn a_column_is_chosen_by_name_or_by_place() {
+        let text = "id,\"T (500 nm)\",X\na,0.5,1\nb,0.25,2\n";
+        assert_eq!(read(text, Some("T (500 nm)")).expect("draws"), [0.5, 0.25]);
+        assert_eq!(read(text, Some("X")).expect("draws"), [1.0, 2.0]);
+        assert_eq!(read(text, Some("2")).expect("draws"), [1.0, 2.0]);
+        assert_eq!(read("1,2\n3,4\n", Some("1")).expect("draws"), [2.0, 4.0]);
+    }
+
+    #[test]
+    fn numbers_that_are_not_finite_are_read() {
+        let draws = read("nan\ninf\n-Infinity\n1e999\n", None).expect("draws");
+        assert!(draws[0].is_nan());
+        assert_eq!(draws[1..], [f64::INFINITY, f64::NEG_INFINITY, f64::INFINITY]);
+    }
+
+    #[test]
+    fn a_choice_is_asked_for() {
+        assert_eq!(
+            error("T,X\n1,2\n", None),
+            "x.csv: 2 columns (T, X); choose one by name or index"
+        );
+        assert_eq!(error("1,2\n", None), "x.csv: 2 columns (0, 1); choose one by name or index");
+    }
+
+    #[test]
+    fn a_column_must_be_there_once() {
+        assert_eq!(
+            error("T,X\n1,2\n", Some("Y")),
+            "x.csv: no column `Y` among T, X; choose one of these"
+        );
+        assert_eq!(
+            error("1,2\n", Some("7")),
+            "x.csv: no column 7, counted from 0, among 0, 1; choose one of these"
+        );
+        assert_eq!(
+            error("T,T\n1,2\n", Some("T")),
+            "x.csv: 2 columns are called `T`; choose one by index"
+        );
+    }
+
+    #[test]
+    fn a_ragged_line_is_named() {
+        assert_eq!(
+            error("T,X\n1,2\n\n3\n", Some("T")),
+            "x.csv, line 4: 1 column(s) where the first line has 2; mend the line"
+        );
+        assert!(error("1\n2,5\n", None).starts_with("x.csv, line 2: 2 column(s)"));
+    }
+
+    #[test]
+    fn a_word_is_named_with_its_place() {
+        assert_eq!(
+            error("T,X\n1,2\n3,4x\n", Some("X")),
+            "x.csv, line 3, column 1: `4x` is not a number; write it as 1.25e-3"
+        );
+        // A first line that begins as a number does is no name: no draw is lost.
+        assert!(error("1.2.3\n1\n", None).starts_with("x.csv, line 1, column 0: `1.2.3`"));
+        assert!(error("T\nU\n1\n", None).starts_with("x.csv, line 2, column 0: `U`"));
+        assert!(error("1\n\"\"\n", None).starts_with("x.csv, line 2, column 0: ``"));
+    }
+
+    #[test]
+    fn lines_are_counted_across_line_ends_and_chunks() {
+        let line_of = |text: &str| match read(text, None) {
+            Err(ForeignError::NotANumber { line, .. }) => line,
+            other => panic!("{other:?}"),
+        };
+        for end in ["\n", "\r\n", "\n\n", "\n# why\n"] {
+            let lines = end.matches('\n').count() as u64;
+            for draws in [0, 1, 2, 100_000] {
+                for start in ["", "\u{feff}"] {
+                    for last in ["", "\n", "\r\n1\n"] {
+                        let text = format!("{start}{}1x{last}", format!("0.5{end}").repeat(draws));
+                        assert_eq!(line_of(&text), lines * draws as u64 + 1, "{end:?} {last:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn no_line_and_no_line_but_names_are_no_draws() {
+        for text in ["", "\n\n", "T\n", "# 1\n"] {
+            assert_eq!(error(text, None), "x.csv: no draws; write at least one number");
+        }
+    }
+
+    #[test]
+    fn draws_before_a_fault_are_given() {
+        let reader = Cursor::new(b"1\n2\nx\n".to_vec());
+        let format = Format::Csv { column: None };
+        let mut draws = Draws::from_reader(reader, "x.csv", format).expect("a table");
+        let mut buffer = Vec::new();
+        assert!(draws.read(&mut buffer, 10).is_err());
+        assert_eq!(buffer, [1.0, 2.0]);
+        assert_eq!(draws.known_length(), None);
+    }
+}

@@ -1,0 +1,178 @@
+//! `NumPy`'s array file: a header that npyz reads, then words.
+
+use npyz::NpyHeader;
+
+use super::raw::{Word, Words};
+use super::{Bytes, ForeignError};
+
+/// Opens an array; `length` counts the bytes of the file.
+pub(super) fn open(
+    mut bytes: Bytes,
+    file: &str,
+    length: Option<u64>,
+) -> Result<Words, ForeignError> {
+    let mut header = Counted { bytes: &mut bytes, count: 0 };
+    let array = match NpyHeader::from_reader(&mut header) {
+        Ok(array) => array,
+        Err(_) if header.count == 0 => return Err(ForeignError::Empty { file: file.to_owned() }),
+        Err(cause) => return Err(ForeignError::NotNpy { file: file.to_owned(), cause }),
+    };
+    let header = header.count;
+    let word = match array.dtype().descr().trim_matches('\'') {
+        "<f8" => Word::LittleDouble,
+        ">f8" => Word::BigDouble,
+        "<f4" => Word::LittleSingle,
+        ">f4" => Word::BigSingle,
+        found => {
+            return Err(ForeignError::ElementType { file: file.to_owned(), found: found.into() });
+        }
+    };
+    // With one axis the order of C and that of Fortran are the same.
+    if array.shape().iter().filter(|&&size| size != 1).count() > 1 {
+        let sizes: Vec<String> = array.shape().iter().map(u64::to_string).collect();
+        let shape = format!("({})", sizes.join(", "));
+        return Err(ForeignError::Shape { file: file.to_owned(), shape });
+    }
+    let expected = array.shape().iter().product::<u64>();
+    if expected == 0 {
+        return Err(ForeignError::Empty { file: file.to_owned() });
+    }
+    if let Some(length) = length {
+        let found = length.saturating_sub(header) / word.width() as u64;
+        if found < expected {
+            return Err(ForeignError::Truncated { file: file.to_owned(), found, expected });
+        }
+        if Some(length - header) != expected.checked_mul(word.width() as u64) {
+            return Err(ForeignError::Overlong { file: file.to_owned(), expected });
+        }
+    }
+    Ok(Words::new(bytes, file, word, Some(expected)))
+}
+
+/// Counts the bytes that a header takes.
+struct Counted<'a> {
+    bytes: &'a mut Bytes,
+    count: u64,
+}
+
+impl std::io::Read for Counted<'_> {
+    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
+        let count = self.bytes.read(buffer)?;
+        self.count += count as u64;
+        Ok(count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::{Cursor, Write};
+
+    use npyz::{AutoSerialize, DType, Order, Serialize, TypeStr, WriteOptions, WriterBuilder};
+
+    use super::super::{Draws, Format, all};
+    use super::*;
+
+    fn array<T>(kind: &str, shape: &[u64], order: Order, values: &[T]) -> Vec<u8>
+    where
+        T: Serialize + AutoSerialize + Copy,
+    {
+        let mut bytes = Vec::new();
+        let kind: TypeStr = kind.parse().expect("a type");
+        let options = WriteOptions::new().dtype(DType::Plain(kind)).shape(shape).order(order);
+        let mut writer = options.writer(&mut bytes).begin_nd().expect("a header");
+        writer.extend(values.iter().copied()).expect("written");
+        writer.finish().expect("written");
+        bytes
+    }
+
+    fn pipe(bytes: Vec<u8>) -> Result<Draws, ForeignError> {
+        Draws::from_reader(Cursor::new(bytes), "x.npy", Format::Npy)
+    }
+
+    fn open(bytes: &[u8]) -> Result<Draws, ForeignError> {
+        let mut file = tempfile::NamedTempFile::new().expect("a file");
+        file.write_all(bytes).expect("written");
+        Draws::open(file.path(), Format::Npy)
+    }
+
+    #[test]
+    fn every_width_and_byte_order_comes_back() {
+        let values: Vec<f64> = (0..40_000).map(|i| f64::from(i) / 64.0 - 3.0).collect();
+        let singles: Vec<f32> = (0..40_000u16).map(|i| f32::from(i) / 64.0 - 3.0).collect();
+        let shape = [40_000];
+        for bytes in [
+            array("<f8", &shape, Order::C, &values),
+            array(">f8", &shape, Order::C, &values),
+            array("<f4", &shape, Order::C, &singles),
+            array(">f4", &shape, Order::C, &singles),
+            array("<f8", &[1, 40_000, 1], Order::Fortran, &values),
+        ] {
+            let draws = open(&bytes).expect("draws");
+            assert_eq!(draws.known_length(), Some(40_000));
+            assert_eq!(all(draws).expect("draws"), values);
+            assert_eq!(all(pipe(bytes).expect("draws")).expect("draws"), values);
+        }
+        let one = array("<f8", &[], Order::C, &[2.5]);
+        assert_eq!(all(pipe(one).expect("a draw")).expect("a draw"), [2.5]);
+    }
+
+    #[test]
+    fn several_axes_are_refused() {
+        let bytes = array("<f8", &[2, 1, 3], Order::C, &[0.0; 6]);
+        assert_eq!(
+            pipe(bytes).expect_err("a shape").to_string(),
+            "x.npy: an array of shape (2, 1, 3), whose order of draws is not known; \
+             save one axis, by x.ravel() or x[:, k]"
+        );
+        let bytes = array("<f8", &[2, 3], Order::Fortran, &[0.0; 6]);
+        assert!(matches!(pipe(bytes), Err(ForeignError::Shape { .. })));
+    }
+
+    #[test]
+    fn other_types_are_refused() {
+        let bytes = array("<i4", &[3], Order::C, &[1i32, 2, 3]);
+        assert_eq!(
+            pipe(bytes).expect_err("a type").to_string(),
+            "x.npy: an array of type <i4; save it as float64 or float32, by x.astype('<f8')"
+        );
+        for kind in ["'<c16'", "'<f2'", "'|b1'", "[('a', '<f8'), ('b', '<f8')]"] {
+            let text = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': (3,), }}\n");
+            let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+            bytes.extend(u16::try_from(text.len()).expect("short").to_le_bytes());
+            bytes.extend(text.bytes());
+            assert!(matches!(pipe(bytes), Err(ForeignError::ElementType { .. })), "{kind}");
+        }
+    }
+
+    #[test]
+    fn a_file_cut_off_is_refused() {
+        let whole = array("<f8", &[5], Order::C, &[0.5; 5]);
+        let cut = whole[..whole.len() - 9].to_vec();
+        let message = ": ends after 3 of 5 draws; write it to the end";
+        assert!(open(&cut).expect_err("cut").to_string().ends_with(message));
+        let error = all(pipe(cut).expect("a header")).expect_err("cut").to_string();
+        assert_eq!(error, format!("x.npy{message}"));
+        let error = pipe(whole[..40].to_vec()).expect_err("cut");
+        assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
+    }
+
+    #[test]
+    fn a_file_that_goes_on_is_refused() {
+        let whole = array("<f8", &[5], Order::C, &[0.5; 5]);
+        let twice = [whole.clone(), whole].concat();
+        let message = ": goes on after its 5 draws; write one array a file";
+        assert!(open(&twice).expect_err("two arrays").to_string().ends_with(message));
+        let error = all(pipe(twice).expect("a header")).expect_err("two arrays").to_string();
+        assert_eq!(error, format!("x.npy{message}"));
+    }
+
+    #[test]
+    fn what_is_no_array_is_refused() {
+        assert!(matches!(pipe(Vec::new()), Err(ForeignError::Empty { .. })));
+        let none = array::<f64>("<f8", &[0], Order::C, &[]);
+        assert!(matches!(pipe(none), Err(ForeignError::Empty { .. })));
+        let error = pipe(b"T,X\n0.5,0.25\n".to_vec()).expect_err("a table");
+        assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
+        assert!(error.to_string().ends_with("write it by numpy.save"), "{error}");
+    }
+}
