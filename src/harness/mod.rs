@@ -9,6 +9,7 @@ pub mod checks;
 pub mod curves;
 pub mod filter;
 pub mod judge;
+pub mod mutation;
 pub mod plan;
 pub mod record;
 pub mod run;
