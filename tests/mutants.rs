@@ -3,7 +3,7 @@
 
 mod common;
 
-use std::collections::BTreeMap;
+use std::collections::BTreeSet;
 
 use common::options;
 use rayon::prelude::*;
@@ -25,10 +25,10 @@ const QUIET: f64 = 5.5;
 
 /// The cases that mutants stand on.
 fn cases() -> Vec<Case> {
-    let named: BTreeMap<&str, ()> = mutants::all().iter().map(|m| (m.target.case, ())).collect();
+    let named: BTreeSet<&str> = mutants::all().iter().map(|m| m.target.case).collect();
     let source =
         |name: &&str| suite::find(name).unwrap_or_else(|| panic!("{name} is not built in"));
-    named.keys().map(|name| Case::read(&source(name)).expect("a case")).collect()
+    named.iter().map(|name| Case::read(&source(name)).expect("a case")).collect()
 }
 
 /// Sums over the draws of one experiment, as each check wants them.
@@ -254,7 +254,7 @@ fn blocks(planned: &Planned, stream: impl Fn(Address) -> Stream + Sync) -> Vec<f
 fn loudness(z: &[f64]) -> [f64; 2] {
     let mut sorted = z.to_vec();
     sorted.sort_by(f64::total_cmp);
-    // Means of 0 and 1 alone agree by chance now and then; estimators here are continuous.
+    // The draws are continuous: two means never agree by chance.
     let same = sorted.windows(2).filter(|pair| pair[0] == pair[1]).count() as f64;
     let power = z.iter().map(|x| x * x).sum::<f64>();
     let lagged = |lag: usize| {

@@ -110,8 +110,8 @@ fn literal(right: Outcome, ratio: f64) -> Outcome {
     Outcome { survival: (1.0 - ratio) / sum, ..weighing(right, sum) }
 }
 
-/// `q = NaN`: `u ≥ q` is false, and the walk goes on with a weight of 0.
+/// `q = |1 − r|/(0 + |1 − r|) = NaN`: `u ≥ q` is false, and the walk goes on with a weight of 0.
 fn zero_over_zero(right: Outcome, ratio: f64) -> Outcome {
-    let transmitted = (1.0 - ratio).abs();
-    Outcome { survival: transmitted / transmitted, ..right }
+    let (scattered, transmitted) = (0.0, (1.0 - ratio).abs());
+    Outcome { survival: transmitted / (scattered + transmitted), ..right }
 }
