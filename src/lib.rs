@@ -39,6 +39,7 @@ pub mod estimators;
 pub mod geometry;
 pub mod harness;
 pub mod media;
+pub mod mutants;
 pub mod numeric;
 pub mod problems;
 pub mod report;

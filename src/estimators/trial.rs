@@ -30,14 +30,16 @@ impl DrawBuffer {
         Self { values, lookups, defects }
     }
 
-    fn clear(&mut self) {
+    /// Removes the draws.
+    pub fn clear(&mut self) {
         self.values.iter_mut().for_each(Vec::clear);
         self.lookups.clear();
         self.defects.clear();
     }
 
+    /// Adds a draw.
     #[inline]
-    fn push<V: AsRef<[f64]>>(&mut self, draw: &Draw<V>) {
+    pub fn push<V: AsRef<[f64]>>(&mut self, draw: &Draw<V>) {
         for (channel, &value) in self.values.iter_mut().zip(draw.value.as_ref()) {
             channel.push(value);
         }

@@ -12,6 +12,7 @@ pub mod findings;
 pub mod filter;
 pub mod foreign;
 pub mod judge;
+pub mod mutation;
 pub mod plan;
 pub mod record;
 pub mod run;

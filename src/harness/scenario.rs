@@ -2,14 +2,14 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::mutation::Walk;
 use super::sweep::What;
 use super::written::{Written, read_if};
 use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
-use crate::estimators::{
-    Estimated, Experiment, Portrait, Refusal, Setup, Site, controls, sampling,
-};
+use crate::estimators::{Experiment, Portrait, Refusal, Setup, Site, controls, sampling};
 use crate::media::{Body, Piecewise};
+use crate::mutants::Mutable;
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
 
@@ -59,6 +59,16 @@ pub trait AnyScenario: Send + Sync {
 
     /// The largest `|σ_t − σ_c|` on the ray: the natural scale of σ̂ for an estimator.
     fn natural_scale(&self, estimator: usize, variation: Variation) -> f64;
+
+    /// A mutant in an estimator's place; `None` if the problem has none of that name.
+    fn mutated(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+        name: &str,
+        walk: Walk,
+    ) -> Option<Result<Box<dyn Experiment>, Refusal>>;
 }
 
 /// What an experiment is called.
@@ -91,7 +101,7 @@ pub struct Ready {
 }
 
 /// A problem of known type.
-pub struct Scenario<P: Estimated> {
+pub struct Scenario<P: Mutable> {
     body: Body,
     problem: Arc<P>,
     mesh: OnceLock<Arc<Mesh>>,
@@ -100,7 +110,7 @@ pub struct Scenario<P: Estimated> {
     written: Vec<Written<P>>,
 }
 
-impl<P: Estimated> Scenario<P> {
+impl<P: Mutable> Scenario<P> {
     /// Reads what follows the field: σ̂ and control for all, and the estimators.
     pub fn read(
         settings: &Settings,
@@ -229,7 +239,7 @@ impl<P: Estimated> Scenario<P> {
     }
 }
 
-impl<P: Estimated> AnyScenario for Scenario<P> {
+impl<P: Mutable> AnyScenario for Scenario<P> {
     fn medium(&self) -> &str {
         self.body.name()
     }
@@ -340,6 +350,17 @@ impl<P: Estimated> AnyScenario for Scenario<P> {
         let control = &setup.control;
         let largest = setup.mesh.largest(|t, sigma| (sigma - control.extinction(t)).abs());
         largest.map_or(0.0, |(_, size)| size)
+    }
+
+    fn mutated(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+        name: &str,
+        walk: Walk,
+    ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
+        self.mutant(name, walk, |scenario| scenario.setup(estimator, variation, address))
     }
 }
 

@@ -32,11 +32,15 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance/sines",
     "transmittance/ramps",
     "transmittance/tight-control",
+    "transmittance/magnet",
+    "transmittance/deep",
     "free-flight/eq21-central",
     "free-flight/layers-with-gap",
     "free-flight/exponential",
+    "free-flight/magnet",
     "transmittance-curve/eq21-figure-8",
     "transmittance-curve/noise-figure-5",
+    "transmittance-curve/magnet",
 ];
 
 /// Every built-in case, in the order of the suite.

@@ -1,0 +1,147 @@
+//! Wrong curves of the transmittance.
+//!
+//! ```text
+//! T̂(s) = T_c(s) ∏_{tᵢ < s} (1 − r(tᵢ)),  T_c(s) = exp(−∫₀ˢ σ_c),  all s from one walk
+//! ```
+//!
+//! The curve sees what its last value hides: a reversed medium, a collision that counts too early,
+//! a control that is right at the end only. One walk for each distance has the right means and
+//! variances, and no covariances.
+
+use super::target::{CURVE, CURVE_CONTROL};
+use super::{About, Draws, Mutant, Target};
+use crate::estimators::walk::Books;
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::numeric::{Span, elementary};
+use crate::problems::TransmittanceCurve;
+use crate::problems::transmittance_curve::{MOST, Values};
+use crate::rng::{Stream, exponential};
+
+/// The family.
+#[must_use]
+#[rustfmt::skip] // one mutant, one entry
+pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
+    fn on(target: Target, name: &'static str, check: &'static str, slip: Slip, bug: &'static str) -> Mutant<TransmittanceCurve> {
+        Mutant::new(About { name, bug, target, check }, Curve { slip }, Curve { slip: Slip::None })
+    }
+    let fresh = About {
+        name: "curve-of-fresh-walks",
+        bug: "every distance has a walk of its own",
+        target: CURVE,
+        check: "covariance",
+    };
+    vec![
+        on(CURVE, "curve-reversed", "mean", Slip::Reversed,
+            "σ_t(S − t) is looked up for σ_t(t)"),
+        on(CURVE, "curve-collision-too-early", "mean", Slip::TooEarly,
+            "the first collision beyond a distance counts before it"),
+        on(CURVE, "curve-shifted", "mean", Slip::Shifted,
+            "every value is that of the distance before, and the first is 1"),
+        on(CURVE_CONTROL, "curve-control-whole", "mean", Slip::WholeControl,
+            "T_c is that of the whole ray at every distance"),
+        on(CURVE_CONTROL, "curve-control-to-collision", "mean", Slip::ControlToCollision,
+            "between collisions the curve is flat: T_c is taken at the last collision before s"),
+        on(CURVE_CONTROL, "curve-log2", "lookups", Slip::Log2,
+            "log2 for ln in the flight"),
+        Mutant::new(fresh, FreshWalks, Curve { slip: Slip::None }),
+    ]
+}
+
+/// What goes wrong.
+#[derive(Clone, Copy, PartialEq)]
+enum Slip {
+    None,
+    Reversed,
+    TooEarly,
+    Shifted,
+    WholeControl,
+    ControlToCollision,
+    Log2,
+}
+
+/// The double particle model's curve, see `estimators/transmittance_curve/double.rs`.
+#[derive(Clone, Copy)]
+struct Curve {
+    slip: Slip,
+}
+
+impl Draws<TransmittanceCurve> for Curve {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<TransmittanceCurve>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        let slip = self.slip;
+        let support = setup.mesh.support();
+        let distances = setup.problem.ascending();
+        let mut values = Values { at: [0.0; MOST], count: distances.len() };
+        let mut next = 0;
+        let mut pass = |until: f64, last: f64, weight: f64| {
+            while next < distances.len() && distances[next] <= until {
+                let to = match slip {
+                    Slip::WholeControl => support.to,
+                    Slip::ControlToCollision => last,
+                    _ => distances[next],
+                };
+                let upto = Span::new(support.from, to).intersect(support);
+                let depth = setup.control.optical_depth(upto).value;
+                values.at[next] = weight * elementary::exp(-depth);
+                next += 1;
+            }
+        };
+        let mut cursor = setup.sampling.begin();
+        let mut weight = 1.0;
+        let mut books = Books::open(weight);
+        let mut lookups = 0;
+        loop {
+            let last = cursor.t;
+            let scale = if slip == Slip::Log2 { std::f64::consts::LOG2_E } else { 1.0 };
+            let depth = exponential(rng) * scale;
+            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
+                pass(f64::INFINITY, last, weight);
+                break;
+            };
+            if slip != Slip::TooEarly {
+                pass(cursor.t, last, weight);
+            }
+            let reversed = support.from + (support.to - cursor.t);
+            let at = if slip == Slip::Reversed { reversed } else { cursor.t };
+            let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
+            let ratio = residual / sampling;
+            books.hand_over(weight, ratio, 1.0);
+            weight *= 1.0 - ratio;
+            lookups += 1;
+            if slip == Slip::TooEarly {
+                pass(cursor.t, last, weight);
+            }
+        }
+        if slip == Slip::Shifted {
+            values.at.rotate_right(1);
+            values.at[0] = 1.0;
+        }
+        Draw { value: values, lookups, defect: books.defect(weight) }
+    }
+}
+
+/// K walks for K distances, with the lookups of the last.
+#[derive(Clone, Copy)]
+struct FreshWalks;
+
+impl Draws<TransmittanceCurve> for FreshWalks {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<TransmittanceCurve>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        let walk = Curve { slip: Slip::None };
+        let mut draw = walk.draw(setup, medium, rng);
+        for k in 0..draw.value.count - 1 {
+            let fresh = walk.draw(setup, medium, rng);
+            draw.value.at[k] = fresh.value.at[k];
+        }
+        draw
+    }
+}

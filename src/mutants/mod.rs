@@ -1,0 +1,146 @@
+//! Known bugs: a twin of an estimator with one mistake in it, for a gate that must not let it pass.
+//!
+//! A test that has never failed proves little. A mutant names one experiment of the built-in suite
+//! and the check that must catch it there; `trueflight self-test` draws it in the honest
+//! estimator's place, against the honest estimator's prediction.
+//!
+//! A mutant's walk is [`walk`] with one [`Fault`]: the steps of a correct walk are the fault's
+//! default methods, and a fault overrides one of them. Without a fault the walk is the estimator's
+//! own, bit for bit; that *honest twin* shows that nothing but the bug was changed. One file holds
+//! one family of bugs; a mutant is one entry in its family's list. Wrong [`streams`] are a family
+//! of their own: there the estimators are right and their random numbers are not.
+//!
+//! The bugs are those that renderers and transport codes have had, and those that a formula of this
+//! crate invites.
+
+pub mod control;
+pub mod curve;
+pub mod decisions;
+pub mod fault;
+pub mod flight;
+pub mod free_flight;
+pub mod lookups;
+pub mod precision;
+pub mod rules;
+pub mod scores;
+pub mod streams;
+pub mod target;
+pub mod tracking;
+pub mod trial;
+pub mod walk;
+pub mod weights;
+
+use crate::estimators::{Estimated, Experiment, Setup};
+use crate::problems::{FreeFlight, Problem, Transmittance, TransmittanceCurve};
+
+pub use fault::{Fault, Honest};
+pub use streams::StreamMutant;
+pub use target::Target;
+pub use trial::Draws;
+
+/// What a mutant is, without its draws.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct About {
+    /// The name, unique among all mutants.
+    pub name: &'static str,
+    /// The bug in one sentence.
+    pub bug: &'static str,
+    /// The experiment that shows it.
+    pub target: Target,
+    /// The check that must catch it there.
+    pub check: &'static str,
+}
+
+/// Prepares an experiment from an estimator's setup.
+type Build<P> = Box<dyn Fn(Setup<P>) -> Box<dyn Experiment> + Send + Sync>;
+
+/// A known bug in an estimator of problem `P`.
+pub struct Mutant<P> {
+    /// What it is.
+    pub about: About,
+    faulty: Build<P>,
+    honest: Build<P>,
+}
+
+impl<P: Problem> Mutant<P> {
+    /// Joins a bug and the same draws without it.
+    pub fn new(about: About, faulty: impl Draws<P>, honest: impl Draws<P>) -> Self {
+        let faulty = Box::new(move |setup| trial::experiment(faulty.clone(), setup));
+        let honest = Box::new(move |setup| trial::experiment(honest.clone(), setup));
+        Self { about, faulty, honest }
+    }
+
+    /// The experiment with the bug.
+    #[must_use]
+    pub fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
+        (self.faulty)(setup)
+    }
+
+    /// The honest twin: the same code without the bug.
+    #[must_use]
+    pub fn twin(&self, setup: Setup<P>) -> Box<dyn Experiment> {
+        (self.honest)(setup)
+    }
+}
+
+/// A problem with known bugs.
+pub trait Mutable: Estimated {
+    /// Every mutant, family by family.
+    fn mutants() -> Vec<Mutant<Self>>;
+}
+
+impl Mutable for Transmittance {
+    fn mutants() -> Vec<Mutant<Self>> {
+        let families = [
+            control::mutants(),
+            lookups::mutants(),
+            flight::mutants(),
+            weights::mutants(),
+            rules::mutants(),
+            decisions::mutants(),
+            scores::mutants(),
+            tracking::mutants(),
+            precision::mutants(),
+        ];
+        families.into_iter().flatten().collect()
+    }
+}
+
+impl Mutable for FreeFlight {
+    fn mutants() -> Vec<Mutant<Self>> {
+        free_flight::mutants().into_iter().chain(precision::flights()).collect()
+    }
+}
+
+impl Mutable for TransmittanceCurve {
+    fn mutants() -> Vec<Mutant<Self>> {
+        curve::mutants()
+    }
+}
+
+/// Every mutant of every problem, without the wrong streams.
+#[must_use]
+pub fn all() -> Vec<About> {
+    fn about<P: Mutable>() -> impl Iterator<Item = About> {
+        P::mutants().into_iter().map(|mutant| mutant.about)
+    }
+    about::<Transmittance>()
+        .chain(about::<FreeFlight>())
+        .chain(about::<TransmittanceCurve>())
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn no_two_mutants_share_a_name() {
+        let mut names: Vec<&str> = all().iter().map(|about| about.name).collect();
+        names.extend(streams::MUTANTS.iter().map(|mutant| mutant.name));
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+        assert!(all().len() >= 45 && streams::MUTANTS.len() >= 5);
+    }
+}

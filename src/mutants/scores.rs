@@ -1,0 +1,163 @@
+//! Draws that are put together wrongly, or are another estimator's.
+//!
+//! ```text
+//! next flight         X = Σᵢ wᵢ v(tᵢ), t₀ = 0,  v(t) = e^{−σ̂(S−t)}
+//! unidirectional MIS  X = Σᵢ wᵢ u(tᵢ) + w_N u(t_N),  u = v/(1 + v)
+//! ```
+//!
+//! Each chance to fly straight to the end counts once. A mean of two walks has the right mean and
+//! half the variance; ray marching has next to no variance, and a bias.
+
+use super::target::{BELOW, DENSE, MIS, NEXT_FLIGHT};
+use super::walk::Product;
+use super::{About, Draws, Honest, Mutant};
+use crate::estimators::rules::Weight;
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::numeric::elementary;
+use crate::problems::Transmittance;
+use crate::rng::{Stream, exponential, unit};
+
+const RATIO: Product<Weight, Honest> = Product { rule: Weight, fault: Honest };
+
+/// The family.
+#[must_use]
+pub fn mutants() -> Vec<Mutant<Transmittance>> {
+    let next_flight = |name, bug, faulty| {
+        let about = About { name, bug, target: NEXT_FLIGHT, check: "mean" };
+        Mutant::new(about, faulty, NextFlight::Right)
+    };
+    let mis = |name, bug, faulty| {
+        let about = About { name, bug, target: MIS, check: "mean" };
+        Mutant::new(about, faulty, Mis::Right)
+    };
+    let ratio = |name, bug, target, check| About { name, bug, target, check };
+    let marching = "three steps of ray marching with a random offset, passed off as fair";
+    let averaged = "the mean of two walks is one draw";
+    vec![
+        next_flight(
+            "next-flight-without-first",
+            "the chance to fly from the beginning straight to the end is left out",
+            NextFlight::WithoutFirst,
+        ),
+        next_flight(
+            "next-flight-counted-twice",
+            "a walk that reaches the end adds its weight to what it has already scored",
+            NextFlight::CountedTwice,
+        ),
+        mis(
+            "mis-without-flight",
+            "a flight that reaches the end does not score its own share",
+            Mis::WithoutFlight,
+        ),
+        mis("mis-unweighted", "next flight and flight count in full, unweighted", Mis::Unweighted),
+        Mutant::new(ratio("ray-marching", marching, DENSE, "mean"), RayMarching, RATIO),
+        Mutant::new(ratio("two-walks-averaged", averaged, BELOW, "variance"), Averaged, RATIO),
+    ]
+}
+
+/// The next-flight estimator, see `estimators/transmittance/next_flight.rs`.
+#[derive(Clone, Copy, PartialEq)]
+enum NextFlight {
+    Right,
+    WithoutFirst,
+    CountedTwice,
+}
+
+impl Draws<Transmittance> for NextFlight {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let end = setup.mesh.support().to;
+        let mut cursor = setup.sampling.begin();
+        let mut weight = 1.0;
+        let mut lookups = 0;
+        let first = elementary::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
+        let mut score = if *self == Self::WithoutFirst { 0.0 } else { first };
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
+            lookups += 1;
+            score += weight * elementary::exp(-sampling * (end - cursor.t));
+        }
+        if *self == Self::CountedTwice {
+            score += weight;
+        }
+        Draw::free([score], lookups)
+    }
+}
+
+/// Unidirectional MIS, see `estimators/transmittance/unidirectional_mis.rs`.
+#[derive(Clone, Copy, PartialEq)]
+enum Mis {
+    Right,
+    WithoutFlight,
+    Unweighted,
+}
+
+impl Draws<Transmittance> for Mis {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let end = setup.mesh.support().to;
+        let mut cursor = setup.sampling.begin();
+        let mut weight = 1.0;
+        let mut lookups = 0;
+        let mut score = 0.0;
+        let share = |sampling: f64, t: f64| {
+            let v = elementary::exp(-sampling * (end - t));
+            if *self == Self::Unweighted { v } else { v / (1.0 + v) }
+        };
+        let mut here = share(setup.sampling.value(cursor.t), cursor.t);
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            score += weight * here;
+            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
+            lookups += 1;
+            here = share(sampling, cursor.t);
+        }
+        let last = if *self == Self::WithoutFlight { 1.0 } else { 2.0 };
+        Draw::free([score + last * weight * here], lookups)
+    }
+}
+
+/// `X = exp(−h Σⱼ σ_t((j + u) h))`.
+#[derive(Clone, Copy)]
+struct RayMarching;
+
+impl Draws<Transmittance> for RayMarching {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let support = setup.mesh.support();
+        let step = support.length() / 3.0;
+        let offset = unit(rng);
+        let at = |j: u32| support.from + (f64::from(j) + offset) * step;
+        let depth = step * (0..3).map(|j| medium.extinction(at(j))).sum::<f64>();
+        Draw::free([elementary::exp(-depth)], 3)
+    }
+}
+
+/// `X = (X₁ + X₂)/2`, with the lookups of one.
+#[derive(Clone, Copy)]
+struct Averaged;
+
+impl Draws<Transmittance> for Averaged {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let one = RATIO.draw(setup, medium, rng);
+        let two = RATIO.draw(setup, medium, rng);
+        Draw { value: [0.5 * (one.value[0] + two.value[0])], ..one }
+    }
+}

@@ -1,0 +1,71 @@
+//! Where mutants are shown: experiments of the built-in suite.
+//!
+//! Most stand on the magnets, cases made for this: an asymmetric medium, dense at both ends, and
+//! estimators for every regime of `r = (σ_t − σ_c)/σ̂`.
+
+/// One experiment of a case of the built-in suite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The case.
+    pub case: &'static str,
+    /// Which estimator of the case, from 0.
+    pub index: usize,
+    /// The same estimator by the name that tables give it.
+    pub estimator: &'static str,
+    /// Where in the sweep, in cases that have one.
+    pub swept: Option<f64>,
+}
+
+const fn on(case: &'static str, index: usize, estimator: &'static str) -> Target {
+    Target { case, index, estimator, swept: None }
+}
+
+const fn magnet(index: usize, estimator: &'static str) -> Target {
+    on("transmittance/magnet", index, estimator)
+}
+
+/// `σ̂ = 1.2`, a majorant.
+pub const WOODCOCK: Target = magnet(0, "woodcock");
+/// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+pub const BELOW: Target = magnet(1, "ratio");
+/// `σ̂ = 30`: 90 lookups a draw, a relative standard deviation of a quarter.
+pub const DENSE: Target = magnet(2, "ratio");
+/// A linear σ̂.
+pub const LINEAR: Target = magnet(3, "ratio");
+/// A piecewise-constant σ̂.
+pub const STEPS: Target = magnet(4, "ratio");
+/// A control through five points, `σ̂ = 0.5`.
+pub const EXPLORERS: Target = magnet(5, "double");
+/// `σ_c = 0.9`, `σ̂ = 1`, `−0.5 ≤ r ≤ 0.2`.
+pub const NEGATIVE: Target = magnet(6, "residual-ratio");
+/// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+pub const TERMINATING: Target = magnet(7, "single (terminating)");
+/// `σ_c = 0.55`, `σ̂ = 0.22`, `−0.7 ≤ r ≤ 2.5`.
+pub const CLAMPED: Target = magnet(8, "single (clamped)");
+/// `a = 0.7`, `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
+pub const NON_TERMINATING: Target = magnet(9, "single (non-terminating, a=0.7)");
+/// `a = 0.7`, `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
+pub const ADAPTIVE: Target = magnet(10, "single (adaptive, a=0.7)");
+/// `σ_c = 0.3`, `σ̂ = 0.9`.
+pub const DECOMPOSITION: Target = magnet(11, "decomposition");
+/// Three segments.
+pub const LOCAL_MAJORANT: Target = magnet(12, "local-majorant");
+/// `σ̂ = 1`.
+pub const NEXT_FLIGHT: Target = magnet(13, "next-flight");
+/// `σ̂ = 1`.
+pub const MIS: Target = magnet(14, "unidirectional-mis");
+/// An optical depth of 110, nearly all of it in the control.
+pub const DEEP: Target = on("transmittance/deep", 0, "residual-ratio");
+/// `r = 1` and `r = 0` exactly, albedo 0.
+pub const RATIO_ONE: Target = Target {
+    swept: Some(0.0),
+    ..on("transmittance/ratio-exactly-one", 0, "single (non-terminating)")
+};
+/// Free flight through a constant majorant, on a line that begins at 1.
+pub const FLIGHT: Target = on("free-flight/magnet", 0, "woodcock");
+/// Free flight through a linear majorant.
+pub const FLIGHT_LINEAR: Target = on("free-flight/magnet", 1, "woodcock");
+/// The curve without a control.
+pub const CURVE: Target = on("transmittance-curve/magnet", 0, "double");
+/// The curve with a control whose knots are not on the ends.
+pub const CURVE_CONTROL: Target = on("transmittance-curve/magnet", 1, "double");

@@ -1,0 +1,112 @@
+//! Mistakes of trackers with loops of their own: decomposition and local majorants.
+//!
+//! ```text
+//! decomposition   X = 1 if the control's flight passes S and no residual collision comes before it
+//! local majorant  beyond a segment's end, go back to the boundary and start again
+//! ```
+
+use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
+use super::{About, Draws, Mutant};
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::problems::Transmittance;
+use crate::rng::{Stream, exponential, unit};
+
+/// The family.
+#[must_use]
+pub fn mutants() -> Vec<Mutant<Transmittance>> {
+    let decomposition = |name, bug, faulty: Decomposition| {
+        let about = About { name, bug, target: DECOMPOSITION, check: "mean" };
+        Mutant::new(about, faulty, Decomposition { whole: false, passes: false })
+    };
+    let about = About {
+        name: "local-majorant-overshoot",
+        bug: "a flight beyond a segment's end goes on from where it came to, not from the boundary",
+        target: LOCAL_MAJORANT,
+        check: "mean",
+    };
+    vec![
+        decomposition(
+            "decomposition-whole",
+            "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂",
+            Decomposition { whole: true, passes: false },
+        ),
+        decomposition(
+            "decomposition-passes",
+            "a draw without a residual collision is 1, wherever the control's flight ended",
+            Decomposition { whole: false, passes: true },
+        ),
+        Mutant::new(about, LocalMajorant { overshoots: true }, LocalMajorant { overshoots: false }),
+    ]
+}
+
+/// Decomposition tracking, see `estimators/transmittance/decomposition.rs`.
+#[derive(Clone, Copy)]
+struct Decomposition {
+    /// Collides with all of σ_t.
+    whole: bool,
+    /// Forgets the control's flight at the end.
+    passes: bool,
+}
+
+impl Draws<Transmittance> for Decomposition {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let support = setup.mesh.support();
+        let control = setup.control.extinction(support.from);
+        let flight = if control > 0.0 { exponential(rng) / control } else { f64::INFINITY };
+        let end = (support.from + flight).min(support.to);
+        let mut cursor = setup.sampling.begin();
+        let mut lookups = 0;
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+            if cursor.t >= end {
+                break;
+            }
+            lookups += 1;
+            let subtracted = if self.whole { 0.0 } else { control };
+            if unit(rng) < (medium.extinction(cursor.t) - subtracted) / sampling {
+                return Draw::free([0.0], lookups);
+            }
+        }
+        let passed = self.passes || support.from + flight >= support.to;
+        Draw::free([f64::from(u8::from(passed))], lookups)
+    }
+}
+
+/// Local majorants, see `estimators/transmittance/local_majorant.rs`.
+#[derive(Clone, Copy)]
+struct LocalMajorant {
+    /// Does not go back to the boundary.
+    overshoots: bool,
+}
+
+impl Draws<Transmittance> for LocalMajorant {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let mut lookups = 0;
+        let mut came_to = setup.mesh.support().from;
+        for (ends, majorant) in setup.sampling.segments() {
+            let mut t = if self.overshoots { came_to.max(ends[0]) } else { ends[0] };
+            while t < ends[1] {
+                t += exponential(rng) / majorant;
+                if t.is_nan() || t >= ends[1] {
+                    break;
+                }
+                lookups += 1;
+                if unit(rng) < medium.extinction(t) / majorant {
+                    return Draw::free([0.0], lookups);
+                }
+            }
+            came_to = t;
+        }
+        Draw::free([1.0], lookups)
+    }
+}

@@ -1,0 +1,138 @@
+//! The walks of `estimators/walk.rs` and `estimators/free_flight/woodcock.rs`, step by step.
+//!
+//! ```text
+//! X = T_c ∏ W(tᵢ),  tᵢ a Poisson process of rate σ̂ on the support
+//! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̂(tᵢ);  S if there is none
+//! ```
+//!
+//! With [`Honest`] they make the estimators' draws, bit for bit. The books say what should happen:
+//! a survivor of a collision with ratio r and chance q hands over `X(1 − (1 − r)/q)`, whatever the
+//! fault makes of its weight.
+
+use super::fault::{Fault, Honest, Memory};
+use super::{About, Draws, Mutant, Target};
+use crate::estimators::walk::Books;
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::problems::{FreeFlight, Problem, Transmittance};
+use crate::rng::Stream;
+use crate::theory::Rule;
+
+/// A product estimator with a fault.
+#[derive(Clone, Copy)]
+pub struct Product<R, F> {
+    /// What happens at a collision.
+    pub rule: R,
+    /// The fault.
+    pub fault: F,
+}
+
+impl<R: Rule + Copy + 'static, F: Fault> Draws<Transmittance> for Product<R, F> {
+    fn prepare(&self, setup: Setup<Transmittance>) -> Setup<Transmittance> {
+        self.fault.prepare(setup)
+    }
+
+    #[inline]
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let Self { rule, fault } = self;
+        let mut cursor = setup.sampling.begin();
+        let mut weight = setup.control_transmittance;
+        let mut books = Books::open(weight);
+        let mut memory = Memory::new(setup.mesh.support(), weight, rng);
+        loop {
+            memory.from = cursor.t;
+            let depth = fault.flight(&mut memory, rng);
+            let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
+            let extinction = fault.look(&memory, medium, cursor.t);
+            let residual = extinction - fault.control(&memory, &setup.control, cursor.t);
+            memory.lookups += 1;
+            let ratio = fault.ratio(&setup.sampling, residual, sampling);
+            let outcome = fault.outcome(rule, ratio);
+            if outcome.survival < 1.0 {
+                let killed = fault.number(&mut memory, rng) >= outcome.survival;
+                if fault.real(&memory, killed) {
+                    let defect = books.defect(weight);
+                    return Draw { value: [0.0], lookups: memory.lookups, defect };
+                }
+            }
+            books.hand_over(weight, residual / sampling, outcome.survival);
+            memory.before = weight;
+            weight = fault.weigh(&memory, weight, outcome.weight);
+            if let Some(value) = fault.stop(&memory, weight, rng) {
+                let defect = books.defect(weight);
+                return Draw { value: [value], lookups: memory.lookups, defect };
+            }
+        }
+        let value = fault.end(&mut memory, &setup.control, weight);
+        Draw { value: [value], lookups: memory.lookups, defect: books.defect(value) }
+    }
+}
+
+/// Woodcock tracking of the free flight with a fault.
+#[derive(Clone, Copy)]
+pub struct Flight<F> {
+    /// The fault.
+    pub fault: F,
+}
+
+impl<F: Fault> Draws<FreeFlight> for Flight<F> {
+    fn prepare(&self, setup: Setup<FreeFlight>) -> Setup<FreeFlight> {
+        self.fault.prepare(setup)
+    }
+
+    #[inline]
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<FreeFlight>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let fault = &self.fault;
+        let ray = setup.problem.medium().span();
+        let mut cursor = setup.sampling.begin();
+        let mut memory = Memory::new(setup.mesh.support(), 1.0, rng);
+        loop {
+            memory.from = cursor.t;
+            let depth = fault.flight(&mut memory, rng);
+            let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
+            memory.lookups += 1;
+            let number = fault.number(&mut memory, rng);
+            let real = number * sampling < fault.look(&memory, medium, cursor.t);
+            if fault.real(&memory, real) || fault.stop(&memory, 1.0, rng).is_some() {
+                return Draw::free([fault.distance(ray, cursor.t)], memory.lookups);
+            }
+        }
+        let _ = fault.end(&mut memory, &setup.control, 1.0);
+        Draw::free([fault.escape(&memory, ray)], memory.lookups)
+    }
+}
+
+/// A product estimator's mutant.
+pub fn product<R: Rule + Copy + 'static, F: Fault>(
+    name: &'static str,
+    bug: &'static str,
+    target: Target,
+    check: &'static str,
+    rule: R,
+    fault: F,
+) -> Mutant<Transmittance> {
+    let about = About { name, bug, target, check };
+    Mutant::new(about, Product { rule, fault }, Product { rule, fault: Honest })
+}
+
+/// A free-flight sampler's mutant.
+pub fn flight<F: Fault>(
+    name: &'static str,
+    bug: &'static str,
+    target: Target,
+    check: &'static str,
+    fault: F,
+) -> Mutant<FreeFlight> {
+    let about = About { name, bug, target, check };
+    Mutant::new(about, Flight { fault }, Flight { fault: Honest })
+}
