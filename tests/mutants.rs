@@ -9,8 +9,8 @@ use common::options;
 use rayon::prelude::*;
 use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::harness::mutation::{self, Walk};
+use trueflight::harness::plan::BLOCK;
 use trueflight::harness::plan::Planned;
-use trueflight::harness::run::BLOCK;
 use trueflight::harness::{Case, Plan, suite};
 use trueflight::mutants::{self, About, StreamMutant};
 use trueflight::rng::{Address, Stream};
@@ -122,7 +122,7 @@ impl<'a> Sums<'a> {
     }
 
     fn lookups(&self) -> f64 {
-        let law = self.prediction.lookups.expect("a law of the lookups");
+        let law = self.prediction.lookups.as_ref().expect("a law of the lookups");
         (self.lookups - self.draws * law.mean).abs() / (self.draws * law.variance).sqrt()
     }
 

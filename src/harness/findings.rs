@@ -217,7 +217,10 @@ fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String)
         (Verdict::Fail, "draws are not finite numbers".into())
     } else {
         let bound = always.bound;
-        (Verdict::Fail, format!("{what} is off by {largest:.1e} in a draw; {bound:.1e} is rounding"))
+        (
+            Verdict::Fail,
+            format!("{what} is off by {largest:.1e} in a draw; {bound:.1e} is rounding"),
+        )
     }
 }
 

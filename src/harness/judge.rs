@@ -58,7 +58,8 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
         .par_iter()
         .map(|(case, drawn)| {
             let both = case.experiments.par_iter().zip(drawn.par_iter());
-            both.map(|(planned, drawn)| findings::of_experiment(plan, case, planned, drawn)).collect()
+            both.map(|(planned, drawn)| findings::of_experiment(plan, case, planned, drawn))
+                .collect()
         })
         .collect();
     findings::judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
@@ -243,9 +244,11 @@ fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
     row.z_mean = finite(row.mean.map(|mean| (mean - channel.truth.value) / spread));
     let kurtosis = predicted.kurtosis().filter(|&kurtosis| kurtosis > 1.0 + 1e-6);
     let square = tally.mean_square().map(|square| square * unit * unit / predicted.variance());
-    row.z_variance = finite(square.zip(kurtosis).map(|(square, kurtosis)| {
-        (square - 1.0) / ((kurtosis - 1.0) / n).sqrt()
-    }));
+    row.z_variance = finite(
+        square
+            .zip(kurtosis)
+            .map(|(square, kurtosis)| (square - 1.0) / ((kurtosis - 1.0) / n).sqrt()),
+    );
 }
 
 fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {

@@ -192,7 +192,8 @@ impl<'a> Plan<'a> {
             .map(|case| plan_case(case, options))
             .filter(|case| !case.experiments.is_empty())
             .collect();
-        let ready = |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
+        let ready =
+            |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
         let ready: usize = cases.iter().map(ready).sum();
         // A budget is shared out evenly; what is saved goes to those that are still open.
         let share = options.budget.map(|budget| (budget / ready.max(1) as u64).max(2));

@@ -81,7 +81,7 @@ pub struct Suspect {
 }
 
 /// What was found for one case file.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Default, Serialize)]
 pub struct CaseRecord {
     /// The case's name: its path below the cases folder, without `.toml`.
     pub name: String,

@@ -178,9 +178,7 @@ fn units<'p>(fronts: &[Front<'p>]) -> Vec<(&'p Planned, u64, usize)> {
     let open = || fronts.iter().enumerate().filter(|(_, front)| !front.is_done);
     let drawn = |front: &Front| front.blocks + front.ahead.len() as u64;
     let mut until: Vec<u64> = fronts.iter().map(|front| front.look.max(drawn(front))).collect();
-    let missing = |until: &[u64]| -> u64 {
-        open().map(|(i, front)| until[i] - drawn(front)).sum()
-    };
+    let missing = |until: &[u64]| -> u64 { open().map(|(i, front)| until[i] - drawn(front)).sum() };
     // Only where a look waits for blocks is there anything to draw.
     if missing(&until) > 0 {
         while missing(&until) < enough as u64 {
@@ -196,9 +194,7 @@ fn units<'p>(fronts: &[Front<'p>]) -> Vec<(&'p Planned, u64, usize)> {
         }
     }
     let mut units: Vec<_> = open()
-        .flat_map(|(i, front)| {
-            (drawn(front)..until[i]).map(move |block| (front.planned, block, i))
-        })
+        .flat_map(|(i, front)| (drawn(front)..until[i]).map(move |block| (front.planned, block, i)))
         .collect();
     units.sort_by_key(|unit| unit.1);
     units
@@ -244,8 +240,7 @@ impl Front<'_> {
                 standing.evidence = scalar.design.evidence(sums, draws as f64);
                 standing.draws = draws;
                 let levels = &plan.levels;
-                let level =
-                    if question.expects_bias { levels.ln_biased } else { levels.ln_fail };
+                let level = if question.expects_bias { levels.ln_biased } else { levels.ln_fail };
                 standing.decision = standing.evidence.decision(level, levels.ln_pass);
                 if standing.decision == Decision::Passed && scalar.underpowered.is_some() {
                     standing.decision = Decision::Open;

@@ -91,11 +91,7 @@ impl<const N: usize> PsiSums<N> {
 }
 
 #[inline(always)]
-fn absorb_all<const N: usize>(
-    products: &mut [Product; N],
-    y: &[f64],
-    arguments: &[Argument; N],
-) {
+fn absorb_all<const N: usize>(products: &mut [Product; N], y: &[f64], arguments: &[Argument; N]) {
     for chunk in y.chunks(FLUSH) {
         for (product, &argument) in products.iter_mut().zip(arguments) {
             product.absorb(chunk, argument);

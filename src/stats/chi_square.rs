@@ -111,17 +111,4 @@ mod tests {
         assert!(upper(f64::NAN, 3.0).is_nan() && two_sided(f64::NAN, 3.0).is_nan());
         assert!(upper(1.0, 0.0).is_nan() && two_sided(1.0, f64::NAN).is_nan());
     }
-
-    #[test]
-    fn tails_of_closed_form() {
-        // Two degrees of freedom: P(χ² > x) = e^{−x/2}.
-        assert!((upper(60.0, 2.0) / (-30.0f64).exp() - 1.0).abs() < 1e-12);
-        assert!((two_sided(60.0, 2.0) / (-30.0f64).exp() - 2.0).abs() < 1e-12);
-        assert!((two_sided(1e-9, 2.0) / -2.0 / (-5e-10f64).exp_m1() - 1.0).abs() < 1e-9);
-        assert!((two_sided(2.0 * std::f64::consts::LN_2, 2.0) - 1.0).abs() < 1e-12);
-        assert_eq!(upper(f64::INFINITY, 3.0), 0.0);
-        assert_eq!(two_sided(0.0, 3.0), 0.0);
-        assert!(upper(f64::NAN, 3.0).is_nan() && two_sided(f64::NAN, 3.0).is_nan());
-        assert!(upper(1.0, 0.0).is_nan() && two_sided(1.0, f64::NAN).is_nan());
-    }
 }

@@ -41,7 +41,9 @@ impl Check for Counts {
             return Vec::new();
         };
         let probability = law.pmf.clone();
-        if chi_square::testable_bins(&probability, subject.fixed as f64) < 2 || probability.is_empty() {
+        if chi_square::testable_bins(&probability, subject.fixed as f64) < 2
+            || probability.is_empty()
+        {
             return Vec::new();
         }
         vec![Ask::whole("the law of the lookups", Kind::Law(Box::new(Classes { probability })))]

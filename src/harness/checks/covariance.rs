@@ -51,12 +51,13 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
         let wanted = Wanted { tolerance: None, cap: CAP };
         let ([i, j], truth) = (covariance.pair, [first.mean.value, second.mean.value]);
         let expected = covariance.value * unit;
-        let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
-            let both = draws.values[i].iter().zip(&draws.values[j]);
-            y.extend(both.map(|(a, b)| {
-                (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
-            }));
-        };
+        let observe =
+            move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+                let both = draws.values[i].iter().zip(&draws.values[j]);
+                y.extend(both.map(|(a, b)| {
+                    (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
+                }));
+            };
         Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
     } else {
         Kind::Untestable("its variance overflows".into())

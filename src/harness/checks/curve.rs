@@ -88,7 +88,11 @@ impl Check for Curve {
             return vec![Ask::whole("the curve along one walk", Kind::Law(Box::new(law)))];
         }
         let steps = clock.iter().enumerate().filter(|step| *step.1 > 0.0 && step.1.is_finite());
-        steps.map(|(j, &variance)| Ask::channel(j, "the step to it", step(subject, j, &scale, variance))).collect()
+        steps
+            .map(|(j, &variance)| {
+                Ask::channel(j, "the step to it", step(subject, j, &scale, variance))
+            })
+            .collect()
     }
 }
 

@@ -33,9 +33,11 @@ pub struct Generator;
 impl Check for Generator {
     fn questions(&self, subject: &Subject) -> Vec<Ask> {
         // One look at the streams needs draws that use them.
-        let random = subject.prediction.channels.iter().any(|channel| {
-            channel.moments.is_some_and(|moments| moments.relative[0] > 0.0)
-        });
+        let random = subject
+            .prediction
+            .channels
+            .iter()
+            .any(|channel| channel.moments.is_some_and(|moments| moments.relative[0] > 0.0));
         if subject.expect_biased || !random {
             return Vec::new();
         }

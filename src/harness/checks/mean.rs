@@ -60,9 +60,7 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
             let unit = moments.scale * scale;
             Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
         }
-        (None, Some(pilot)) => {
-            Known { variance: 2.0 * pilot * scale * scale, error: 0.0, floor }
-        }
+        (None, Some(pilot)) => Known { variance: 2.0 * pilot * scale * scale, error: 0.0, floor },
         (None, None) => return Kind::Untestable("theory has no variance for it".into()),
     };
     if !known.variance.is_finite() {

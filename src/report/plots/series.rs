@@ -128,7 +128,7 @@ mod tests {
 
     fn case(rows: Vec<Row>) -> CaseRecord {
         let [name, title, problem, medium] = [const { String::new() }; 4];
-        CaseRecord { name, title, problem, medium, rows, sweep: None, anatomy: None }
+        CaseRecord { name, title, problem, medium, rows, ..CaseRecord::default() }
     }
 
     #[test]
