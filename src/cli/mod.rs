@@ -15,6 +15,7 @@ mod plan;
 mod predict;
 mod run;
 mod selection;
+mod self_test;
 
 use std::process::ExitCode;
 
@@ -53,6 +54,8 @@ enum Command {
     Predict(predict::Arguments),
     /// What would run, what is refused, and why
     Plan(plan::Arguments),
+    /// Does the gate keep its promises, and does it catch known bugs?
+    SelfTest(self_test::Arguments),
     /// The catalogue: media, estimators, problems, checks, cases and more
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
@@ -69,6 +72,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::main(arguments, console),
         Command::Predict(arguments) => predict::main(arguments, console),
         Command::Plan(arguments) => plan::main(arguments, console),
+        Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
         Command::Completions(arguments) => completions::main(arguments),

@@ -1,8 +1,12 @@
 //! What goes to the console: results to stdout, the rest to stderr.
 
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
+use std::time::Duration;
 
+use anyhow::Context;
 use clap::ValueEnum;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use trueflight::harness::Record;
 use trueflight::report::console::{self, View};
 use trueflight::report::rows;
@@ -76,6 +80,29 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 pub fn complain(error: &anyhow::Error) {
     // With stderr gone there is nobody left to tell.
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
+}
+
+/// A bar on the terminal's stderr; hidden where there is none.
+pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
+    if !options.quiet && std::io::stderr().is_terminal() {
+        bar.set_draw_target(ProgressDrawTarget::stderr());
+        let template =
+            format!("{doing} {{wide_bar}} {{human_pos}}/{{human_len}} {things}, {{eta}} left");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(200));
+    }
+    bar
+}
+
+/// Fails now rather than after the drawing if a folder cannot be written into.
+pub fn writable(out: &Path) -> anyhow::Result<()> {
+    let cure = || format!("cannot write into {}; give another folder with --out", out.display());
+    std::fs::create_dir_all(out).with_context(cure)?;
+    tempfile::NamedTempFile::new_in(out).with_context(cure)?;
+    Ok(())
 }
 
 /// The width of the terminal, or `COLUMNS`, or 120.

@@ -1,12 +1,10 @@
 //! `trueflight run`: the main job.
 
-use std::io::IsTerminal;
-use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
+use std::path::PathBuf;
+use std::time::Instant;
 
-use anyhow::Context;
 use clap::Args;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::ProgressBar;
 use trueflight::harness::record::{Record, Verdict};
 use trueflight::harness::{Amount, Options, Plan, judge, run};
 use trueflight::report::{self, console::View};
@@ -48,7 +46,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         ..selection.options(Amount::Case)?
     };
     // Better to learn now than after the drawing that nothing can be written.
-    writable(&arguments.out)?;
+    output::writable(&arguments.out)?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         Ok(draw(&plan, console))
@@ -74,16 +72,7 @@ fn draw(plan: &Plan, console: &Console) -> Record {
 fn progress(plan: &Plan, console: &Console) -> ProgressBar {
     let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
     let draws = ready.map(|(_, planned)| planned.draws).sum();
-    let bar = ProgressBar::with_draw_target(Some(draws), ProgressDrawTarget::hidden());
-    if !console.quiet && std::io::stderr().is_terminal() {
-        bar.set_draw_target(ProgressDrawTarget::stderr());
-        let template = "drawing {wide_bar} {human_pos}/{human_len} draws, {eta} left";
-        if let Ok(style) = ProgressStyle::with_template(template) {
-            bar.set_style(style);
-        }
-        bar.enable_steady_tick(Duration::from_millis(200));
-    }
-    bar
+    output::progress("drawing", "draws", draws, console)
 }
 
 /// Fail before refused cases before inconclusive before pass.
@@ -107,13 +96,6 @@ fn exit_code(record: &Record) -> u8 {
         return USAGE;
     }
     if any(Verdict::Inconclusive) { 3 } else { 0 }
-}
-
-fn writable(out: &Path) -> anyhow::Result<()> {
-    let cure = || format!("cannot write into {}; give another folder with --out", out.display());
-    std::fs::create_dir_all(out).with_context(cure)?;
-    tempfile::NamedTempFile::new_in(out).with_context(cure)?;
-    Ok(())
 }
 
 fn seconds(text: &str) -> Result<f64, String> {

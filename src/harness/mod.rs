@@ -17,6 +17,7 @@ pub mod plan;
 pub mod record;
 pub mod run;
 pub mod scenario;
+pub mod self_test;
 pub mod source;
 pub mod suite;
 pub mod summary;

@@ -46,6 +46,8 @@ pub struct Options {
     pub fixed: bool,
     /// Whether each check that is underpowered makes its experiment inconclusive.
     pub strict: bool,
+    /// Stop an experiment as soon as the check of this name has failed.
+    pub until_failed: Option<String>,
     /// Only these experiments.
     pub filter: Option<Filter>,
 }
@@ -81,6 +83,7 @@ impl Default for Options {
             budget: None,
             fixed: false,
             strict: false,
+            until_failed: None,
             filter: None,
         }
     }
@@ -219,6 +222,38 @@ impl<'a> Plan<'a> {
         Self { options: options.clone(), cases, levels }
     }
 
+    /// The plan of one experiment at the levels of another plan; `None` if the case has no such
+    /// experiment.
+    #[must_use]
+    pub fn of_one(
+        case: &'a Case,
+        options: &Options,
+        estimator: usize,
+        swept: Option<f64>,
+        levels: Levels,
+    ) -> Option<Self> {
+        let variation = match (&case.sweep, swept) {
+            (Some(axis), Some(value)) => Some((axis.what, value)),
+            (_, None) => None,
+            (None, Some(_)) => return None,
+        };
+        if estimator >= case.scenario.estimators() {
+            return None;
+        }
+        let mut planned = plan_experiment(case, options, (estimator, variation));
+        planned.ask(case, options);
+        let cases = vec![PlannedCase { case, experiments: vec![planned] }];
+        Some(Self { options: options.clone(), cases, levels })
+    }
+
+    /// The same plan with the random numbers of another seed; pilots stay as they are.
+    pub fn reseed(&mut self, seed: u64) {
+        self.options.seed = seed;
+        for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
+            planned.address.seed = seed;
+        }
+    }
+
     /// All experiments with their case.
     pub fn experiments(&self) -> impl Iterator<Item = (&PlannedCase<'a>, &Planned)> {
         self.cases.iter().flat_map(|case| case.experiments.iter().map(move |e| (case, e)))
@@ -241,34 +276,39 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
             filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
         });
     }
-    let most = options.draws.of(case.draws);
-    let plan = |&(estimator, variation): &(usize, Variation)| {
-        let mut names = case.scenario.names(estimator, variation);
-        // Two estimators may be called the same, as where each has a field of its own as control.
-        let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
-        let address = address(options.seed, &case.name, &names, variation, twins);
-        if twins > 0 {
-            names.estimator = format!("{} #{}", names.estimator, twins + 1);
-        }
-        let pilots = pilot_address(options.seed, case, estimator);
-        let Prepared { outcome, expect_biased } =
-            case.scenario.prepare(estimator, variation, pilots);
-        Planned {
-            estimator,
-            variation,
-            names,
-            address,
-            draws: most,
-            fixed: most,
-            horizon: most,
-            expect_biased,
-            outcome,
-            questions: Vec::new(),
-            streams: Address::stream,
-        }
-    };
-    let experiments = points.par_iter().map(plan).collect();
+    let experiments =
+        points.par_iter().map(|&point| plan_experiment(case, options, point)).collect();
     PlannedCase { case, experiments }
+}
+
+fn plan_experiment(
+    case: &Case,
+    options: &Options,
+    (estimator, variation): (usize, Variation),
+) -> Planned {
+    let most = options.draws.of(case.draws);
+    let mut names = case.scenario.names(estimator, variation);
+    // Two estimators may be called the same, as where each has a field of its own as control.
+    let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
+    let address = address(options.seed, &case.name, &names, variation, twins);
+    if twins > 0 {
+        names.estimator = format!("{} #{}", names.estimator, twins + 1);
+    }
+    let pilots = pilot_address(options.seed, case, estimator);
+    let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
+    Planned {
+        estimator,
+        variation,
+        names,
+        address,
+        draws: most,
+        fixed: most,
+        horizon: most,
+        expect_biased,
+        outcome,
+        questions: Vec::new(),
+        streams: Address::stream,
+    }
 }
 
 impl Planned {

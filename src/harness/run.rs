@@ -249,9 +249,26 @@ impl Front<'_> {
             let was_promised = scalar.underpowered.is_none() || draws < planned.draws;
             is_open |= standing.decision == Decision::Open && was_promised;
         }
-        let is_over = draws >= planned.horizon;
+        let is_over = draws >= planned.horizon || self.has_failed(plan);
         self.is_done = is_over || (!is_open && !plan.options.fixed);
         self.look = next_look(self.look, self.last());
+    }
+}
+
+impl Front<'_> {
+    /// Whether the one check that matters has failed.
+    fn has_failed(&self, plan: &Plan) -> bool {
+        let Some(name) = &plan.options.until_failed else { return false };
+        let both = self.planned.questions.iter().zip(&self.drawn.totals);
+        both.filter(|(question, _)| question.check == *name).any(|(question, total)| {
+            match (&question.kind, total) {
+                (_, Total::Gate(standing)) => standing.decision == Decision::Failed,
+                (Kind::Always(always), Total::Largest(largest, _)) => {
+                    largest.is_nan() || *largest > always.bound
+                }
+                _ => false,
+            }
+        })
     }
 }
 

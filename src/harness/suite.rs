@@ -43,6 +43,19 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance-curve/magnet",
 ];
 
+/// The cases of `trueflight self-test`, which are no part of the suite.
+const CALIBRATION: &[(&str, &str)] = cases![
+    "transmittance/calibration",
+    "free-flight/calibration",
+    "transmittance-curve/calibration",
+];
+
+/// The cases on which the gate itself is tested.
+#[must_use]
+pub fn calibration() -> Vec<Source> {
+    CALIBRATION.iter().map(|&(name, text)| source(name, text)).collect()
+}
+
 /// Every built-in case, in the order of the suite.
 #[must_use]
 pub fn suite() -> Vec<Source> {
@@ -52,7 +65,11 @@ pub fn suite() -> Vec<Source> {
 /// The built-in case of a name.
 #[must_use]
 pub fn find(name: &str) -> Option<Source> {
-    CASES.iter().find(|case| case.0 == name).map(|&(name, text)| source(name, text))
+    CASES
+        .iter()
+        .chain(CALIBRATION)
+        .find(|case| case.0 == name)
+        .map(|&(name, text)| source(name, text))
 }
 
 fn source(name: &str, text: &str) -> Source {

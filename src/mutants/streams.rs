@@ -7,7 +7,11 @@
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'
 //! means among each other, and so every standard error.
 
+use super::target::{self, Target};
 use crate::rng::{Address, Stream};
+
+/// The experiment on which they are shown.
+pub const TARGET: Target = target::LINEAR;
 
 /// A known bug in what leads from addresses to random numbers.
 #[derive(Debug, Clone, Copy)]
@@ -45,19 +49,19 @@ pub const MUTANTS: &[StreamMutant] = &[
     StreamMutant {
         name: "stream-few-seeds",
         bug: "the block is hashed to four bits: sixteen streams in no order",
-        check: "dispersion",
+        check: "streams",
         stream: |address| block(address, hashed(address.block) >> 60),
     },
     StreamMutant {
         name: "stream-overlap",
         bug: "blocks are parts of one long stream, 4096 numbers apart, and use more than that",
-        check: "streams",
+        check: "generator",
         stream: |address| advanced(address, 1 << 12),
     },
     StreamMutant {
         name: "stream-creeping",
         bug: "each block's stream is the one before it without its first number",
-        check: "streams",
+        check: "generator",
         stream: |address| advanced(address, 1),
     },
 ];

@@ -7,6 +7,7 @@ pub mod console;
 pub mod number;
 pub mod plots;
 pub mod rows;
+pub mod self_test;
 
 use std::fs;
 use std::io::{self, Write};

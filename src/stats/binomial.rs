@@ -15,11 +15,15 @@ use crate::numeric::roots;
 
 /// The interval that covers the probability of success with chance `level` or more.
 ///
-/// Without trials nothing is known: `(0, 1)`. More successes than trials give NaN.
+/// Without trials nothing is known, and certainty knows nothing: `(0, 1)`. More successes than trials
+/// and a level outside `[0, 1]` give NaN.
 #[must_use]
 pub fn interval(successes: u64, trials: u64, level: f64) -> (f64, f64) {
-    if successes > trials {
+    if successes > trials || !(0.0..=1.0).contains(&level) {
         return (f64::NAN, f64::NAN);
+    }
+    if trials == 0 || level == 1.0 {
+        return (0.0, 1.0);
     }
     let (k, n) = (successes as f64, trials as f64);
     let tail = 0.5 * (1.0 - level);
@@ -192,7 +196,9 @@ mod tests {
     #[test]
     fn no_trials_know_nothing() {
         assert_eq!(interval(0, 0, 0.99), (0.0, 1.0));
+        assert_eq!(interval(3, 10, 1.0), (0.0, 1.0));
         assert!(interval(2, 1, 0.99).0.is_nan());
+        assert!(interval(3, 10, 1.5).0.is_nan() && interval(3, 10, f64::NAN).0.is_nan());
     }
 
     #[test]

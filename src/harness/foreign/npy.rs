@@ -1,5 +1,7 @@
 //! `NumPy`'s array file: a header that npyz reads, then words.
 
+use std::io::Read;
+
 use npyz::NpyHeader;
 
 use super::raw::{Word, Words};
@@ -11,13 +13,16 @@ pub(super) fn open(
     file: &str,
     length: Option<u64>,
 ) -> Result<Words, ForeignError> {
-    let mut header = Counted { bytes: &mut bytes, count: 0 };
-    let array = match NpyHeader::from_reader(&mut header) {
-        Ok(array) => array,
-        Err(_) if header.count == 0 => return Err(ForeignError::Empty { file: file.to_owned() }),
-        Err(cause) => return Err(ForeignError::NotNpy { file: file.to_owned(), cause }),
-    };
-    let header = header.count;
+    let header = header_bytes(&mut bytes).map_err(|cause| ForeignError::unreadable(file, cause))?;
+    if header.is_empty() {
+        return Err(ForeignError::Empty { file: file.to_owned() });
+    }
+    if let Some(shape) = impossible(&header) {
+        return Err(ForeignError::Shape { file: file.to_owned(), shape });
+    }
+    let array = NpyHeader::from_reader(header.as_slice())
+        .map_err(|cause| ForeignError::NotNpy { file: file.to_owned(), cause })?;
+    let header = header.len() as u64;
     let word = match array.dtype().descr().trim_matches('\'') {
         "<f8" => Word::LittleDouble,
         ">f8" => Word::BigDouble,
@@ -49,18 +54,33 @@ pub(super) fn open(
     Ok(Words::new(bytes, file, word, Some(expected)))
 }
 
-/// Counts the bytes that a header takes.
-struct Counted<'a> {
-    bytes: &'a mut Bytes,
-    count: u64,
+/// The bytes of a header: magic, version, the length of the text, the text; fewer where the source
+/// ends before.
+fn header_bytes(bytes: &mut Bytes) -> std::io::Result<Vec<u8>> {
+    let mut header = Vec::new();
+    bytes.take(10).read_to_end(&mut header)?;
+    let Some(&[major, _, low, high]) = header.get(6..10) else { return Ok(header) };
+    let mut rest = u64::from(u16::from_le_bytes([low, high]));
+    if major > 1 {
+        // Version 2 has a length of four bytes.
+        bytes.take(2).read_to_end(&mut header)?;
+        if let Some(&[low, high]) = header.get(10..12) {
+            rest += u64::from(u16::from_le_bytes([low, high])) << 16;
+        }
+    }
+    bytes.take(rest).read_to_end(&mut header)?;
+    Ok(header)
 }
 
-impl std::io::Read for Counted<'_> {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = self.bytes.read(buffer)?;
-        self.count += count as u64;
-        Ok(count)
-    }
+/// The shape in the header's text if it has more elements than can be counted, on which npyz would
+/// overflow.
+fn impossible(header: &[u8]) -> Option<String> {
+    let text = String::from_utf8_lossy(header);
+    let (_, shape) = text.split_once("'shape'")?;
+    let (shape, _) = shape.split_once('(')?.1.split_once(')')?;
+    let mut sizes = shape.split(',').filter_map(|size| size.trim().parse::<u64>().ok());
+    let bytes = sizes.try_fold(16, |bytes: u64, size| bytes.checked_mul(size.max(1)));
+    bytes.is_none().then(|| format!("({shape})"))
 }
 
 #[cfg(test)]
@@ -128,6 +148,32 @@ mod tests {
         assert!(matches!(pipe(bytes), Err(ForeignError::Shape { .. })));
     }
 
+    fn header(kind: &str, shape: &str) -> Vec<u8> {
+        let text = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': {shape}, }}\n");
+        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+        bytes.extend(u16::try_from(text.len()).expect("short").to_le_bytes());
+        bytes.extend(text.bytes());
+        bytes
+    }
+
+    #[test]
+    fn shapes_beyond_counting_are_refused() {
+        for shape in [
+            "(9223372036854775807, 9223372036854775807, 4)",
+            "(0, 9223372036854775807, 9223372036854775807)",
+            "(18446744073709551615,)",
+        ] {
+            let error = pipe(header("'<f8'", shape)).expect_err("a shape");
+            assert!(matches!(error, ForeignError::Shape { .. }), "{error}");
+        }
+        for shape in ["(99999999999999999999,)", "(-1,)", "7"] {
+            let error = pipe(header("'<f8'", shape)).expect_err("a shape");
+            assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");
+        }
+        let huge = pipe(header("'<f8'", "(1000000000000,)")).expect("a header");
+        assert!(matches!(all(huge), Err(ForeignError::Truncated { found: 0, .. })));
+    }
+
     #[test]
     fn other_types_are_refused() {
         let bytes = array("<i4", &[3], Order::C, &[1i32, 2, 3]);
@@ -136,10 +182,7 @@ mod tests {
             "x.npy: an array of type <i4; save it as float64 or float32, by x.astype('<f8')"
         );
         for kind in ["'<c16'", "'<f2'", "'|b1'", "[('a', '<f8'), ('b', '<f8')]"] {
-            let text = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': (3,), }}\n");
-            let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-            bytes.extend(u16::try_from(text.len()).expect("short").to_le_bytes());
-            bytes.extend(text.bytes());
+            let bytes = header(kind, "(3,)");
             assert!(matches!(pipe(bytes), Err(ForeignError::ElementType { .. })), "{kind}");
         }
     }

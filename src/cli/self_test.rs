@@ -1,0 +1,58 @@
+//! `trueflight self-test`: the test button of the gate itself.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::Args;
+use trueflight::harness::self_test::{SelfTest, calibration, mutation};
+use trueflight::report::{self, self_test as page};
+
+use super::Console;
+use super::output;
+
+/// Independent runs of the quick calibration.
+const RUNS: u64 = 400;
+/// Independent runs of the long one.
+const LONG_RUNS: u64 = 10_000;
+
+/// Arguments of `self-test`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Calibrate with 10 000 independent runs instead of 400
+    #[arg(long)]
+    long: bool,
+    /// Seed of the mutants' draws
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Also write the two tables as CSV into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// Calibrates, draws all mutants, and prints two tables.
+pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+    if let Some(out) = &arguments.out {
+        output::writable(out)?;
+    }
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let runs = if arguments.long { LONG_RUNS } else { RUNS };
+    let begin = Instant::now();
+    let found = pool.install(|| -> anyhow::Result<SelfTest> {
+        let bar = output::progress("calibrating", "runs", runs, console);
+        let calibration = calibration::calibrate(runs, &|n| bar.inc(n))?;
+        bar.finish_and_clear();
+        let mutants = mutation::all(arguments.seed)?;
+        Ok(SelfTest { calibration, mutants, seconds: begin.elapsed().as_secs_f64() })
+    })?;
+    if let Some(out) = &arguments.out {
+        report::write(&page::artifacts(&found)?, out)?;
+    }
+    if !console.quiet {
+        output::print(&page::table(&found))?;
+    }
+    Ok(u8::from(!found.holds()))
+}

@@ -1,0 +1,247 @@
+//! Correct experiments, run many times: how often does a run fail, and how often does a bias of ε
+//! pass?
+//!
+//! ```text
+//! false alarms   runs with any failure, promised ≤ α, and scalars failed, promised ≤ 0.8 α/K each
+//! false passes   scalars with a bias of ±ε that pass, promised ≤ β each
+//! p-values       uniform: the share below 1e-1, 1e-2 and 1e-3, and Anderson–Darling over all
+//! ```
+//!
+//! Rates come with their Clopper–Pearson limits at 99 %. A promise is broken when the lower limit
+//! is above it; at 99 % each, one of a hundred kept promises looks broken, so the verdict asks for
+//! 1 − 1e-6.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use crate::harness::checks::Kind;
+use crate::harness::plan::{MISS, Options, Plan};
+use crate::harness::record::{Finding, Record, Verdict};
+use crate::harness::{Case, CaseError, judge, run, suite};
+use crate::stats::{anderson_darling, binomial};
+
+/// The run-level α of the calibration.
+pub const ALPHA: f64 = 1e-2;
+/// Runs that share one plan.
+const CHUNK: u64 = 50;
+/// The level of the limits shown.
+const SHOWN: f64 = 0.99;
+/// The level at which a promise counts as broken.
+const CERTAIN: f64 = 1.0 - 1e-6;
+
+/// A rate against a promise.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rate {
+    /// What is counted.
+    pub what: String,
+    /// How often it happened.
+    pub count: u64,
+    /// Out of how many.
+    pub trials: u64,
+    /// How often it may happen.
+    pub promise: f64,
+    /// The limits of the rate at 99 %.
+    pub limits: [f64; 2],
+    /// Whether the promise is not refuted.
+    pub is_kept: bool,
+}
+
+impl Rate {
+    fn new(what: impl Into<String>, count: u64, trials: u64, promise: f64) -> Self {
+        let (low, high) = binomial::interval(count, trials, SHOWN);
+        let is_kept = binomial::interval(count, trials, CERTAIN).0 <= promise;
+        Self { what: what.into(), count, trials, promise, limits: [low, high], is_kept }
+    }
+}
+
+/// The p-values of one check over all runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Uniformity {
+    /// The check.
+    pub check: String,
+    /// The rates below 0.1, 0.01 and 0.001.
+    pub below: Vec<Rate>,
+    /// The p-value of the hypothesis that they are uniform, by Anderson–Darling.
+    pub p: f64,
+}
+
+/// What the calibration found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Calibration {
+    /// How many independent runs.
+    pub runs: u64,
+    /// Scalars in each run.
+    pub scalars: usize,
+    /// P-values in each run.
+    pub laws: usize,
+    /// Draws of all runs.
+    pub draws: u64,
+    /// False alarms and false passes.
+    pub rates: Vec<Rate>,
+    /// The checks with p-values.
+    pub uniformity: Vec<Uniformity>,
+}
+
+impl Calibration {
+    /// Whether no promise is refuted.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        let shares = self.uniformity.iter().flat_map(|check| &check.below);
+        self.rates.iter().chain(shares).all(|rate| rate.is_kept)
+    }
+}
+
+/// What is counted over runs.
+#[derive(Debug, Clone, Default)]
+struct Counts {
+    runs: u64,
+    failed_runs: u64,
+    draws: u64,
+    /// Per check: scalars, those that failed, those that passed with a bias.
+    scalars: BTreeMap<String, [u64; 2]>,
+    biased: BTreeMap<String, [u64; 2]>,
+    p: BTreeMap<String, Vec<f64>>,
+}
+
+/// Runs the calibration cases from `runs` seeds.
+///
+/// # Errors
+///
+/// A built-in case that cannot be read.
+pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibration, CaseError> {
+    let cases: Vec<Case> = suite::calibration().iter().map(Case::read).collect::<Result<_, _>>()?;
+    let options = Options { alpha: ALPHA, ..Options::default() };
+    let levels = Plan::new(&cases, &options).levels;
+    let chunks: Vec<u64> = (0..runs.div_ceil(CHUNK)).collect();
+    let counted: Vec<Counts> = chunks
+        .par_iter()
+        .map(|&chunk| {
+            let seeds = 1 + chunk * CHUNK..1 + ((chunk + 1) * CHUNK).min(runs);
+            let mut counts = Counts::default();
+            let mut fair = Plan::new(&cases, &options);
+            let mut biased = Plan::new(&cases, &options);
+            // Half of the chunks are biased upwards, half downwards.
+            shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
+            for seed in seeds {
+                counts.add_fair(&record(&mut fair, seed));
+                counts.add_biased(&record(&mut biased, seed));
+                progress(1);
+            }
+            counts
+        })
+        .collect();
+    let mut total = Counts::default();
+    counted.into_iter().for_each(|counts| total.merge(counts));
+    Ok(total.close(levels.scalars, levels.laws))
+}
+
+fn record(plan: &mut Plan, seed: u64) -> Record {
+    plan.reseed(seed);
+    judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+}
+
+/// Adds `sign · ε` to every scalar: a bias of exactly the tolerance.
+fn shift(plan: &mut Plan, sign: f64) {
+    let experiments = plan.cases.iter_mut().flat_map(|case| &mut case.experiments);
+    for question in experiments.flat_map(|planned| &mut planned.questions) {
+        if let Kind::Scalar(scalar) = &mut question.kind {
+            let bias = sign * scalar.design.tolerance;
+            let honest = std::mem::replace(&mut scalar.observe, Box::new(|_, _| {}));
+            scalar.observe = Box::new(move |draws, y| {
+                honest(draws, y);
+                y.iter_mut().for_each(|y| *y += bias);
+            });
+        }
+    }
+}
+
+/// The findings of a run, each once.
+fn findings(record: &Record) -> impl Iterator<Item = &Finding> {
+    record.results.cases.iter().flat_map(|case| {
+        case.rows.iter().enumerate().flat_map(|(i, row)| {
+            let is_first = i == 0 || case.rows[i - 1].stream != row.stream;
+            row.findings.iter().filter(move |f| is_first || !f.channel.is_empty())
+        })
+    })
+}
+
+impl Counts {
+    fn add_fair(&mut self, record: &Record) {
+        self.runs += 1;
+        self.failed_runs +=
+            u64::from(findings(record).any(|finding| finding.verdict == Verdict::Fail));
+        let rows = record.results.cases.iter().flat_map(|case| &case.rows);
+        self.draws +=
+            rows.filter(|row| row.channel.is_empty()).filter_map(|row| row.drawn).sum::<u64>();
+        for finding in findings(record) {
+            if finding.gate.is_some() {
+                let [all, failed] = self.scalars.entry(finding.check.clone()).or_default();
+                *all += 1;
+                *failed += u64::from(finding.verdict == Verdict::Fail);
+            }
+            if let Some(p) = finding.p {
+                self.p.entry(finding.check.clone()).or_default().push(p);
+            }
+        }
+    }
+
+    fn add_biased(&mut self, record: &Record) {
+        for finding in findings(record) {
+            if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
+                let [all, passed] = self.biased.entry(finding.check.clone()).or_default();
+                *all += 1;
+                *passed += u64::from(finding.verdict == Verdict::Pass);
+            }
+        }
+    }
+
+    fn merge(&mut self, later: Self) {
+        self.runs += later.runs;
+        self.failed_runs += later.failed_runs;
+        self.draws += later.draws;
+        for (ours, theirs) in [(&mut self.scalars, later.scalars), (&mut self.biased, later.biased)]
+        {
+            for (check, [all, some]) in theirs {
+                let [total, part] = ours.entry(check).or_default();
+                (*total, *part) = (*total + all, *part + some);
+            }
+        }
+        for (check, p) in later.p {
+            self.p.entry(check).or_default().extend(p);
+        }
+    }
+
+    fn close(self, scalars: usize, laws: usize) -> Calibration {
+        let mut rates = vec![Rate::new("a correct run fails", self.failed_runs, self.runs, ALPHA)];
+        let share = 0.8 * ALPHA / scalars.max(1) as f64;
+        rates.extend(self.scalars.iter().map(|(check, &[all, failed])| {
+            Rate::new(format!("a correct {check} fails"), failed, all, share)
+        }));
+        rates.extend(self.biased.iter().map(|(check, &[all, passed])| {
+            Rate::new(format!("a {check} off by its tolerance passes"), passed, all, MISS)
+        }));
+        let uniformity = self.p.into_iter().map(|(check, p)| Uniformity::new(check, p));
+        Calibration {
+            runs: self.runs,
+            scalars,
+            laws,
+            draws: self.draws,
+            rates,
+            uniformity: uniformity.collect(),
+        }
+    }
+}
+
+impl Uniformity {
+    fn new(check: String, mut p: Vec<f64>) -> Self {
+        p.sort_by(f64::total_cmp);
+        let all = p.len() as u64;
+        let below = [1e-1, 1e-2, 1e-3].map(|level| {
+            let count = p.partition_point(|&p| p < level) as u64;
+            Rate::new(format!("p of {check} below {level}"), count, all, level)
+        });
+        let p = anderson_darling::p_value_of_uniforms(&p);
+        Self { check, below: below.to_vec(), p }
+    }
+}

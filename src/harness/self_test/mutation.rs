@@ -1,0 +1,187 @@
+//! Every known bug against the built-in suite: caught by its check, and the honest twin is not.
+//!
+//! The levels are those of the whole suite, and the draws those of its default budget. A twin that
+//! makes the very draws of the estimator, bit for bit, shares the estimator's verdict; it is judged
+//! once for all mutants of an experiment.
+
+use std::collections::HashMap;
+
+use rayon::prelude::*;
+
+use crate::estimators::{DrawBuffer, Experiment};
+use crate::harness::mutation::{self, Walk};
+use crate::harness::plan::{BLOCK, Levels, Options, Plan, Planned};
+use crate::harness::record::{Finding, Record, Verdict};
+use crate::harness::{Case, CaseError, judge, run, suite};
+use crate::mutants::{self, About, StreamMutant, Target, streams};
+
+/// What became of one mutant.
+#[derive(Debug, Clone)]
+pub struct Caught {
+    /// Its name.
+    pub name: &'static str,
+    /// The bug in one sentence.
+    pub bug: &'static str,
+    /// The case.
+    pub case: &'static str,
+    /// The estimator in whose place it is drawn.
+    pub estimator: &'static str,
+    /// The check that must catch it.
+    pub check: &'static str,
+    /// The draws that the check took; `None` if it did not catch the bug.
+    pub draws: Option<u64>,
+    /// Which checks failed, the one that must among them.
+    pub failed: Vec<String>,
+    /// Whether the honest twin passed.
+    pub twin_passes: bool,
+}
+
+impl Caught {
+    /// Whether the bug was caught and the twin was not.
+    #[must_use]
+    pub fn is_right(&self) -> bool {
+        self.draws.is_some() && self.twin_passes
+    }
+}
+
+/// The names of the checks that some mutant names.
+#[must_use]
+pub fn named_checks() -> Vec<&'static str> {
+    let estimators = mutants::all().into_iter().map(|about| about.check);
+    let mut names: Vec<_> =
+        estimators.chain(streams::MUTANTS.iter().map(|mutant| mutant.check)).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// Draws and judges all mutants and their twins.
+///
+/// # Errors
+///
+/// A built-in case that cannot be read.
+pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
+    let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
+    let options = Options { seed, ..Options::default() };
+    let levels = Plan::new(&cases, &options).levels;
+    let bench = Bench { cases: &cases, options, levels };
+    let abouts = mutants::all();
+    let mut targets: HashMap<(&str, usize), Target> = HashMap::new();
+    for target in abouts.iter().map(|about| about.target).chain([streams::TARGET]) {
+        targets.insert((target.case, target.index), target);
+    }
+    let honest: HashMap<(&str, usize), bool> =
+        targets.into_par_iter().map(|(key, target)| (key, bench.passes(&target))).collect();
+    let passes = |target: &Target| honest.get(&(target.case, target.index)).copied();
+    let mut caught: Vec<Caught> = abouts
+        .par_iter()
+        .map(|about| bench.estimator(about, passes(&about.target).unwrap_or(false)))
+        .collect();
+    let twin = passes(&streams::TARGET).unwrap_or(false);
+    caught.par_extend(streams::MUTANTS.par_iter().map(|mutant| bench.streams(mutant, twin)));
+    Ok(caught)
+}
+
+/// The built-in suite, on which mutants are drawn one experiment at a time.
+struct Bench<'a> {
+    cases: &'a [Case],
+    options: Options,
+    levels: Levels,
+}
+
+impl<'a> Bench<'a> {
+    /// The plan of one experiment, at the levels of the suite.
+    fn plan(&self, target: &Target, until_failed: Option<&str>) -> Option<Plan<'a>> {
+        let case = self.cases.iter().find(|case| case.name == target.case)?;
+        let until_failed = until_failed.map(str::to_owned);
+        let options = Options { until_failed, ..self.options.clone() };
+        Plan::of_one(case, &options, target.index, target.swept, self.levels)
+    }
+
+    fn judged(plan: &Plan) -> Record {
+        judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+    }
+
+    fn passes(&self, target: &Target) -> bool {
+        let Some(plan) = self.plan(target, None) else { return false };
+        let record = Self::judged(&plan);
+        findings(&record)
+            .all(|finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered))
+    }
+
+    fn estimator(&self, about: &About, honest_passes: bool) -> Caught {
+        let walk = |walk: Walk| -> Option<(Plan<'a>, Box<dyn Experiment>)> {
+            let plan = self.plan(&about.target, Some(about.check))?;
+            let case = plan.cases.first()?;
+            let (case, planned) = (case.case, case.experiments.first()?);
+            let drawn = mutation::experiment(about, walk, case, planned, self.options.seed)?;
+            Some((plan, drawn.ok()?))
+        };
+        let is_twin = walk(Walk::Twin).is_some_and(|(plan, twin)| {
+            plan.cases[0].experiments.first().is_some_and(|planned| same(planned, twin.as_ref()))
+        });
+        let record = walk(Walk::Faulty).and_then(|(mut plan, faulty)| {
+            let planned = plan.cases.first_mut()?.experiments.first_mut()?;
+            planned.outcome.as_mut().ok()?.experiment = faulty;
+            Some(Self::judged(&plan))
+        });
+        let About { name, bug, target, check } = *about;
+        caught([name, bug, check], &target, record.as_ref(), is_twin && honest_passes)
+    }
+
+    fn streams(&self, mutant: &StreamMutant, twin_passes: bool) -> Caught {
+        let plan = self.plan(&streams::TARGET, Some(mutant.check));
+        let record = plan.map(|mut plan| {
+            for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
+                planned.streams = mutant.stream;
+            }
+            Self::judged(&plan)
+        });
+        let words = [mutant.name, mutant.bug, mutant.check];
+        caught(words, &streams::TARGET, record.as_ref(), twin_passes)
+    }
+}
+
+fn findings(record: &Record) -> impl Iterator<Item = &Finding> {
+    record.results.cases.iter().flat_map(|case| &case.rows).flat_map(|row| &row.findings)
+}
+
+fn caught(
+    [name, bug, check]: [&'static str; 3],
+    target: &Target,
+    record: Option<&Record>,
+    twin_passes: bool,
+) -> Caught {
+    let failing: Vec<&Finding> = record
+        .into_iter()
+        .flat_map(findings)
+        .filter(|finding| finding.verdict == Verdict::Fail)
+        .collect();
+    let mut failed: Vec<String> = failing.iter().map(|finding| finding.check.clone()).collect();
+    failed.dedup();
+    // A law has the plan's fixed draws, a bound what there was when it broke.
+    let rows = record.into_iter().flat_map(|record| &record.results.cases);
+    let fixed = rows.flat_map(|case| &case.rows).find_map(|row| row.draws).unwrap_or(0);
+    let by_check = failing.iter().filter(|finding| finding.check == check);
+    let draws = by_check
+        .map(|finding| match (finding.gate, finding.block) {
+            (Some(gate), _) => gate.draws,
+            (None, Some(block)) => (block + 1) * BLOCK,
+            (None, None) => fixed,
+        })
+        .min();
+    let Target { case, estimator, .. } = *target;
+    Caught { name, bug, case, estimator, check, draws, failed, twin_passes }
+}
+
+/// Whether two experiments make the same draws, bit for bit, over a buffer.
+fn same(planned: &Planned, twin: &dyn Experiment) -> bool {
+    let Ok(ready) = &planned.outcome else { return false };
+    let fill = |experiment: &dyn Experiment| {
+        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+        experiment.fill(&mut planned.stream(0), DrawBuffer::LENGTH, &mut buffer);
+        let bits = |values: &Vec<f64>| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+        (buffer.values.iter().map(bits).collect::<Vec<_>>(), buffer.lookups)
+    };
+    fill(ready.experiment.as_ref()) == fill(twin)
+}
