@@ -10,6 +10,7 @@
 //! (2017), with the variance introduction densities of its Eqs. 17–20.
 
 use super::mesh::Panel;
+use super::prediction::transmittance;
 use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use crate::media::{Control, Piecewise};
 use crate::numeric::sum::Sum;
@@ -30,6 +31,8 @@ pub struct Product<'a> {
     pub killing: f64,
     /// Whether the whole law of the lookups is asked for; a search for optima leaves it out.
     pub laws: bool,
+    /// Draws are in units of `exp(−log_unit)`.
+    pub log_unit: f64,
 }
 
 /// The integrals that moments and costs are made of.
@@ -65,7 +68,7 @@ impl<'a> Product<'a> {
         control: &'a Control,
         rule: &'a dyn Rule,
     ) -> Self {
-        Self { mesh, sampling, control, rule, killing: 0.0, laws: true }
+        Self { mesh, sampling, control, rule, killing: 0.0, laws: true, log_unit: 0.0 }
     }
 
     fn ratio(&self, t: f64, extinction: f64) -> f64 {
@@ -140,9 +143,11 @@ impl<'a> Product<'a> {
     pub fn predict(&self) -> Prediction {
         let mesh = self.mesh(&[]);
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
-        let truth = mesh.optical_depth().exp_neg();
-        let moments = Moments::of_product(truth.value, all.losses, mesh.relative_error());
-        let channel = Channel::unbiased(truth, moments, all.tails());
+        let depth = mesh.optical_depth();
+        let scale = transmittance(depth, self.log_unit).value;
+        let moments = Moments::of_product(scale, all.losses, mesh.relative_error());
+        let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
+        let channel = Channel { losses: Some(all.losses), ..channel };
         let length = mesh.support().length();
         let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
         Prediction { stable_share, ..Prediction::single(channel, self.lookups(&mesh, &all)) }

@@ -195,7 +195,7 @@ fn estimators() -> Vec<Estimator> {
 fn compare(what: &str, found: &Prediction, expected: &Solution) -> Vec<String> {
     let channel = &found.channels[0];
     let moments = channel.moments.expect("moments");
-    let lookups = found.lookups.expect("lookups").mean;
+    let lookups = found.lookups.as_ref().expect("lookups").mean;
     let [c2, c3, c4] = expected.relative;
     let mut pairs =
         vec![("mean", channel.mean.value, expected.mean), ("lookups", lookups, expected.lookups)];
