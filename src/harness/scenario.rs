@@ -214,16 +214,17 @@ impl<P: Estimated> Scenario<P> {
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
         let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
         let controlled = setup.control_transmittance;
-        if (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
+        // Without collisions a draw does not begin with the weight T_c.
+        if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
             return Ok(setup);
         }
         if setup.log_unit == 0.0 {
             let needs = "a control with T_c between 1e-300 and 1e300";
             return Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")));
         }
-        let needs = "a control that leaves draws between 1e-300 and 1e300 times T";
+        let needs = "draws between 1e-300 and 1e300 times T";
         let control = setup.control.optical_depth(setup.mesh.support()).value;
-        let found = format!("τ = {:.6} and the control's share is {control:.6}", setup.log_unit);
+        let found = format!("τ = {:.6}, of which the control takes {control:.6}", setup.log_unit);
         Err(Refusal::mismatch(needs, found))
     }
 

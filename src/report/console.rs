@@ -81,6 +81,9 @@ fn facts(case: &CaseRecord, view: View) -> Vec<String> {
     if let Some(truth) = views::shared(case, |row| row.truth) {
         facts.push(format!("truth {}", short(truth, 6)));
     }
+    if let Some(unit) = views::shared(case, |row| row.log_unit) {
+        facts.push(format!("in units of exp(−{})", short(unit, 6)));
+    }
     if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| !view.is_theory()) {
         let word = if draws == 1 { "draw" } else { "draws" };
         facts.push(format!("{} {word} each", count(draws)));
