@@ -305,6 +305,8 @@ impl<P: Estimated> AnyScenario for Scenario<P> {
                     channel.moments = None;
                 }
                 prediction.lookups = None;
+                prediction.random_numbers = None;
+                prediction.increments.clear();
                 prediction.law = None;
                 prediction.covariances.clear();
                 return Ok(Ready { experiment: entry.experiment(setup), prediction });

@@ -10,6 +10,8 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
+    /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
+    pub random_numbers: Option<f64>,
     /// The whole law of the draw, where it is known.
     pub law: Option<Law>,
     /// The covariances of the channels, where there are several.
@@ -146,6 +148,7 @@ impl Prediction {
         Self {
             channels: vec![channel],
             lookups: Some(lookups),
+            random_numbers: None,
             law: None,
             covariances: Vec::new(),
             increments: Vec::new(),

@@ -75,7 +75,9 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     if error.is_nan() || error > WORST {
         channel.moments = None;
     }
-    Prediction::single(channel, CountLaw::poisson(sampling * mesh.support().length()))
+    let flown = sampling * mesh.support().length();
+    let random_numbers = Some(flown + 1.0);
+    Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }
 
 /// What must be smooth on a panel: the decay of every order, and the powers of ρ.

@@ -30,7 +30,12 @@ pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
     let moments = Moments::certain(value);
     let channel = Channel::transmittance(depth, setup.log_unit, moments, Tails::LIGHT);
     let law = Some(Law::Atoms(vec![(value, 1.0)]));
-    Prediction { law, ..Prediction::single(channel, CountLaw::always(lookups as f64)) }
+    let random_numbers = Some(0.0);
+    Prediction {
+        random_numbers,
+        law,
+        ..Prediction::single(channel, CountLaw::always(lookups as f64))
+    }
 }
 
 impl Estimator<Transmittance> for ClosedForm {

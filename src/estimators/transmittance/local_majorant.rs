@@ -44,7 +44,9 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        zero_or_one(setup.product(&Null).predict())
+        // It takes one more at each boundary that it crosses.
+        let prediction = setup.product(&Null).predict();
+        zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
 
     fn draw<M: Extinction>(

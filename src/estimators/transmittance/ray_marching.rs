@@ -95,7 +95,9 @@ impl Estimator<Transmittance> for RayMarching {
                 Tails::LIGHT,
             )
         };
-        Prediction::single(channel, CountLaw::always(f64::from(self.steps)))
+        let random_numbers = Some(f64::from(u8::from(self.jitter)));
+        let lookups = CountLaw::always(f64::from(self.steps));
+        Prediction { random_numbers, ..Prediction::single(channel, lookups) }
     }
 
     fn draw<M: Extinction>(
