@@ -45,6 +45,11 @@ fn drawn(estimator: &str, control: &str, swept: f64, z: f64) -> Row {
         predicted_lookups: Some(lookups),
         z_lookups: Some(-0.5),
         lookups_deviation: Some(lookups * 0.002),
+        losses: Some([2.0, 1.5, 1.25, 1.125]),
+        relative_moments: [Some(3.5), Some(12.25), None],
+        lookups_variance: Some(lookups),
+        lookups_pmf: vec![0.25, 0.5, 0.25],
+        rare_event_size: Some(15.5),
         predicted_skewness: Some(0.75),
         predicted_kurtosis: Some(12.5),
         detectable_bias: Some(0.003),
@@ -234,7 +239,13 @@ fn rows_on_stdout() {
 
 #[test]
 fn consoles() {
-    for (name, view) in [("run", View::Run), ("predict", View::Predict), ("plan", View::Plan)] {
+    let views = [
+        ("run", View::Run),
+        ("predict", View::Predict),
+        ("moments", View::Moments),
+        ("plan", View::Plan),
+    ];
+    for (name, view) in views {
         for width in [80, 160] {
             let text = console::table(&record(), view, width, false);
             let widest = text.lines().map(|line| line.chars().count()).max();

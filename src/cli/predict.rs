@@ -13,6 +13,9 @@ use super::selection::Selection;
 pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
+    /// Show J₁ to J₄, the relative central moments, the cost and the rare-event size
+    #[arg(long)]
+    moments: bool,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -25,6 +28,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let options = selection.options(Amount::Case)?;
     let record =
         selection.on_threads(|| Ok(judge::predicted(&selection.plan(&cases, &options)?)))?;
-    output::print_record(&record, View::Predict, arguments.format, console)?;
+    let view = if arguments.moments { View::Moments } else { View::Predict };
+    output::print_record(&record, view, arguments.format, console)?;
     Ok(0)
 }

@@ -156,6 +156,18 @@ impl<P: Problem> Setup<P> {
         }
     }
 
+    /// A transmittance that is not in units of its own, see [`Problem::log_unit`].
+    ///
+    /// # Errors
+    ///
+    /// The optical depth.
+    pub fn require_plain_unit(&self, needs: &'static str) -> Result<(), Refusal> {
+        if self.log_unit == 0.0 {
+            return Ok(());
+        }
+        Err(Refusal::mismatch(needs, format!("τ = {:.6}", self.log_unit)))
+    }
+
     /// One constant `σ̂ > 0` on the whole support.
     ///
     /// # Errors

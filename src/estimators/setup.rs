@@ -29,9 +29,11 @@ pub struct Setup<P> {
     pub sampling: Piecewise,
     /// σ_c.
     pub control: Control,
-    /// `T_c = exp(−∫σ_c)` over the support.
+    /// Draws are in units of `exp(−log_unit)`, see [`Problem::log_unit`].
+    pub log_unit: f64,
+    /// `T_c = exp(−∫σ_c)` over the support, in units of `exp(−log_unit)`.
     pub control_transmittance: f64,
-    /// `T` over the support.
+    /// `T` over the support, in units of `exp(−log_unit)`.
     pub transmittance: f64,
     /// Whether whole laws are asked for; a search for optima leaves them out.
     pub laws: bool,
@@ -49,9 +51,21 @@ impl<P: Problem> Setup<P> {
         let support = mesh.support();
         let sampling = sampling.unwrap_or_else(|| Piecewise::constant(0.0, support)).on(support);
         // Both enter draws: this crate's exponential, the same on every machine.
-        let control_transmittance = elementary::exp(-control.optical_depth(support).value);
-        let transmittance = elementary::exp(-mesh.optical_depth().value);
-        Self { problem, mesh, sampling, control, control_transmittance, transmittance, laws: true }
+        let depth = mesh.optical_depth().value;
+        let log_unit = problem.log_unit(depth);
+        let control_depth = control.optical_depth(support).value;
+        let control_transmittance = elementary::exp(log_unit - control_depth);
+        let transmittance = elementary::exp(log_unit - depth);
+        Self {
+            problem,
+            mesh,
+            sampling,
+            control,
+            log_unit,
+            control_transmittance,
+            transmittance,
+            laws: true,
+        }
     }
 
     /// `r`, where medium, control and σ̂ are each one constant on the support.
@@ -72,6 +86,6 @@ impl<P: Problem> Setup<P> {
     #[must_use]
     pub fn product<'a>(&'a self, rule: &'a dyn Rule) -> Product<'a> {
         let product = Product::new(&self.mesh, &self.sampling, &self.control, rule);
-        Product { laws: self.laws, ..product }
+        Product { laws: self.laws, log_unit: self.log_unit, ..product }
     }
 }

@@ -144,6 +144,9 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
     Record { results, timing }
 }
 
+/// A longer list of probabilities is left out of the record.
+const LONGEST_LAW: usize = 100;
+
 /// The rows of an experiment with what theory says of each channel.
 fn theory_rows(planned: &Planned) -> Vec<Row> {
     let blank = Row {
@@ -163,6 +166,7 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
     };
     let prediction = &ready.prediction;
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
+    let law = prediction.lookups.as_ref();
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
         let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
@@ -176,6 +180,16 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
             predicted_kurtosis: finite(channel.moments.and_then(|m| m.kurtosis())),
             predicted_fom: finite(fom),
             stable_share: prediction.stable_share,
+            losses: channel.losses,
+            relative_moments: channel
+                .moments
+                .map_or([None; 3], |moments| moments.relative.map(|m| finite(Some(m)))),
+            lookups_variance: law.map(|law| law.variance),
+            lookups_pmf: law
+                .filter(|law| law.pmf.len() <= LONGEST_LAW)
+                .map_or_else(Vec::new, |law| law.pmf.clone()),
+            rare_event_size: finite(channel.moments.map(|_| channel.tails.rare_event_size)),
+            log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),
             ..blank.clone()
         }
     });

@@ -177,6 +177,19 @@ pub struct Row {
     pub reason: String,
     /// What each check found.
     pub findings: Vec<Finding>,
+    /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4, of product estimators.
+    pub losses: Option<[f64; 4]>,
+    /// The central moments `μ_k/T^k` of one draw in theory, k = 2, 3, 4; `None` where they are
+    /// unknown or overflow.
+    pub relative_moments: [Option<f64>; 3],
+    /// The variance of the number of lookups of one draw in theory.
+    pub lookups_variance: Option<f64>,
+    /// `P(0), P(1), …` lookups of one draw in theory; empty where unknown or longer than 100.
+    pub lookups_pmf: Vec<f64>,
+    /// `n(2)`: with fewer draws the events that make the variance are not seen.
+    pub rare_event_size: Option<f64>,
+    /// All values of the row are in units of `exp(−log_unit)`; `None` where they are as they are.
+    pub log_unit: Option<f64>,
 }
 
 /// What is said of an experiment, or of one check.

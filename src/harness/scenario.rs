@@ -224,11 +224,18 @@ impl<P: Mutable> Scenario<P> {
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
         let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
         let controlled = setup.control_transmittance;
-        if controlled.is_finite() && controlled >= FAINTEST {
+        // Without collisions a draw does not begin with the weight T_c.
+        if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
             return Ok(setup);
         }
-        let needs = "a control with T_c between 1e-300 and infinity";
-        Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")))
+        if setup.log_unit == 0.0 {
+            let needs = "a control with T_c between 1e-300 and 1e300";
+            return Err(Refusal::mismatch(needs, format!("T_c = {controlled:e}")));
+        }
+        let needs = "draws between 1e-300 and 1e300 times T";
+        let control = setup.control.optical_depth(setup.mesh.support()).value;
+        let found = format!("τ = {:.6}, of which the control takes {control:.6}", setup.log_unit);
+        Err(Refusal::mismatch(needs, found))
     }
 
     fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
@@ -308,6 +315,8 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
                     channel.moments = None;
                 }
                 prediction.lookups = None;
+                prediction.random_numbers = None;
+                prediction.increments.clear();
                 prediction.law = None;
                 prediction.covariances.clear();
                 return Ok(Ready { experiment: entry.experiment(setup), prediction });

@@ -34,6 +34,13 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// The field along the ray.
     fn medium(&self) -> &Medium;
 
+    /// The logarithm of what draws are multiplied by, where values of the given optical depth
+    /// would otherwise underflow; 0 for all others.
+    fn log_unit(&self, depth: f64) -> f64 {
+        let _ = depth;
+        0.0
+    }
+
     /// The distance that each channel of a draw is about.
     fn distances(&self) -> Vec<f64> {
         vec![self.medium().span().to]

@@ -13,11 +13,17 @@
 //! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `control`, `points` | none |
 //! | `estimators` | what is tested | required |
 //!
+//! Beyond `τ = 300` the square of T is no longer a double: draws, truth and moments are then in units
+//! of `e^{−τ}`, and T itself is never formed.
+//!
 //! The answer is exact because every field of the catalogue knows its optical depth.
 
 use super::Problem;
 use crate::catalogue::Settings;
 use crate::media::{Body, Medium};
+
+/// Beyond this optical depth values are in units of `e^{−τ}`.
+const THICK: f64 = 300.0;
 
 /// The transmittance of the whole ray.
 pub struct Transmittance {
@@ -33,5 +39,9 @@ impl Problem for Transmittance {
 
     fn medium(&self) -> &Medium {
         &self.medium
+    }
+
+    fn log_unit(&self, depth: f64) -> f64 {
+        if depth > THICK { depth } else { 0.0 }
     }
 }

@@ -20,8 +20,18 @@ pub enum View {
     Run,
     /// What theory says.
     Predict,
+    /// What theory says of moments and costs in full.
+    Moments,
     /// What would be drawn.
     Plan,
+}
+
+impl View {
+    /// Whether it shows theory only.
+    #[must_use]
+    pub fn is_theory(self) -> bool {
+        matches!(self, Self::Predict | Self::Moments)
+    }
 }
 
 /// The narrowest column of reasons that is worth having.
@@ -71,7 +81,10 @@ fn facts(case: &CaseRecord, view: View) -> Vec<String> {
     if let Some(truth) = views::shared(case, |row| row.truth) {
         facts.push(format!("truth {}", short(truth, 6)));
     }
-    if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| view != View::Predict) {
+    if let Some(unit) = views::shared(case, |row| row.log_unit) {
+        facts.push(format!("in units of exp(−{})", short(unit, 6)));
+    }
+    if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| !view.is_theory()) {
         let word = if draws == 1 { "draw" } else { "draws" };
         facts.push(format!("{} {word} each", count(draws)));
     }
@@ -130,7 +143,7 @@ fn closing(text: &mut String, pen: layout::Pen, record: &Record, view: View) {
         let skipped = rows().filter(|row| views::is_skipped(row, view)).count();
         let word = match view {
             View::Run => "undecided",
-            View::Predict => "predicted",
+            View::Predict | View::Moments => "predicted",
             View::Plan => "planned",
         };
         if open > skipped {

@@ -56,6 +56,8 @@ pub enum Cell {
     Number(Option<f64>),
     /// A count, if it is known.
     Count(Option<u64>),
+    /// Numbers; empty where there are none.
+    List(Vec<f64>),
 }
 
 impl Cell {
@@ -67,6 +69,7 @@ impl Cell {
             Self::Word(word) => word.unwrap_or_default().to_owned(),
             Self::Number(number) => number.map(exact).unwrap_or_default(),
             Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
+            Self::List(list) => list.iter().map(|&x| exact(x)).collect::<Vec<_>>().join(" "),
         }
     }
 }
@@ -78,6 +81,7 @@ impl Serialize for Cell {
             Self::Word(word) => word.serialize(serializer),
             Self::Number(number) => number.serialize(serializer),
             Self::Count(count) => count.serialize(serializer),
+            Self::List(list) => list.serialize(serializer),
         }
     }
 }
@@ -102,7 +106,7 @@ macro_rules! columns {
     };
 }
 
-use Cell::{Count, Number, Text, Word};
+use Cell::{Count, List, Number, Text, Word};
 
 const RESULTS: &[Column] = columns! {
     case = |joined| Text(joined.case.name.clone());
@@ -146,6 +150,21 @@ const VERDICTS: &[Column] = columns! {
     best_sampling = |joined| Number(joined.row.best_sampling);
     best_fom = |joined| Number(joined.row.best_fom);
     p_law = |joined| Number(joined.row.p_law);
+    loss_1 = |joined| Number(joined.row.losses.map(|losses| losses[0]));
+    loss_2 = |joined| Number(joined.row.losses.map(|losses| losses[1]));
+    loss_3 = |joined| Number(joined.row.losses.map(|losses| losses[2]));
+    loss_4 = |joined| Number(joined.row.losses.map(|losses| losses[3]));
+    relative_m2 = |joined| Number(joined.row.relative_moments[0]);
+    relative_m3 = |joined| Number(joined.row.relative_moments[1]);
+    relative_m4 = |joined| Number(joined.row.relative_moments[2]);
+    lookups_variance = |joined| Number(joined.row.lookups_variance);
+    rare_event_size = |joined| Number(joined.row.rare_event_size);
+    log_unit = |joined| Number(joined.row.log_unit);
+};
+
+/// What JSON has beside the columns.
+const LISTS: &[Column] = columns! {
+    lookups_pmf = |joined| List(joined.row.lookups_pmf.clone());
 };
 
 /// The columns, in the order in which files have them.
@@ -166,7 +185,7 @@ pub fn csv(record: &Record) -> Result<String, ReportError> {
 }
 
 /// The rows of a record as a JSON array of objects, one to a line. The names are the columns of
-/// the CSV; unknown is `null`, and so is an infinite number, which JSON cannot write.
+/// the CSV, and `lookups_pmf`, an array that is empty where it is unknown or long; unknown is `null`, and so is an infinite number, which JSON cannot write.
 ///
 /// # Errors
 ///
@@ -183,7 +202,8 @@ struct Object<'a>(&'a JoinedRow<'a>);
 
 impl Serialize for Object<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_map(columns().map(|column| (column.name, (column.cell)(self.0))))
+        let all = columns().chain(LISTS);
+        serializer.collect_map(all.map(|column| (column.name, (column.cell)(self.0))))
     }
 }
 

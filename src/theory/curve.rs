@@ -10,7 +10,7 @@
 //! Source: Szirmay-Kalos et al. 2017, section 4.2 and Figure 8; the covariance follows from
 //! Eq. 13, since increments over disjoint stretches are independent.
 
-use super::prediction::Covariance;
+use super::prediction::{Covariance, Increment};
 use super::product::{Integrals, Product};
 use super::{Channel, Moments, Prediction};
 use crate::numeric::Span;
@@ -28,12 +28,13 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
         .iter()
         .zip(&upto)
         .map(|(&s, integrals)| {
-            let truth = mesh.medium().optical_depth(Span::new(start, s)).exp_neg();
-            let error = mesh.relative_error();
-            let moments = Moments::of_product(truth.value, integrals.losses, error);
+            let depth = mesh.medium().optical_depth(Span::new(start, s));
+            let (scale, error) = (depth.exp_neg().value, mesh.relative_error());
+            let moments = Moments::of_product(scale, integrals.losses, error);
             Channel {
                 name: format!("T({s})"),
-                ..Channel::unbiased(truth, moments, integrals.tails())
+                losses: Some(integrals.losses),
+                ..Channel::transmittance(depth, 0.0, moments, integrals.tails())
             }
         })
         .collect();
@@ -42,11 +43,33 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
     Prediction {
         channels,
         lookups: Some(product.lookups(&mesh, &whole)),
+        random_numbers: Some(whole.flown + 1.0),
         law: None,
         covariances,
-        increments: Vec::new(),
+        increments: increments(&upto, mesh.relative_error()),
         stable_share: (length > 0.0).then(|| (whole.stable / length).min(1.0)),
     }
+}
+
+/// The steps from one distance to the next, the first from the beginning of the support.
+fn increments(upto: &[Integrals], error: f64) -> Vec<Increment> {
+    let mut last = [0.0; 4];
+    let steps = upto.iter().map(|integrals| {
+        let step: [f64; 4] = std::array::from_fn(|k| integrals.losses[k] - last[k]);
+        let [_, j2, j3, j4] = std::mem::replace(&mut last, integrals.losses);
+        let factor = Moments::of_product(1.0, step, 0.0);
+        // e^{6J₂−4J₃+J₄} κ(Y)/e^{2J₂}.
+        let kurtosis = factor.kurtosis().map(|kurtosis| (4.0 * (j2 - j3) + j4).exp() * kurtosis);
+        let size: f64 = integrals.losses[1].abs();
+        Increment {
+            clock: integrals.losses[1].exp_m1(),
+            variance: j2.exp() * factor.relative[0],
+            kurtosis: kurtosis.unwrap_or(1.0),
+            // The step is a difference of integrals, each good to its own last digits.
+            error: if step[1] == 0.0 { 0.0 } else { error * (size + size / step[1].abs()) },
+        }
+    });
+    steps.collect()
 }
 
 fn pairs(channels: &[Channel], upto: &[Integrals]) -> Vec<Covariance> {

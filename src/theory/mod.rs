@@ -18,5 +18,5 @@ pub mod volterra;
 pub use count::CountLaw;
 pub use mesh::Mesh;
 pub use moments::Moments;
-pub use prediction::{Channel, Law, Prediction, Tails};
+pub use prediction::{Channel, Increment, Law, Prediction, Tails};
 pub use rule::{Outcome, Rule};

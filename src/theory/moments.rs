@@ -53,14 +53,14 @@ impl Moments {
     #[must_use]
     pub fn skewness(&self) -> Option<f64> {
         let [m2, m3, _] = self.relative;
-        (m2 > 0.0).then(|| m3 / m2.powf(1.5))
+        (m2 > 0.0).then(|| if m2.is_infinite() { f64::INFINITY } else { m3 / m2.powf(1.5) })
     }
 
-    /// `μ₄/μ₂²`, 3 for the normal law; `None` without spread.
+    /// `μ₄/μ₂²`, 3 for the normal law; infinite where the moments overflow, `None` without spread.
     #[must_use]
     pub fn kurtosis(&self) -> Option<f64> {
         let [m2, _, m4] = self.relative;
-        (m2 > 0.0).then(|| m4 / (m2 * m2))
+        (m2 > 0.0).then(|| if m4.is_infinite() { f64::INFINITY } else { m4 / (m2 * m2) })
     }
 
     /// The exact variance of the sample variance of `n` draws, relative to the variance squared.
@@ -105,6 +105,27 @@ mod tests {
                 assert!((a - b).abs() < 1e-14, "{near:?} {far:?}");
             }
         }
+    }
+
+    #[test]
+    fn moments_that_overflow_have_an_infinite_kurtosis() {
+        // Exponents J₂, 3J₂ − J₃ and 6J₂ − 4J₃ + J₄ beyond 700, one after the other.
+        for losses in [
+            [0.0, 130.0, 10.0, 10.0],
+            [0.0, 300.0, 100.0, 40.0],
+            [0.0, 800.0, 800.0, 800.0],
+            [0.0, 1e5, 1e5, 1e6],
+            [0.0, 1e5, -1e6, 1e7],
+        ] {
+            let moments = Moments::of_product(1.0, losses, 0.0);
+            assert_eq!(moments.kurtosis(), Some(f64::INFINITY), "{losses:?}");
+            assert_eq!(moments.spread_of_sample_variance(1e6), Some(f64::INFINITY));
+            assert!(!moments.skewness().expect("spread").is_nan(), "{losses:?}");
+            assert!(!moments.variance().is_nan());
+        }
+        // Just short of it: 6J₂ = 696.
+        let finite = Moments::of_product(1.0, [0.0, 116.0, 0.0, 0.0], 0.0);
+        assert!(finite.kurtosis().expect("spread").is_finite());
     }
 
     #[test]

@@ -10,11 +10,13 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
+    /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
+    pub random_numbers: Option<f64>,
     /// The whole law of the draw, where it is known.
     pub law: Option<Law>,
     /// The covariances of the channels, where there are several.
     pub covariances: Vec<Covariance>,
-    /// The increments along one walk, where the value is a curve.
+    /// The steps of one walk from each distance of a curve to the next.
     pub increments: Vec<Increment>,
     /// The share of the ray on which the variance stays bounded, `w ≤ 2σ_t`; `None` where the
     /// estimator has no variance introduction density.
@@ -30,13 +32,21 @@ pub struct Channel {
     pub truth: Known,
     /// What its draws are on average; equal to `truth` if it is unbiased.
     pub mean: Known,
-    /// What relative tolerances refer to: the truth, or the opacity where that is small.
-    pub unit: f64,
     /// Its central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
     /// How heavy its tails are.
     pub tails: Tails,
+    /// What relative tolerances refer to: the truth, or, for a transmittance of optical depth
+    /// `0 < τ < 0.1`, the opacity `1 − T = −expm1(−τ)`.
+    pub unit: f64,
+    /// All values are in units of `exp(−log_unit)`: 0, or τ where T itself would underflow.
+    pub log_unit: f64,
+    /// `J_k = ∫ σ̂ E[(1 − W)^k] dt`, k = 1 … 4, for product estimators.
+    pub losses: Option<[f64; 4]>,
 }
+
+/// Below this optical depth the opacity is what matters.
+const THIN: f64 = 0.1;
 
 /// How many draws it takes before sample statistics mean what they say.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -57,9 +67,48 @@ impl Channel {
     /// A single unbiased channel.
     #[must_use]
     pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
+        let (unit, moments) = (truth.value, Some(moments));
         let name = String::new();
-        Self { name, truth, mean: truth, unit: truth.value, moments: Some(moments), tails }
+        Self { name, truth, mean: truth, moments, tails, unit, log_unit: 0.0, losses: None }
     }
+
+    /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
+    #[must_use]
+    pub fn transmittance(depth: Known, log_unit: f64, moments: Moments, tails: Tails) -> Self {
+        let truth = transmittance(depth, log_unit);
+        let thin = depth.value > 0.0 && depth.value < THIN;
+        let unit = if thin { -(-depth.value).exp_m1() } else { truth.value };
+        Self { unit, log_unit, ..Self::unbiased(truth, moments, tails) }
+    }
+}
+
+/// `T e^{log_unit} = exp(log_unit − τ)`.
+#[must_use]
+pub fn transmittance(depth: Known, log_unit: f64) -> Known {
+    Known::new(depth.value - log_unit, depth.error).exp_neg()
+}
+
+/// One step of a walk along a curve, from one distance to the next.
+///
+/// With `A = X(s_{j−1})/T_{j−1}` and the independent factor `Y` of the step, both of mean 1, the
+/// step is `Δ = A(Y − 1)`: a martingale difference, uncorrelated with all others. It runs on the
+/// clock `g(s) = expm1(J₂(s))`:
+///
+/// ```text
+/// Δ_j = X_j/T_j − X_{j−1}/T_{j−1},  X₀/T₀ = 1,  E[Δ_j] = 0
+/// E[Δ_j²] = E[A²] E[(Y − 1)²] = e^{J₂(s_{j−1})} expm1(J₂(s_j) − J₂(s_{j−1})) = g(s_j) − g(s_{j−1})
+/// E[Δ_j⁴] = E[A⁴] E[(Y − 1)⁴],  E[A⁴] = exp(6J₂ − 4J₃ + J₄) at s_{j−1}
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Increment {
+    /// `g(s_j)`, the clock at the step's end.
+    pub clock: f64,
+    /// `E[Δ_j²]`, of one draw, relative to T².
+    pub variance: f64,
+    /// `E[Δ_j⁴]/E[Δ_j²]²`; 1 where the step has no spread, infinite where it overflows.
+    pub kurtosis: f64,
+    /// A relative error bound of the variance.
+    pub error: f64,
 }
 
 /// The covariance of two channels, and of what measures it.
@@ -71,15 +120,6 @@ pub struct Covariance {
     pub value: f64,
     /// `Var[(X₁ − T₁)(X₂ − T₂)]`.
     pub variance: f64,
-}
-
-/// An increment.
-#[derive(Debug, Clone, Copy)]
-pub struct Increment {
-    /// variance
-    pub variance: f64,
-    /// kurtosis
-    pub kurtosis: f64,
 }
 
 /// A law that is known as a whole.
@@ -108,6 +148,7 @@ impl Prediction {
         Self {
             channels: vec![channel],
             lookups: Some(lookups),
+            random_numbers: None,
             law: None,
             covariances: Vec::new(),
             increments: Vec::new(),

@@ -10,6 +10,7 @@
 //! (2017), with the variance introduction densities of its Eqs. 17–20.
 
 use super::mesh::Panel;
+use super::prediction::transmittance;
 use super::{Channel, CountLaw, Mesh, Moments, Outcome, Prediction, Rule, Tails};
 use crate::media::{Control, Piecewise};
 use crate::numeric::sum::Sum;
@@ -30,6 +31,8 @@ pub struct Product<'a> {
     pub killing: f64,
     /// Whether the whole law of the lookups is asked for; a search for optima leaves it out.
     pub laws: bool,
+    /// Draws are in units of `exp(−log_unit)`.
+    pub log_unit: f64,
 }
 
 /// The integrals that moments and costs are made of.
@@ -44,8 +47,12 @@ pub struct Integrals {
     /// Factorial moments `E[M(M − 1)…(M − k + 1)] = k ∫ σ̂ e^{−K} A^{k−1}`, k = 1 … 4, with
     /// `K = ∫ σ̂(1 − q)` and `A = ∫ σ̂ q` up to the collision.
     pub lookups: [f64; 4],
+    /// `∫ σ̂ e^{−K} [q < 1] dt`: how often a particle's fate is decided by a random number.
+    pub decisions: f64,
     /// `∫σ̂`.
     pub flown: f64,
+    /// `e^{−K(S)}`: how many walks nothing ends.
+    pub alive: f64,
     /// The length on which `w ≤ 2σ_t`.
     pub stable: f64,
 }
@@ -65,7 +72,7 @@ impl<'a> Product<'a> {
         control: &'a Control,
         rule: &'a dyn Rule,
     ) -> Self {
-        Self { mesh, sampling, control, rule, killing: 0.0, laws: true }
+        Self { mesh, sampling, control, rule, killing: 0.0, laws: true, log_unit: 0.0 }
     }
 
     fn ratio(&self, t: f64, extinction: f64) -> f64 {
@@ -140,12 +147,18 @@ impl<'a> Product<'a> {
     pub fn predict(&self) -> Prediction {
         let mesh = self.mesh(&[]);
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
-        let truth = mesh.optical_depth().exp_neg();
-        let moments = Moments::of_product(truth.value, all.losses, mesh.relative_error());
-        let channel = Channel::unbiased(truth, moments, all.tails());
+        let depth = mesh.optical_depth();
+        let scale = transmittance(depth, self.log_unit).value;
+        let moments = Moments::of_product(scale, all.losses, mesh.relative_error());
+        let channel = Channel::transmittance(depth, self.log_unit, moments, all.tails());
+        let channel = Channel { losses: Some(all.losses), ..channel };
         let length = mesh.support().length();
         let stable_share = (length > 0.0).then(|| (all.stable / length).min(1.0));
-        Prediction { stable_share, ..Prediction::single(channel, self.lookups(&mesh, &all)) }
+        let lookups = self.lookups(&mesh, &all);
+        // One for each flight, the last one included, and one for each fate that is open.
+        let walked = lookups.mean + all.alive + all.decisions;
+        let random_numbers = (self.killing == 0.0).then_some(walked);
+        Prediction { random_numbers, stable_share, ..Prediction::single(channel, lookups) }
     }
 }
 
@@ -189,6 +202,7 @@ struct Totals {
     rarity: Sum,
     growth: [Sum; 2],
     lookups: [Sum; 4],
+    decisions: Sum,
     flown: Sum,
     deaths: Sum,
     survivals: Sum,
@@ -223,6 +237,9 @@ impl Totals {
             let terms = first.iter().zip(&before).map(|(f, a)| order * f * a.powi(k - 1));
             sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
         }
+        let open = first.iter().zip(&nodes.outcome);
+        let open: Vec<f64> = open.map(|(f, o)| if o.survival < 1.0 { *f } else { 0.0 }).collect();
+        self.decisions.add(mesh.integral(panel, &open));
         self.flown.add(mesh.integral(panel, &nodes.sampling));
         self.deaths.add(mesh.integral(panel, &deaths));
         self.survivals.add(mesh.integral(panel, &survivals));
@@ -240,7 +257,9 @@ impl Totals {
             rarity: self.rarity.value(),
             growth: self.growth.map(|sum| sum.value()),
             lookups: self.lookups.map(|sum| sum.value()),
+            decisions: self.decisions.value(),
             flown: self.flown.value(),
+            alive: (-self.deaths.value()).exp(),
             stable: self.stable.value(),
         }
     }

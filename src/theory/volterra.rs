@@ -54,7 +54,7 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     }
     let v = (-sampling * mesh.support().length()).exp();
     let raw: [f64; ORDERS] = std::array::from_fn(|k| source.moment(k + 1, v, &after) + after[k]);
-    let truth = mesh.optical_depth().exp_neg();
+    let depth = mesh.optical_depth();
     let t = raw[0];
     // Central moments by subtraction: these estimators are not used where the relative spread
     // vanishes, and the loss of digits is stated in `error`.
@@ -68,14 +68,16 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let relative = [central[0].max(0.0), central[1], central[2].max(0.0)];
     let noise = (mesh.relative_error() + 1e-14) * m4.abs().max(1.0);
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
-    let moments = Moments { scale: truth.value, relative, error };
+    let moments = Moments { scale: depth.exp_neg().value, relative, error };
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
     let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
-    let mut channel = Channel::unbiased(truth, moments, tails);
+    let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
     if error.is_nan() || error > WORST {
         channel.moments = None;
     }
-    Prediction::single(channel, CountLaw::poisson(sampling * mesh.support().length()))
+    let flown = sampling * mesh.support().length();
+    let random_numbers = Some(flown + 1.0);
+    Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }
 
 /// What must be smooth on a panel: the decay of every order, and the powers of ρ.

@@ -15,6 +15,7 @@ use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
+use crate::theory::prediction::transmittance;
 use crate::theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
 
 /// Closed-form tracking; it has no settings.
@@ -24,10 +25,17 @@ pub struct ClosedForm;
 /// The prediction of an estimator that always gives the exact answer.
 #[must_use]
 pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
-    let truth = setup.mesh.optical_depth().exp_neg();
-    let channel = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-    let law = Some(Law::Atoms(vec![(truth.value, 1.0)]));
-    Prediction { law, ..Prediction::single(channel, CountLaw::always(lookups as f64)) }
+    let depth = setup.mesh.optical_depth();
+    let value = transmittance(depth, setup.log_unit).value;
+    let moments = Moments::certain(value);
+    let channel = Channel::transmittance(depth, setup.log_unit, moments, Tails::LIGHT);
+    let law = Some(Law::Atoms(vec![(value, 1.0)]));
+    let random_numbers = Some(0.0);
+    Prediction {
+        random_numbers,
+        law,
+        ..Prediction::single(channel, CountLaw::always(lookups as f64))
+    }
 }
 
 impl Estimator<Transmittance> for ClosedForm {

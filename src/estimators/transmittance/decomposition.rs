@@ -16,11 +16,12 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for
 //! Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
-use super::woodcock::zero_or_one;
+use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::catalogue::Settings;
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
 use crate::media::{Control, Extinction};
+use crate::numeric::elementary;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential, unit};
 use crate::theory::Prediction;
@@ -49,6 +50,7 @@ impl Estimator<Transmittance> for Decomposition {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit(ZERO_OR_ONE)?;
         let needs = "a constant control";
         match constant_control(setup) {
             None => return Err(Refusal::mismatch(needs, "the control varies")),
@@ -89,6 +91,6 @@ impl Estimator<Transmittance> for Decomposition {
             }
         }
         let passed = support.from + flight >= support.to;
-        Draw::free([f64::from(u8::from(passed))], lookups)
+        Draw::free([if passed { elementary::exp(setup.log_unit) } else { 0.0 }], lookups)
     }
 }

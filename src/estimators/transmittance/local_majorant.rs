@@ -15,7 +15,7 @@
 //! sampling for rendering inhomogeneous participating media*, ACM Transactions on Graphics 29
 //! (2010).
 
-use super::woodcock::zero_or_one;
+use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::catalogue::Settings;
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -36,6 +36,7 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit(ZERO_OR_ONE)?;
         if !setup.sampling.is_steps() {
             return Err(Refusal::mismatch("a piecewise-constant σ̂", "σ̂ has a slope"));
         }
@@ -43,7 +44,9 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        zero_or_one(setup.product(&Null).predict())
+        // It takes one more at each boundary that it crosses.
+        let prediction = setup.product(&Null).predict();
+        zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
 
     fn draw<M: Extinction>(
@@ -67,6 +70,6 @@ impl Estimator<Transmittance> for LocalMajorant {
                 }
             }
         }
-        Draw::free([1.0], lookups)
+        Draw::free([setup.control_transmittance], lookups)
     }
 }

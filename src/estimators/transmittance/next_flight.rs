@@ -45,6 +45,7 @@ impl Estimator<Transmittance> for NextFlight {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
         setup.require_constant_sampling().map(|_| ())
     }
 
@@ -68,6 +69,6 @@ impl Estimator<Transmittance> for NextFlight {
             lookups += 1;
             score += weight * elementary::exp(-sampling * (end - cursor.t));
         }
-        Draw::free([score], lookups)
+        Draw::free([score * setup.control_transmittance], lookups)
     }
 }

@@ -66,9 +66,9 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        let truth = setup.mesh.optical_depth().exp_neg();
         let medium = setup.mesh.medium();
-        let value = |u: f64| (-self.depth(setup, u, |t| medium.extinction(t))).exp();
+        let value =
+            |u: f64| (setup.log_unit - self.depth(setup, u, |t| medium.extinction(t))).exp();
         let (mean, moments) = if self.jitter {
             let rule = GaussLegendre::new(4);
             let width = 1.0 / PANELS as f64;
@@ -88,9 +88,16 @@ impl Estimator<Transmittance> for RayMarching {
         };
         let channel = Channel {
             mean: Known::new(mean, 1e-9 * mean),
-            ..Channel::unbiased(truth, moments, Tails::LIGHT)
+            ..Channel::transmittance(
+                setup.mesh.optical_depth(),
+                setup.log_unit,
+                moments,
+                Tails::LIGHT,
+            )
         };
-        Prediction::single(channel, CountLaw::always(f64::from(self.steps)))
+        let random_numbers = Some(f64::from(u8::from(self.jitter)));
+        let lookups = CountLaw::always(f64::from(self.steps));
+        Prediction { random_numbers, ..Prediction::single(channel, lookups) }
     }
 
     fn draw<M: Extinction>(
@@ -101,6 +108,6 @@ impl Estimator<Transmittance> for RayMarching {
     ) -> Draw<[f64; 1]> {
         let u = if self.jitter { unit(rng) } else { 0.5 };
         let depth = self.depth(setup, u, |t| medium.extinction(t));
-        Draw::free([elementary::exp(-depth)], self.steps)
+        Draw::free([elementary::exp(setup.log_unit - depth)], self.steps)
     }
 }

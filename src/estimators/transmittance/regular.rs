@@ -57,12 +57,18 @@ impl Estimator<Transmittance> for Regular {
         _: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut weight = 1.0;
+        let mut left = setup.log_unit;
         let mut lookups = 0;
         for panel in setup.mesh.panels() {
             let extinction = medium.extinction(panel.span.middle());
-            weight *= elementary::exp(-extinction * panel.span.length());
             lookups += 1;
+            if setup.log_unit == 0.0 {
+                weight *= elementary::exp(-extinction * panel.span.length());
+            } else {
+                // The product would underflow: its logarithm is taken from that of the unit.
+                left -= extinction * panel.span.length();
+            }
         }
-        Draw::free([weight], lookups)
+        Draw::free([weight * elementary::exp(left)], lookups)
     }
 }

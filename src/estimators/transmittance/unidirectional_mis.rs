@@ -44,6 +44,7 @@ impl Estimator<Transmittance> for UnidirectionalMis {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
         setup.require_constant_sampling().map(|_| ())
     }
 
@@ -73,6 +74,6 @@ impl Estimator<Transmittance> for UnidirectionalMis {
             lookups += 1;
             here = share(sampling, cursor.t);
         }
-        Draw::free([score + 2.0 * weight * here], lookups)
+        Draw::free([(score + 2.0 * weight * here) * setup.control_transmittance], lookups)
     }
 }

@@ -28,6 +28,9 @@ use crate::theory::{Law, Prediction};
 #[derive(Debug, Clone)]
 pub struct Woodcock;
 
+/// What estimators whose draws are 0 or 1 need.
+pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never seen)";
+
 /// Adds the law of a draw that is 1 with probability T, else 0.
 #[must_use]
 pub fn zero_or_one(prediction: Prediction) -> Prediction {
@@ -45,6 +48,7 @@ impl Estimator<Transmittance> for Woodcock {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        setup.require_plain_unit(ZERO_OR_ONE)?;
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
     }
 

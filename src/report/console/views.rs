@@ -36,8 +36,22 @@ const PREDICT: &[Spec] = &[
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
     ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
     ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
+    ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
     ("best σ\u{302}", true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
     ("best FoM", true, 7, |row| digits(row.best_fom, 4)),
+];
+
+const MOMENTS: &[Spec] = &[
+    ("J₁", true, 9, |row| loss(row, 1)),
+    ("J₂", true, 2, |row| loss(row, 2)),
+    ("J₃", true, 6, |row| loss(row, 3)),
+    ("J₄", true, 6, |row| loss(row, 4)),
+    ("m₂", true, 1, |row| digits(row.relative_moments[0], 4)),
+    ("m₃", true, 4, |row| digits(row.relative_moments[1], 4)),
+    ("m₄", true, 4, |row| digits(row.relative_moments[2], 4)),
+    ("lookups", true, 3, |row| digits(row.predicted_lookups, 4)),
+    ("± σ", true, 5, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
+    ("n(2)", true, 2, |row| digits(row.rare_event_size, 3)),
 ];
 
 const PLAN: &[Spec] = &[("lookups", true, 2, |row| digits(row.predicted_lookups, 4))];
@@ -51,7 +65,7 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
     }
     specs.extend([CONTROL, CHANNEL]);
     // What all rows share stands over the table.
-    if view != View::Predict && shared(case, |row| row.draws).is_none() {
+    if !view.is_theory() && shared(case, |row| row.draws).is_none() {
         specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
     }
     if view != View::Plan && shared(case, |row| row.truth).is_none() {
@@ -60,6 +74,7 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
     specs.extend(match view {
         View::Run => RUN,
         View::Predict => PREDICT,
+        View::Moments => MOMENTS,
         View::Plan => PLAN,
     });
     let column = |(head, right, rank, text): Spec| {
@@ -138,6 +153,11 @@ pub fn paint(verdict: Verdict) -> Paint {
         Verdict::Inconclusive => Paint::Yellow,
         Verdict::Underpowered | Verdict::Refused => Paint::Dim,
     }
+}
+
+/// `J_k`.
+fn loss(row: &Row, k: usize) -> String {
+    digits(row.losses.map(|losses| losses[k - 1]), 4)
 }
 
 fn digits(value: Option<f64>, digits: usize) -> String {

@@ -1,0 +1,166 @@
+//! What a prediction says of each channel, against numbers derived by hand.
+
+mod common;
+
+use common::{case, differs, none, options, predicted, row, rows, verdict};
+use trueflight::estimators::rules::Weight;
+use trueflight::harness::Plan;
+use trueflight::harness::record::{Row, Verdict};
+use trueflight::media::{Control, Piecewise};
+use trueflight::theory::product::Product;
+use trueflight::theory::{Mesh, Prediction, curve};
+
+fn predictions(text: &str) -> Vec<Prediction> {
+    let cases = [case("test", text)];
+    let plan = Plan::new(&cases, &options(1, 1000));
+    let ready = plan.experiments().map(|(_, planned)| planned.outcome.as_ref().expect("ready"));
+    ready.map(|ready| ready.prediction.clone()).collect()
+}
+
+#[test]
+fn the_clock_of_a_curve_in_a_homogeneous_medium() {
+    // σ_t = 1/2, σ̂ = 1: r = 1/2 and X(s)/T(s) = e^{s/2} 2^{−N}, N ~ Poisson(s), so that
+    // E[(X/T)^k] = exp(s(k/2 − 1 + 2^{−k})) and J₂(s) = s/4.
+    let mesh = Mesh::new(common::medium("medium.constant.extinction = 0.5\nspan = [0, 3]"));
+    let sampling = Piecewise::constant(1.0, mesh.support());
+    let product = Product::new(&mesh, &sampling, &Control::None, &Weight);
+    let prediction = curve::predict(&product, &[1.0, 3.0]);
+    let raw = |s: f64, k: i32| (s * (0.5 * f64::from(k) - 1.0 + 0.5f64.powi(k))).exp();
+    // E[(Y − 1)⁴] of a step, by its raw moments.
+    let fourth = |s: f64| raw(s, 4) - 4.0 * raw(s, 3) + 6.0 * raw(s, 2) - 3.0;
+    let step = raw(3.0, 2) - raw(1.0, 2);
+    let first = fourth(1.0) / (raw(1.0, 2) - 1.0).powi(2);
+    let second = raw(1.0, 4) * fourth(2.0) / (step * step);
+    let expected = [
+        (0.25f64.exp_m1(), 0.25f64.exp_m1(), first),
+        (0.75f64.exp_m1(), 0.75f64.exp() - 0.25f64.exp(), second),
+    ];
+    let mut differences = Vec::new();
+    for (found, (clock, variance, kurtosis)) in prediction.increments.iter().zip(expected) {
+        differences.extend(differs("clock", found.clock, clock, 1e-13));
+        differences.extend(differs("variance", found.variance, variance, 1e-13));
+        differences.extend(differs("kurtosis", found.kurtosis, kurtosis, 1e-11));
+    }
+    assert_eq!(prediction.increments.len(), 2);
+    none(&differences);
+}
+
+#[test]
+fn the_steps_of_a_clock_add_up_and_agree_with_the_channels() {
+    let prediction = &predictions(
+        "title = \"a curve\"\n[problem.transmittance-curve]\nvolume.eq21 = {}\n\
+         ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\ndistances = 12\n\
+         sampling.constant.value = 1.2\nestimators = [{ double = {} }]",
+    )[0];
+    let mut sum = 0.0;
+    let mut differences = Vec::new();
+    assert_eq!(prediction.increments.len(), prediction.channels.len());
+    for (step, channel) in prediction.increments.iter().zip(&prediction.channels) {
+        sum += step.variance;
+        let [m2, ..] = channel.moments.expect("moments").relative;
+        differences.extend(differs("clock", step.clock, m2, 1e-12));
+        differences.extend(differs("sum of steps", sum, m2, 1e-12));
+        assert!(step.kurtosis >= 1.0 && step.error * step.variance < 1e-12 * step.clock);
+    }
+    none(&differences);
+}
+
+const ALL: &str = "{ closed-form = {} }, { regular = {} }, { woodcock = {} }, { ratio = {} }, \
+                   { residual-ratio.control.constant.value = 0.1 }, { next-flight = {} }, \
+                   { unidirectional-mis = {} }, { ray-marching = { steps = 4, jitter = true } }";
+
+#[test]
+fn thin_media_are_measured_by_their_opacity() {
+    // τ = .05, .2 and 0: 1 − T = −expm1(−τ) below .1, T elsewhere.
+    let opacity = 0.048_770_575_499_285_99;
+    for (extinction, unit) in [(0.025, opacity), (0.1, (-0.2f64).exp()), (0.0, 1.0)] {
+        let found = predictions(&format!(
+            "title = \"thin\"\n[problem.transmittance]\n\
+             medium.constant.extinction = {extinction}\nspan = [0, 2]\n\
+             sampling.constant.value = 0.5\nestimators = [{ALL}]"
+        ));
+        let differences =
+            found.iter().filter_map(|found| differs("unit", found.channels[0].unit, unit, 1e-15));
+        none(&differences.collect::<Vec<_>>());
+    }
+    // A digit of T is none of the opacity: 1e-12 is exact, 1 − T is not.
+    let faint = predictions(
+        "title = \"faint\"\n[problem.transmittance]\nmedium.constant.extinction = 1e-12\n\
+         span = [0, 1]\nestimators = [{ closed-form = {} }]",
+    );
+    none(&differs("unit", faint[0].channels[0].unit, 1e-12, 1e-12).into_iter().collect::<Vec<_>>());
+    let flight = &predictions(
+        "title = \"flight\"\n[problem.free-flight]\nmedium.constant.extinction = 0.01\n\
+         span = [0, 2]\nestimators = [{ inversion = {} }]",
+    )[0];
+    assert_eq!(flight.channels[0].unit, flight.channels[0].truth.value);
+}
+
+/// τ = 1000 with a control of 999: `X/T = e · ∏ (1 − r)`, r = .1/2.
+const THICK: &str = "title = \"thick\"\n[problem.transmittance]\n\
+                     medium.constant.extinction = 100\nspan = [0, 10]\n\
+                     sampling.constant.value = 2\ncontrol.constant.value = 99.9\n\
+                     estimators = [{ double = {} }, { single.rule = \"terminating\" }, \
+                     { residual-ratio = {} }, { closed-form = {} }, { regular = {} }, \
+                     { ray-marching.steps = 3 }, { ratio = {} }, { woodcock = {} }, \
+                     { decomposition = {} }, { weighted-delta = {} }, { next-flight = {} }]";
+
+#[test]
+fn thick_media_are_drawn_in_units_of_their_own() {
+    // double: J₂ = 20 · .05² = .05; single at 0 ≤ r ≤ 1: J₂ = 20 · .05 = 1 = J₁.
+    let found = rows(THICK, 400_000);
+    let expected = [
+        ("double", 0.05f64.exp_m1(), 20.0),
+        ("single", 1f64.exp_m1(), 20.0 * -(-1f64).exp_m1()),
+        ("residual-ratio", 0.05f64.exp_m1(), 20.0),
+        ("closed-form", 0.0, 0.0),
+        ("regular", 0.0, 1.0),
+    ];
+    let mut differences = Vec::new();
+    for (name, variance, lookups) in expected {
+        let row = row(&found, name);
+        assert_eq!((row.truth, row.log_unit), (Some(1.0), Some(1000.0)), "{name}");
+        let number = |x: Option<f64>| x.expect("a number");
+        // The residual .1 is a difference of 100 and 99.9: 1e-14 of it is rounding of those.
+        let found = number(row.predicted_variance);
+        differences.extend(differs(&format!("V {name}"), found, variance, 1e-12));
+        let found = number(row.predicted_lookups);
+        differences.extend(differs(&format!("N {name}"), found, lookups, 1e-12));
+        assert_eq!(verdict(row), Verdict::Pass, "{name}: {}", row.reason);
+        assert!((number(row.mean) - 1.0).abs() < 0.01, "{name}: {:?}", row.mean);
+    }
+    none(&differences);
+    let marched = row(&found, "ray-marching");
+    assert!((marched.mean.expect("draws") - 1.0).abs() < 1e-12);
+    for name in ["ratio", "woodcock", "decomposition", "weighted-delta", "next-flight"] {
+        let row = row(&found, name);
+        assert_eq!(verdict(row), Verdict::Refused, "{name}");
+        assert!(
+            row.reason.contains("τ = 1000") || row.reason.contains("τ ≤ 300"),
+            "{}",
+            row.reason
+        );
+    }
+}
+
+#[test]
+fn the_unit_does_not_depend_on_which_side_of_the_limit_a_depth_is() {
+    // The relative moments at τ = 299 and τ = 301 with the same residual are the same.
+    let rows: Vec<Row> = [29.9, 30.1]
+        .into_iter()
+        .flat_map(|extinction| {
+            predicted(&format!(
+                "title = \"limit\"\n[problem.transmittance]\n\
+                 medium.constant.extinction = {extinction}\nspan = [0, 10]\n\
+                 sampling.constant.value = 2\nestimators = [{{ double.control.constant.value = \
+                 {} }}]",
+                extinction - 0.1
+            ))
+        })
+        .collect();
+    assert_eq!((rows[0].log_unit, rows[1].log_unit.is_some()), (None, true));
+    let relative = |row: &Row| row.relative_moments.map(|m| m.expect("a moment"));
+    let pairs = relative(&rows[0]).into_iter().zip(relative(&rows[1]));
+    let differences = pairs.filter_map(|(a, b)| differs("moment", a, b, 1e-11));
+    none(&differences.collect::<Vec<_>>());
+}
