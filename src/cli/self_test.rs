@@ -10,16 +10,17 @@ use trueflight::report::{self, self_test as page};
 use super::Console;
 use super::output;
 
-/// Independent runs of the quick calibration.
-const RUNS: u64 = 400;
-/// Independent runs of the long one.
-const LONG_RUNS: u64 = 10_000;
+/// Independent runs of the long calibration.
+const LONG: u64 = 10_000;
 
 /// Arguments of `self-test`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Calibrate with 10 000 independent runs instead of 400
-    #[arg(long)]
+    /// Independent runs of the calibration
+    #[arg(long, default_value_t = 400, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    runs: u64,
+    /// Calibrate with 10 000 independent runs
+    #[arg(long, conflicts_with = "runs")]
     long: bool,
     /// Seed of the mutants' draws
     #[arg(long, default_value_t = 1, value_name = "N")]
@@ -39,7 +40,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     }
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let runs = if arguments.long { LONG_RUNS } else { RUNS };
+    let runs = if arguments.long { LONG } else { arguments.runs };
     let begin = Instant::now();
     let found = pool.install(|| -> anyhow::Result<SelfTest> {
         let bar = output::progress("calibrating", "runs", runs, console);

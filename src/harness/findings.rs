@@ -10,19 +10,35 @@
 //! `variance assumed`. A mean that is underpowered makes its experiment inconclusive unless the
 //! case allows it.
 
+use rayon::prelude::*;
+
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::record::{Finding, GateFinding, Verdict};
-use super::run::{Drawn, Standing, Total};
+use super::run::{Drawn, Draws, Standing, Total};
 use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
 
 /// The reason of a mean that passed although its variance could not be tested.
 pub const ASSUMED: &str = "variance assumed";
 
-/// What is found of one experiment; laws still have to be judged together.
+/// What is found of a run: per case, per experiment, per question.
 #[must_use]
-pub fn of_experiment(
+pub fn of_run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
+    let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
+    let mut findings: Vec<Vec<Vec<Finding>>> = pairs
+        .par_iter()
+        .map(|(case, drawn)| {
+            let both = case.experiments.par_iter().zip(drawn.par_iter());
+            both.map(|(planned, drawn)| of_experiment(plan, case, planned, drawn)).collect()
+        })
+        .collect();
+    judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
+    findings
+}
+
+/// What is found of one experiment; laws still have to be judged together.
+fn of_experiment(
     plan: &Plan,
     case: &PlannedCase,
     planned: &Planned,
@@ -253,7 +269,7 @@ fn shown_anywhere(findings: &mut [Finding]) {
 }
 
 /// Judges the p-values of a run together.
-pub fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
+fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
     let p: Vec<f64> = findings.iter().filter_map(|finding| finding.p).collect();
     let rejected = multiplicity::holm(&p, plan.levels.law_alpha);
     let laws = findings.iter_mut().filter(|finding| finding.p.is_some());

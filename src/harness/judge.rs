@@ -54,15 +54,7 @@ pub fn predicted(plan: &Plan) -> Record {
 #[must_use]
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
-    let mut findings: Vec<Vec<Vec<Finding>>> = pairs
-        .par_iter()
-        .map(|(case, drawn)| {
-            let both = case.experiments.par_iter().zip(drawn.par_iter());
-            both.map(|(planned, drawn)| findings::of_experiment(plan, case, planned, drawn))
-                .collect()
-        })
-        .collect();
-    findings::judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
+    let findings = findings::of_run(plan, draws);
     let parts: Vec<_> = pairs
         .par_iter()
         .zip(&findings)

@@ -17,8 +17,8 @@ use rayon::prelude::*;
 
 use crate::harness::checks::Kind;
 use crate::harness::plan::{MISS, Options, Plan};
-use crate::harness::record::{Finding, Record, Verdict};
-use crate::harness::{Case, CaseError, judge, run, suite};
+use crate::harness::record::{Finding, Verdict};
+use crate::harness::{Case, CaseError, findings, run, suite};
 use crate::stats::{anderson_darling, binomial};
 
 /// The run-level α of the calibration.
@@ -124,8 +124,8 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
             // Half of the chunks are biased upwards, half downwards.
             shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
             for seed in seeds {
-                counts.add_fair(&record(&mut fair, seed));
-                counts.add_biased(&record(&mut biased, seed));
+                counts.add_fair(&mut fair, seed);
+                counts.add_biased(&mut biased, seed);
                 progress(1);
             }
             counts
@@ -136,9 +136,12 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
     Ok(total.close(levels.scalars, levels.laws))
 }
 
-fn record(plan: &mut Plan, seed: u64) -> Record {
+/// Draws a plan from another seed.
+fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Finding>) {
     plan.reseed(seed);
-    judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+    let draws = run::draw(plan, &|_| {});
+    let drawn = draws.cases.iter().flatten().map(|drawn| drawn.draws).sum();
+    (drawn, findings::of_run(plan, &draws).into_iter().flatten().flatten().collect())
 }
 
 /// Adds `sign · ε` to every scalar: a bias of exactly the tolerance.
@@ -156,40 +159,31 @@ fn shift(plan: &mut Plan, sign: f64) {
     }
 }
 
-/// The findings of a run, each once.
-fn findings(record: &Record) -> impl Iterator<Item = &Finding> {
-    record.results.cases.iter().flat_map(|case| {
-        case.rows.iter().enumerate().flat_map(|(i, row)| {
-            let is_first = i == 0 || case.rows[i - 1].stream != row.stream;
-            row.findings.iter().filter(move |f| is_first || !f.channel.is_empty())
-        })
-    })
-}
-
 impl Counts {
-    fn add_fair(&mut self, record: &Record) {
+    fn add_fair(&mut self, plan: &mut Plan, seed: u64) {
+        let (draws, findings) = draw(plan, seed);
         self.runs += 1;
-        self.failed_runs +=
-            u64::from(findings(record).any(|finding| finding.verdict == Verdict::Fail));
-        let rows = record.results.cases.iter().flat_map(|case| &case.rows);
-        self.draws +=
-            rows.filter(|row| row.channel.is_empty()).filter_map(|row| row.drawn).sum::<u64>();
-        for finding in findings(record) {
+        self.draws += draws;
+        let fails = findings.iter().any(|finding| finding.verdict == Verdict::Fail);
+        self.failed_runs += u64::from(fails);
+        for finding in findings {
             if finding.gate.is_some() {
                 let [all, failed] = self.scalars.entry(finding.check.clone()).or_default();
                 *all += 1;
                 *failed += u64::from(finding.verdict == Verdict::Fail);
             }
             if let Some(p) = finding.p {
-                self.p.entry(finding.check.clone()).or_default().push(p);
+                self.p.entry(finding.check).or_default().push(p);
             }
         }
     }
 
-    fn add_biased(&mut self, record: &Record) {
-        for finding in findings(record) {
+    fn add_biased(&mut self, plan: &mut Plan, seed: u64) {
+        let (draws, findings) = draw(plan, seed);
+        self.draws += draws;
+        for finding in findings {
             if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
-                let [all, passed] = self.biased.entry(finding.check.clone()).or_default();
+                let [all, passed] = self.biased.entry(finding.check).or_default();
                 *all += 1;
                 *passed += u64::from(finding.verdict == Verdict::Pass);
             }

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::mutation::{self, Walk};
 use crate::harness::plan::{BLOCK, Levels, Options, Plan, Planned};
-use crate::harness::record::{Finding, Record, Verdict};
-use crate::harness::{Case, CaseError, judge, run, suite};
+use crate::harness::record::{Finding, Verdict};
+use crate::harness::{Case, CaseError, findings, run, suite};
 use crate::mutants::{self, About, StreamMutant, Target, streams};
 
 /// What became of one mutant.
@@ -98,14 +98,18 @@ impl<'a> Bench<'a> {
         Plan::of_one(case, &options, target.index, target.swept, self.levels)
     }
 
-    fn judged(plan: &Plan) -> Record {
-        judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+    fn judged(plan: &Plan) -> Judged {
+        let fixed = plan.experiments().map(|(_, planned)| planned.fixed).max().unwrap_or(0);
+        let findings = findings::of_run(plan, &run::draw(plan, &|_| {}));
+        Judged { fixed, findings: findings.into_iter().flatten().flatten().collect() }
     }
 
     fn passes(&self, target: &Target) -> bool {
         let Some(plan) = self.plan(target, None) else { return false };
-        let record = Self::judged(&plan);
-        findings(&record)
+        let judged = Self::judged(&plan);
+        judged
+            .findings
+            .iter()
             .all(|finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered))
     }
 
@@ -120,48 +124,49 @@ impl<'a> Bench<'a> {
         let is_twin = walk(Walk::Twin).is_some_and(|(plan, twin)| {
             plan.cases[0].experiments.first().is_some_and(|planned| same(planned, twin.as_ref()))
         });
-        let record = walk(Walk::Faulty).and_then(|(mut plan, faulty)| {
+        let judged = walk(Walk::Faulty).and_then(|(mut plan, faulty)| {
             let planned = plan.cases.first_mut()?.experiments.first_mut()?;
             planned.outcome.as_mut().ok()?.experiment = faulty;
             Some(Self::judged(&plan))
         });
         let About { name, bug, target, check } = *about;
-        caught([name, bug, check], &target, record.as_ref(), is_twin && honest_passes)
+        caught([name, bug, check], &target, judged.as_ref(), is_twin && honest_passes)
     }
 
     fn streams(&self, mutant: &StreamMutant, twin_passes: bool) -> Caught {
         let plan = self.plan(&streams::TARGET, Some(mutant.check));
-        let record = plan.map(|mut plan| {
+        let judged = plan.map(|mut plan| {
             for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
                 planned.streams = mutant.stream;
             }
             Self::judged(&plan)
         });
         let words = [mutant.name, mutant.bug, mutant.check];
-        caught(words, &streams::TARGET, record.as_ref(), twin_passes)
+        caught(words, &streams::TARGET, judged.as_ref(), twin_passes)
     }
 }
 
-fn findings(record: &Record) -> impl Iterator<Item = &Finding> {
-    record.results.cases.iter().flat_map(|case| &case.rows).flat_map(|row| &row.findings)
+/// What was found of one experiment, and how many draws its laws had.
+struct Judged {
+    fixed: u64,
+    findings: Vec<Finding>,
 }
 
 fn caught(
     [name, bug, check]: [&'static str; 3],
     target: &Target,
-    record: Option<&Record>,
+    judged: Option<&Judged>,
     twin_passes: bool,
 ) -> Caught {
-    let failing: Vec<&Finding> = record
+    let failing: Vec<&Finding> = judged
         .into_iter()
-        .flat_map(findings)
+        .flat_map(|judged| &judged.findings)
         .filter(|finding| finding.verdict == Verdict::Fail)
         .collect();
     let mut failed: Vec<String> = failing.iter().map(|finding| finding.check.clone()).collect();
     failed.dedup();
     // A law has the plan's fixed draws, a bound what there was when it broke.
-    let rows = record.into_iter().flat_map(|record| &record.results.cases);
-    let fixed = rows.flat_map(|case| &case.rows).find_map(|row| row.draws).unwrap_or(0);
+    let fixed = judged.map_or(0, |judged| judged.fixed);
     let by_check = failing.iter().filter(|finding| finding.check == check);
     let draws = by_check
         .map(|finding| match (finding.gate, finding.block) {
