@@ -34,7 +34,7 @@ fn experiments(record: &Record) -> Vec<(&str, &Row)> {
             };
             let last = case.rows.get(i + 1).as_ref().is_none_or(|next| !same(next));
             // What a case declares biased is neither fair nor compared with theory.
-            let biased = |finding: &Finding| finding.reason.contains("bias");
+            let biased = |finding: &Finding| finding.expects_bias;
             let drawn = row.verdict != Some(Verdict::Refused);
             if last && drawn && !row.findings.iter().any(biased) {
                 found.push((case.name.as_str(), row));

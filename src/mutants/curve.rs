@@ -32,7 +32,7 @@ pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
         check: "covariance",
     };
     vec![
-        on(CURVE, "curve-reversed", "mean", Slip::Reversed,
+        on(CURVE, "curve-reversed", "curve", Slip::Reversed,
             "σ_t(S − t) is looked up for σ_t(t)"),
         on(CURVE, "curve-collision-too-early", "mean", Slip::TooEarly,
             "the first collision beyond a distance counts before it"),

@@ -44,6 +44,9 @@ impl Memory {
 
 /// A mistake in one step of a walk; the default of every step is right.
 pub trait Fault: Copy + Send + Sync + 'static {
+    /// See [`super::Draws::REPLAYS`].
+    const REPLAYS: bool = false;
+
     /// What is prepared once: σ̂ on the support, `T_c = exp(−∫σ_c)`.
     fn prepare<P: Problem>(&self, setup: Setup<P>) -> Setup<P> {
         setup

@@ -30,12 +30,13 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         product("flight-linear-as-constant", "a linear σ̂ is flown as if it stayed what it is at the flight's beginning", LINEAR, "lookups", Weight, AsConstant),
         product("flight-over-boundary", "a flight crosses a boundary with the σ̂ before it", STEPS, "mean", Weight, AsConstant),
         product("flight-replayed", "from half the ray on, the generator repeats the draw's first numbers", BELOW, "mean", Weight, Replayed),
+        product("buffers-replayed", "every 1024 draws of a block begin with the same random numbers", LINEAR, "dispersion", Weight, BuffersReplayed),
         product("flight-short-ray", "the walk begins and ends a hundredth of the ray inside", DENSE, "lookups", Weight, ShortRay),
         product("end-weighted", "a flight beyond the end is clamped to the end and weighted", BELOW, "mean", Weight, EndWeighted),
         product("first-skipped", "the first collision leaves the weight as it is", BELOW, "mean", Weight, FirstSkipped),
         product("lookup-before-end-test", "σ_t is looked up before the end is tested: one lookup too many", BELOW, "lookups", Weight, LateEnd),
         product("cap-16", "a walk stops after 16 lookups and returns its weight", DENSE, "mean", Weight, Cap(16)),
-        product("cap-100", "a walk stops after 100 lookups and returns its weight", DENSE, "lookups", Weight, Cap(100)),
+        product("cap-100", "a walk stops after 100 lookups and returns its weight", DENSE, "counts", Weight, Cap(100)),
         product("cap-4", "a walk stops after 4 lookups and counts as through", WOODCOCK, "mean", Null, Cap(4)),
     ]
 }
@@ -153,6 +154,14 @@ impl Fault for FirstSkipped {
     fn real(&self, memory: &Memory, real: bool) -> bool {
         real && memory.lookups > 1
     }
+}
+
+/// One generator's numbers for all buffers of a block.
+#[derive(Clone, Copy)]
+pub struct BuffersReplayed;
+
+impl Fault for BuffersReplayed {
+    const REPLAYS: bool = true;
 }
 
 /// N + 1 lookups.

@@ -15,8 +15,8 @@ use crate::rng::{Stream, exponential, unit};
 /// The family.
 #[must_use]
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let decomposition = |name, bug, faulty: Decomposition| {
-        let about = About { name, bug, target: DECOMPOSITION, check: "mean" };
+    let decomposition = |name, bug, check, faulty: Decomposition| {
+        let about = About { name, bug, target: DECOMPOSITION, check };
         Mutant::new(about, faulty, Decomposition { whole: false, passes: false })
     };
     let about = About {
@@ -29,11 +29,13 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         decomposition(
             "decomposition-whole",
             "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂",
+            "mean",
             Decomposition { whole: true, passes: false },
         ),
         decomposition(
             "decomposition-passes",
             "a draw without a residual collision is 1, wherever the control's flight ended",
+            "atoms",
             Decomposition { whole: false, passes: true },
         ),
         Mutant::new(about, LocalMajorant { overshoots: true }, LocalMajorant { overshoots: false }),

@@ -7,6 +7,9 @@ use crate::rng::Stream;
 
 /// A way to make draws, right or wrong.
 pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
+    /// Whether all buffers of a block begin with the same random numbers, which is wrong.
+    const REPLAYS: bool = false;
+
     /// Prepares what it works on, once per experiment.
     #[must_use]
     fn prepare(&self, setup: Setup<P>) -> Setup<P> {
@@ -33,6 +36,8 @@ struct Trial<P, D> {
 impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
     fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
+        let mut copy = rng.clone();
+        let rng = if D::REPLAYS { &mut copy } else { rng };
         self.setup.problem.medium().profile().visit(Fill { trial: self, rng, count, buffer });
     }
 }

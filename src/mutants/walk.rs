@@ -28,6 +28,8 @@ pub struct Product<R, F> {
 }
 
 impl<R: Rule + Copy + 'static, F: Fault> Draws<Transmittance> for Product<R, F> {
+    const REPLAYS: bool = F::REPLAYS;
+
     fn prepare(&self, setup: Setup<Transmittance>) -> Setup<Transmittance> {
         self.fault.prepare(setup)
     }

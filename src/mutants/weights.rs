@@ -27,6 +27,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         product("weight-clamped", "max(0, 1 − r) for 1 − r", BELOW, "mean", Weight, Replaced(|w| w.max(0.0))),
         product("weight-exponential", "exp(−r) for 1 − r", BELOW, "mean", Weight, Replaced(|w| elementary::exp(w - 1.0))),
         product("weight-albedo", "the transmitted weight is multiplied by the albedo 0.9 at every collision", BELOW, "mean", Weight, Replaced(|w| 0.9 * w)),
+        product("weight-logarithm", "ln(1 − r) is summed up, which is not a number for r > 1", BELOW, "numeric", Weight, Replaced(|w| w.ln().exp())),
         product("draw-clamped", "max(0, X) for X", BELOW, "mean", Weight, DrawClamped),
         product("residual-clamped", "max(0, σ_t − σ_c) for σ_t − σ_c", NEGATIVE, "mean", Weight, Residual(|r| r.max(0.0))),
         product("residual-absolute", "|σ_t − σ_c| for σ_t − σ_c", NEGATIVE, "mean", Weight, Residual(f64::abs)),

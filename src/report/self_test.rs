@@ -47,12 +47,10 @@ fn promises(text: &mut String, calibration: &Calibration) {
         );
     }
     for check in &calibration.uniformity {
-        let _ = writeln!(
-            text,
-            "  uniform p of {:<31} Anderson–Darling p = {}",
-            check.check,
-            short(check.p, 2)
-        );
+        if let Some(p) = check.p {
+            let what = format!("p of {} are uniform", check.check);
+            let _ = writeln!(text, "  {what:<44} Anderson–Darling p = {}", short(p, 2));
+        }
     }
     text.push('\n');
 }

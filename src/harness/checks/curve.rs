@@ -94,6 +94,10 @@ impl Check for Curve {
             })
             .collect()
     }
+
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }
 
 fn step(subject: &Subject, j: usize, scale: &[f64], variance: f64) -> Kind {

@@ -43,6 +43,10 @@ impl Check for Generator {
         }
         vec![Ask::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
     }
+
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }
 
 fn p_value(inspected: &Inspected) -> f64 {

@@ -180,6 +180,11 @@ pub struct Always {
 pub trait Check: Sync {
     /// What it asks of an experiment; nothing where it does not apply.
     fn questions(&self, subject: &Subject) -> Vec<Ask>;
+
+    /// Whether its p-values are uniform when all is well, or only never too often small.
+    fn is_uniform(&self) -> bool {
+        true
+    }
 }
 
 /// A question without the name of its check.
@@ -219,6 +224,13 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
         })
     });
     asked.collect()
+}
+
+/// See [`Check::is_uniform`].
+#[must_use]
+pub fn is_uniform(name: &str) -> bool {
+    let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
+    named.is_some_and(|(_, check)| check.is_uniform())
 }
 
 /// Lists the checks: from one line each come the module, the name and the row in `list`.

@@ -28,6 +28,10 @@ impl Check for Resolution {
         let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, end)));
         vec![Ask::whole("the resolution of the distances", kind)]
     }
+
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }
 
 fn p_value(inspected: &Inspected, end: f64) -> f64 {

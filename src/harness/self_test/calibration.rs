@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 
 use rayon::prelude::*;
 
-use crate::harness::checks::Kind;
+use crate::harness::checks::{self, Kind};
 use crate::harness::plan::{MISS, Options, Plan};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, findings, run, suite};
@@ -62,8 +62,9 @@ pub struct Uniformity {
     pub check: String,
     /// The rates below 0.1, 0.01 and 0.001.
     pub below: Vec<Rate>,
-    /// The p-value of the hypothesis that they are uniform, by Anderson–Darling.
-    pub p: f64,
+    /// The p-value of the hypothesis that they are uniform, by Anderson–Darling; `None` for checks
+    /// that only promise not to be small too often.
+    pub p: Option<f64>,
 }
 
 /// What the calibration found.
@@ -88,9 +89,14 @@ impl Calibration {
     #[must_use]
     pub fn holds(&self) -> bool {
         let shares = self.uniformity.iter().flat_map(|check| &check.below);
-        self.rates.iter().chain(shares).all(|rate| rate.is_kept)
+        let are_uniform =
+            self.uniformity.iter().filter_map(|check| check.p).all(|p| p > NOT_UNIFORM);
+        self.rates.iter().chain(shares).all(|rate| rate.is_kept) && are_uniform
     }
 }
+
+/// P-values that are uniform look otherwise once in a million times.
+const NOT_UNIFORM: f64 = 1e-6;
 
 /// What is counted over runs.
 #[derive(Debug, Clone, Default)]
@@ -235,7 +241,7 @@ impl Uniformity {
             let count = p.partition_point(|&p| p < level) as u64;
             Rate::new(format!("p of {check} below {level}"), count, all, level)
         });
-        let p = anderson_darling::p_value_of_uniforms(&p);
+        let p = checks::is_uniform(&check).then(|| anderson_darling::p_value_of_uniforms(&p));
         Self { check, below: below.to_vec(), p }
     }
 }
