@@ -1,7 +1,9 @@
 //! What goes to the console: results to stdout, the rest to stderr.
 
 use std::io::{ErrorKind, IsTerminal, Write};
+use std::path::Path;
 
+use anyhow::Context;
 use clap::ValueEnum;
 use trueflight::harness::Record;
 use trueflight::report::console::{self, View};
@@ -78,8 +80,22 @@ pub fn complain(error: &anyhow::Error) {
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
 }
 
+/// Writes a warning to stderr.
+pub fn warn(text: &str) {
+    // With stderr gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
+/// Whether files can be written into the folder of `--out`, which is made if need be.
+pub fn writable(out: &Path) -> anyhow::Result<()> {
+    let cure = || format!("cannot write into {}; give another folder with --out", out.display());
+    std::fs::create_dir_all(out).with_context(cure)?;
+    tempfile::NamedTempFile::new_in(out).with_context(cure)?;
+    Ok(())
+}
+
 /// The width of the terminal, or `COLUMNS`, or 120.
-fn width() -> usize {
+pub fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     terminal.or(wished).unwrap_or(120)

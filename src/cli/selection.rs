@@ -94,8 +94,9 @@ impl Selection {
     }
 }
 
+/// A number of draws such as 4e6.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
-fn draws(text: &str) -> Result<u64, String> {
+pub fn draws(text: &str) -> Result<u64, String> {
     match text.parse::<f64>() {
         Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
         _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),
