@@ -56,10 +56,8 @@ pub fn percent(share: f64) -> String {
 /// A range of shares in percent.
 #[must_use]
 pub fn range([least, most]: [f64; 2]) -> String {
-    if least == most {
-        return percent(least);
-    }
-    format!("{} … {}", percent(least), percent(most))
+    let [least, most] = [least, most].map(percent);
+    if least == most { least } else { format!("{least} … {most}") }
 }
 
 fn trimmed(text: &str) -> String {

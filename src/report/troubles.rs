@@ -143,10 +143,12 @@ impl<'a> Trouble<'a> {
         add("p", finding.and_then(|f| f.p).map(number));
         if let Some(gate) = finding.and_then(|finding| finding.gate) {
             let [above, below] = gate.ln_p.map(|p| short(p, 4));
+            let is_declared = finding.is_some_and(|finding| finding.expects_bias);
+            let word = if is_declared { "shows the declared bias" } else { "fails" };
             add("draws of the gate", Some(gate.draws.to_string().into()));
             add("mean deviation, relative", Some(number(gate.mean)));
             add("tolerance", Some(number(gate.tolerance)));
-            add("ln E", Some(limited(&short(gate.ln_e, 4), "fails", gate.ln_e_limit)));
+            add("ln E", Some(limited(&short(gate.ln_e, 4), word, gate.ln_e_limit)));
             let both = format!("{above} and {below}");
             add("ln P", Some(limited(&both, "passes", gate.ln_p_limit)));
             add("draws needed", gate.needed.map(number));
