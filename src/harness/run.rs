@@ -126,6 +126,8 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
             }
         }
         for front in fronts.iter_mut().filter(|front| !front.is_done) {
+            // Blocks drawn ahead earlier may be all that this look needs.
+            front.merge();
             front.look(plan);
         }
     }
