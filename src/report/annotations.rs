@@ -7,7 +7,7 @@
 use std::fmt::Write;
 
 use crate::harness::record::{Record, Verdict};
-use crate::report::troubles::{Trouble, experiment, troubles};
+use crate::report::troubles::{Trouble, troubles};
 
 /// How many of a kind GitHub shows.
 const MOST: usize = 10;
@@ -37,7 +37,7 @@ pub fn text(record: &Record) -> String {
 
 fn annotation(command: &str, verdict: Verdict, trouble: &Trouble) -> String {
     let (case, row) = (trouble.case, trouble.row);
-    let title = format!("{} {}: {}", verdict.word(), case.name, experiment(case, row));
+    let title = format!("{} {}: {}", verdict.word(), case.name, trouble.experiment());
     let mut properties = format!("title={}", property(&title));
     if !case.path.is_empty() {
         let path = case.path.strip_prefix("./").unwrap_or(&case.path);

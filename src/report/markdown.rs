@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::number::range;
 use crate::report::totals;
-use crate::report::troubles::{Trouble, experiment, troubles};
+use crate::report::troubles::{Trouble, troubles};
 
 /// A job's summary may have a mebibyte: beyond so many rows the file only counts.
 const MOST: usize = 50;
@@ -49,7 +49,7 @@ fn section(text: &mut String, title: &str, troubles: &[Trouble]) {
     for trouble in troubles.iter().take(MOST) {
         let cells = [
             trouble.case.name.clone(),
-            experiment(trouble.case, trouble.row),
+            trouble.experiment(),
             trouble.check().to_owned(),
             trouble.place(),
             trouble.reason().to_owned(),

@@ -54,6 +54,10 @@ pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Trouble<
 /// What an experiment is called within its case: `ratio, σ̂ 0.5, control mean, T(5)`.
 #[must_use]
 pub fn experiment(case: &CaseRecord, row: &Row) -> String {
+    named(case, row, &row.channel)
+}
+
+fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
     let mut parts = vec![row.estimator.clone()];
     match row.sampling {
         Some(sampling) => parts.push(format!("σ\u{302} {}", short(sampling, 4))),
@@ -67,13 +71,20 @@ pub fn experiment(case: &CaseRecord, row: &Row) -> String {
     if let Some(swept) = row.swept.filter(|_| what != "sampling") {
         parts.push(format!("{} {}", if what.is_empty() { "at" } else { what }, short(swept, 4)));
     }
-    if !row.channel.is_empty() {
-        parts.push(row.channel.clone());
+    if !channel.is_empty() {
+        parts.push(channel.to_owned());
     }
     parts.join(", ")
 }
 
 impl<'a> Trouble<'a> {
+    /// What it is about; without a channel where that is the experiment as a whole.
+    #[must_use]
+    pub fn experiment(&self) -> String {
+        let channel = self.finding.map_or(&self.row.channel, |finding| &finding.channel);
+        named(self.case, self.row, channel)
+    }
+
     /// The check's name; empty where the row has no findings.
     #[must_use]
     pub fn check(&self) -> &'a str {
@@ -100,7 +111,7 @@ impl<'a> Trouble<'a> {
     /// Everything on one line, but for the command.
     #[must_use]
     pub fn line(&self) -> String {
-        let experiment = experiment(self.case, self.row);
+        let experiment = self.experiment();
         let parts = [self.case.name.as_str(), &experiment, self.check(), self.reason()];
         let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         format!("{} ({})", parts.join(": "), self.place())
@@ -118,7 +129,7 @@ impl<'a> Trouble<'a> {
         let number = |x: f64| Cow::from(short(x, 6));
         let mut facts: Vec<(&str, Cow<str>)> = vec![
             ("case", self.case.name.as_str().into()),
-            ("experiment", experiment(self.case, row).into()),
+            ("experiment", self.experiment().into()),
             ("check", self.check().into()),
             ("reason", self.reason().into()),
             ("seed", self.seed.to_string().into()),
