@@ -23,7 +23,7 @@ pub struct Selection {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
-    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6]
+    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: at most 4e5]
     #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
