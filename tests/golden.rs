@@ -7,11 +7,12 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use trueflight::harness::record::{
-    Anatomy, CaseRecord, Curve, CurvePoint, MeasuredPoint, Record, Results, Row, Sweep, Timing,
-    Verdict,
+    Anatomy, CaseRecord, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint, Record,
+    Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
 };
 use trueflight::report::console::{self, View};
-use trueflight::report::{self, rows};
+use trueflight::report::junit::Inconclusive;
+use trueflight::report::{self, annotations, junit, markdown, rows};
 
 /// Made-up laws of variance and lookups against the sampling extinction.
 fn law(estimator: &str, sampling: f64) -> (f64, f64) {
@@ -32,6 +33,10 @@ fn drawn(estimator: &str, control: &str, swept: f64, z: f64) -> Row {
         control: control.to_owned(),
         swept: Some(swept),
         draws: Some(1_048_576),
+        drawn: Some(if swept > 1.0 { 262_144 } else { 2_097_152 }),
+        command: format!(
+            "trueflight run transmittance/eq21-sweep --filter \"*:{estimator}\" --seed 1"
+        ),
         mean: Some(0.135 + 1e-4 * z),
         standard_error: Some(1e-4),
         truth: Some(0.135),
@@ -69,6 +74,48 @@ fn judged(mut row: Row, verdict: Verdict, reason: &str) -> Row {
     row
 }
 
+/// What the gate says of the mean, with a number that no JSON can hold.
+fn gate_finding(verdict: Verdict, reason: &str, ln_e: f64) -> Finding {
+    Finding {
+        check: "mean".to_owned(),
+        what: "the mean".to_owned(),
+        expects_bias: false,
+        channel: String::new(),
+        z: Some(7.5),
+        p: None,
+        gate: Some(GateFinding {
+            tolerance: 0.003,
+            variance: 2.5,
+            mean: 0.025,
+            planned: 1e6,
+            draws: 262_144,
+            ln_e,
+            ln_e_limit: 8.5,
+            ln_p: [-12.0, 40.0],
+            ln_p_limit: 4.6,
+            needed: (verdict == Verdict::Inconclusive).then_some(f64::INFINITY),
+            is_decided: verdict == Verdict::Fail,
+        }),
+        block: Some(15),
+        verdict,
+        reason: reason.to_owned(),
+    }
+}
+
+/// A law that fails in one channel, beside a check of the whole experiment that both rows repeat.
+fn failed_law(channel: &str) -> Finding {
+    Finding {
+        check: "curve".to_owned(),
+        what: "the increments".to_owned(),
+        channel: channel.to_owned(),
+        z: None,
+        p: Some(1e-9),
+        gate: None,
+        block: None,
+        ..gate_finding(Verdict::Fail, "the increments differ from theory: p = 1e-9", 0.0)
+    }
+}
+
 fn refused(estimator: &str, swept: f64) -> Row {
     let row = Row {
         estimator: estimator.to_owned(),
@@ -82,7 +129,17 @@ fn refused(estimator: &str, swept: f64) -> Row {
 
 fn sweep() -> CaseRecord {
     let (single, doubt) = ("single(non-terminating, a=0.7)", "at 1e6 draws a bias of 3 % hides");
-    let failed = drawn("residual-ratio", "constant 0.4", 2.0, 7.5);
+    let off = "the mean is off by +2.5e-2, +7.5 standard errors; 100 % | sure";
+    let failed = Row {
+        findings: vec![gate_finding(Verdict::Fail, off, 31.25)],
+        stream: Some(11),
+        ..drawn("residual-ratio", "constant 0.4", 2.0, 7.5)
+    };
+    let unsure = Row {
+        findings: vec![gate_finding(Verdict::Inconclusive, doubt, 1.5)],
+        stream: Some(12),
+        ..drawn(single, "", 0.5, -1.5)
+    };
     let regular = Row {
         estimator: "regular".to_owned(),
         draws: Some(1),
@@ -113,15 +170,17 @@ fn sweep() -> CaseRecord {
     };
     CaseRecord {
         name: "transmittance/eq21-sweep".to_owned(),
+        path: "./cases/transmittance/eq21-sweep.toml".to_owned(),
+        visible_bias: Some([0.003, 0.0125]),
         title: "Eq. 21, central ray, \"quoted\" & <tagged>".to_owned(),
         problem: "transmittance".to_owned(),
         medium: "eq21".to_owned(),
         rows: vec![
             refused("woodcock", 0.5),
             drawn("residual-ratio", "constant 0.4", 0.5, 0.25),
-            judged(drawn(single, "", 0.5, -1.5), Verdict::Inconclusive, doubt),
+            judged(unsure, Verdict::Inconclusive, doubt),
             drawn("woodcock", "", 2.0, 1.0),
-            judged(failed, Verdict::Fail, "the mean is 7.5 standard errors off; 4.4 are allowed"),
+            judged(failed, Verdict::Fail, off),
             judged(drawn(single, "", 2.0, -0.125), Verdict::Inconclusive, doubt),
             regular,
         ],
@@ -148,16 +207,29 @@ fn ray() -> CaseRecord {
         sampling: None,
         sampling_kind: "piecewise-linear".to_owned(),
         swept: None,
+        stream: Some(21),
         ..drawn("double", "explorers(3)", 1.0, 0.5)
     };
     let weak = "kurtosis 8.1e4: 3e9 draws would be needed";
+    let law = |row: Row| {
+        let findings = vec![failed_law(""), failed_law(&row.channel)];
+        let reason = findings[0].reason.clone();
+        judged(Row { stream: Some(22), findings, ..row }, Verdict::Fail, &reason)
+    };
     let measured = |t, mean| MeasuredPoint { t, mean, standard_error: 0.01, deviation: 0.1 };
     CaseRecord {
         name: "curve/figure5".to_owned(),
+        path: "cases/curve/figure5.toml".to_owned(),
+        visible_bias: Some([0.05; 2]),
         title: "Figure 5: a double particle".to_owned(),
         problem: "transmittance-curve".to_owned(),
         medium: "noise".to_owned(),
-        rows: vec![channel(2.0, 0.4), judged(channel(4.0, 0.28), Verdict::Underpowered, weak)],
+        rows: vec![
+            channel(2.0, 0.4),
+            judged(channel(4.0, 0.28), Verdict::Underpowered, weak),
+            law(channel(6.0, 0.25)),
+            law(channel(8.0, 0.25)),
+        ],
         sweep: None,
         anatomy: Some(Anatomy {
             estimator: "double, explorers(3)".to_owned(),
@@ -177,17 +249,39 @@ fn ray() -> CaseRecord {
 }
 
 fn record() -> Record {
+    let suspect = |check: &str, ln_e| Suspect {
+        case: "transmittance/eq21-sweep".to_owned(),
+        experiment: "residual-ratio at 2".to_owned(),
+        check: check.to_owned(),
+        ln_e,
+    };
+    let gate = Gate {
+        scalars: 14,
+        laws: 7,
+        biased: 1,
+        beta: 0.01,
+        ln_e_limit: 8.5,
+        ln_p_limit: 4.6,
+        ln_mean_e: Some(28.6),
+        smallest_margin: Some(-22.75),
+        worst_bias: Some(0.0125),
+        variance_assumed: 2,
+        triage: vec![suspect("mean", 31.25), suspect("lookups", 9.125)],
+    };
     let results = Results {
+        schema: SCHEMA,
         version: "0.1.0".to_owned(),
         seed: 1,
         alpha: 0.01,
-        checks: 21,
+        streams: "PCG by address".to_owned(),
+        gate,
         cut_by_time: false,
+        cut_by_budget: true,
         cases: vec![sweep(), ray()],
     };
     let mut first = vec![Some(0.25); 7];
     first[0] = None;
-    let rows = vec![first, vec![Some(0.5); 2]];
+    let rows = vec![first, vec![Some(0.5); 4]];
     Record { results, timing: Timing { threads: 2, seconds: 2.25, rows } }
 }
 
@@ -224,7 +318,7 @@ fn files() {
         }
         compare(&artifact.path, &artifact.bytes);
     }
-    assert_eq!(artifacts.len(), 9);
+    assert_eq!(artifacts.len(), 10);
 }
 
 #[test]
@@ -234,7 +328,7 @@ fn rows_on_stdout() {
     let json = json.expect("renders");
     compare(&PathBuf::from("rows.json"), json.as_bytes());
     let parsed: serde_json::Value = serde_json::from_str(&json).expect("is JSON");
-    assert_eq!(parsed.as_array().map(Vec::len), Some(9));
+    assert_eq!(parsed.as_array().map(Vec::len), Some(11));
 }
 
 #[test]
@@ -248,12 +342,47 @@ fn consoles() {
     for (name, view) in views {
         for width in [80, 160] {
             let text = console::table(&record(), view, width, false);
-            let widest = text.lines().map(|line| line.chars().count()).max();
+            // A command stays whole, so that it can be copied.
+            let wrapped = text.lines().filter(|line| !line.contains("repeat: "));
+            let widest = wrapped.map(|line| line.chars().count()).max();
             // A combining hat is a character without width.
             assert!(widest.is_some_and(|widest| widest <= width + 2), "{name} at {width}");
             compare(&PathBuf::from(format!("console-{name}-{width}.txt")), text.as_bytes());
         }
     }
+}
+
+#[test]
+fn what_a_ci_reads() {
+    let record = record();
+    let xml = junit::text(&record, Inconclusive::Error).expect("renders");
+    compare(&PathBuf::from("junit.xml"), xml.as_bytes());
+    compare(&PathBuf::from("summary.md"), markdown::text(&record).as_bytes());
+    compare(&PathBuf::from("annotations.txt"), annotations::text(&record).as_bytes());
+    compare(&PathBuf::from("check.txt"), console::brief(&record, 100, false).as_bytes());
+}
+
+#[test]
+fn github_shows_no_more_than_ten_of_a_kind() {
+    let mut record = record();
+    let case = record.results.cases[0].clone();
+    record.results.cases = vec![case; 11];
+    let text = annotations::text(&record);
+    let of = |kind: &str| text.lines().filter(|line| line.starts_with(kind)).count();
+    assert_eq!((of("::error "), of("::warning ")), (10, 10), "{text}");
+    assert!(text.contains("and 2 more") && text.contains("and 13 more"), "{text}");
+}
+
+#[test]
+fn infinite_numbers_do_not_break_the_json() {
+    let mut record = record();
+    record.results.gate.smallest_margin = Some(f64::NEG_INFINITY);
+    let text = report::record_json::text(&record).expect("renders");
+    assert!(text.starts_with("{\"schema\":"), "{text}");
+    let parsed: serde_json::Value = serde_json::from_str(&text).expect("is JSON");
+    let gate = &parsed["results"]["cases"][0]["rows"][2]["findings"][0]["gate"];
+    assert_eq!(gate["needed"], serde_json::Value::Null);
+    assert_eq!(gate["tolerance"], 0.003);
 }
 
 #[test]

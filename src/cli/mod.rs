@@ -5,9 +5,11 @@
 //! | 0 | all pass |
 //! | 1 | at least one experiment fails |
 //! | 2 | usage, a bad case file, input or output |
-//! | 3 | nothing fails, but something is inconclusive |
+//! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
+mod check;
 mod completions;
+mod drawing;
 mod explain;
 mod list;
 mod output;
@@ -16,6 +18,7 @@ mod predict;
 mod run;
 mod selection;
 mod self_test;
+mod verdict;
 
 use std::process::ExitCode;
 
@@ -50,6 +53,8 @@ pub struct Console {
 enum Command {
     /// Draw, judge, and write tables and plots: the main job
     Run(run::Arguments),
+    /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
+    Check(check::Arguments),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
     Predict(predict::Arguments),
     /// What would run, what is refused, and why
@@ -70,6 +75,7 @@ pub fn main() -> ExitCode {
     let console = &cli.console;
     let done = match &cli.command {
         Command::Run(arguments) => run::main(arguments, console),
+        Command::Check(arguments) => check::main(arguments, console),
         Command::Predict(arguments) => predict::main(arguments, console),
         Command::Plan(arguments) => plan::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),

@@ -82,6 +82,12 @@ pub fn complain(error: &anyhow::Error) {
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
 }
 
+/// Writes a warning to stderr.
+pub fn warn(text: &str) {
+    // With stderr gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr(), "warning: {text}");
+}
+
 /// A bar on the terminal's stderr; hidden where there is none.
 pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
@@ -106,7 +112,7 @@ pub fn writable(out: &Path) -> anyhow::Result<()> {
 }
 
 /// The width of the terminal, or `COLUMNS`, or 120.
-fn width() -> usize {
+pub fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     terminal.or(wished).unwrap_or(120)

@@ -1,28 +1,26 @@
 //! `trueflight run`: the main job.
 
 use std::path::PathBuf;
-use std::time::Instant;
 
 use clap::Args;
-use indicatif::ProgressBar;
-use trueflight::harness::record::{Record, Verdict};
-use trueflight::harness::{Amount, Options, Plan, judge, run};
+use trueflight::harness::{Amount, Options};
 use trueflight::report::{self, console::View};
 
 use super::output::{self, Format};
 use super::selection::Selection;
-use super::{Console, USAGE};
+use super::verdict::{self, Inconclusive};
+use super::{Console, drawing};
 
 /// Arguments of `run`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
-    /// Folder for summary.csv, the cases' CSV files and the plots
+    /// Folder for summary.csv, record.json, the cases' CSV files and the plots
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
-    #[arg(long, value_name = "T", value_parser = seconds)]
+    #[arg(long, value_name = "T", value_parser = drawing::seconds)]
     time: Option<f64>,
     /// Draw exactly what is planned: no check stops the drawing, none prolongs it
     #[arg(long)]
@@ -30,6 +28,9 @@ pub struct Arguments {
     /// Let every underpowered check make its experiment inconclusive
     #[arg(long)]
     strict: bool,
+    /// What an inconclusive experiment counts as [default: exit code 3]
+    #[arg(long, value_enum, value_name = "AS")]
+    inconclusive: Option<Inconclusive>,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -49,7 +50,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     output::writable(&arguments.out)?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
-        Ok(draw(&plan, console))
+        Ok(drawing::draw(&plan, console))
     })?;
     let artifacts = report::render(&record)?;
     report::write(&artifacts, &arguments.out)?;
@@ -58,55 +59,5 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let files = artifacts.len();
         output::print(&format!("{files} files in {}\n", arguments.out.display()))?;
     }
-    Ok(exit_code(&record))
-}
-
-fn draw(plan: &Plan, console: &Console) -> Record {
-    let begin = Instant::now();
-    let bar = progress(plan, console);
-    let draws = run::draw(plan, &|draws| bar.inc(draws));
-    bar.finish_and_clear();
-    judge::judged(plan, &draws, begin.elapsed().as_secs_f64())
-}
-
-fn progress(plan: &Plan, console: &Console) -> ProgressBar {
-    let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
-    let draws = ready.map(|(_, planned)| planned.draws).sum();
-    output::progress("drawing", "draws", draws, console)
-}
-
-/// Fail before refused cases before inconclusive before pass.
-fn exit_code(record: &Record) -> u8 {
-    let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
-    let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
-    if any(Verdict::Fail) {
-        return 1;
-    }
-    let refused = record
-        .results
-        .cases
-        .iter()
-        .find(|case| case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused)));
-    if let Some(case) = refused {
-        output::complain(&anyhow::anyhow!(
-            "every experiment of {} is refused, so nothing was tested; \
-             `trueflight plan` says why",
-            case.name
-        ));
-        return USAGE;
-    }
-    if any(Verdict::Inconclusive) { 3 } else { 0 }
-}
-
-fn seconds(text: &str) -> Result<f64, String> {
-    let (number, unit) = match text.strip_suffix(['s', 'm', 'h']) {
-        Some(number) if text.ends_with('m') => (number, 60.0),
-        Some(number) if text.ends_with('h') => (number, 3600.0),
-        Some(number) => (number, 1.0),
-        None => (text, 1.0),
-    };
-    match number.parse::<f64>() {
-        Ok(time) if time > 0.0 && time.is_finite() => Ok(time * unit),
-        _ => Err("it takes a time such as 30s, 5m or 1h".into()),
-    }
+    Ok(verdict::exit_code(&record, arguments.inconclusive))
 }

@@ -23,7 +23,7 @@ pub struct Selection {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
-    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6]
+    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: at most 4e5]
     #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
@@ -94,8 +94,9 @@ impl Selection {
     }
 }
 
+/// A number of draws such as 4e6.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
-fn draws(text: &str) -> Result<u64, String> {
+pub fn draws(text: &str) -> Result<u64, String> {
     match text.parse::<f64>() {
         Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
         _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),

@@ -1,7 +1,7 @@
 //! A case as written: a problem, its estimators, a sweep and what the user asks of the answer.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::scenario::{AnyScenario, Scenario};
 use super::source::{CaseError, Source};
@@ -14,6 +14,8 @@ use crate::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
 pub struct Case {
     /// The case's name.
     pub name: String,
+    /// Its file; for a built-in case, its place below `cases/`.
+    pub path: PathBuf,
     /// One line for tables and plots.
     pub title: String,
     /// The problem's name in the catalogue.
@@ -60,7 +62,7 @@ impl Case {
         let root = source.parse(&faults);
         let broken = !faults.borrow().is_empty();
         let folder = source.folder();
-        let case = Self::from_root(&source.name, &Settings::new(&root, &folder, &faults));
+        let case = Self::from_root(source, &Settings::new(&root, &folder, &faults));
         let mut faults = faults.into_inner();
         if broken {
             // Half a file is missing keys that the other half may hold.
@@ -73,7 +75,7 @@ impl Case {
         }
     }
 
-    fn from_root(name: &str, root: &Settings) -> Option<Self> {
+    fn from_root(source: &Source, root: &Settings) -> Option<Self> {
         let title = root.text("title");
         let expect_biased = read_expect(root);
         let problem = root.table("problem").and_then(|problem| {
@@ -106,7 +108,8 @@ impl Case {
         let (problem, scenario, sweep) = problem?;
         expect_biased?;
         Some(Self {
-            name: name.to_owned(),
+            name: source.name.clone(),
+            path: source.path.clone(),
             title: title?,
             problem,
             scenario,

@@ -45,7 +45,7 @@ fn of_experiment(
     drawn: &Drawn,
 ) -> Vec<Finding> {
     if drawn.draws == 0 {
-        let reason = "the time limit came before the first draw".to_owned();
+        let reason = "the limit of time or draws came before the first draw".to_owned();
         return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
     }
     let both = planned.questions.iter().zip(&drawn.totals);

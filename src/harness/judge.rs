@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::plan::{MISS, Plan, Planned, PlannedCase};
+use super::plan::{MISS, Options, Plan, Planned, PlannedCase};
 use super::record::{
     Anatomy, CaseRecord, Finding, Gate, MeasuredPoint, Record, Results, Row, SCHEMA, Timing,
     Verdict,
 };
 use super::run::{Drawn, Draws};
-use super::{curves, findings, summary};
+use super::{curves, findings, suite, summary};
 use crate::stats::Tally;
 use crate::theory::optimum::Optimum;
 use crate::theory::{Channel, Prediction};
@@ -98,6 +98,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         .zip(parts)
         .map(|(planned, (rows, sweep, anatomy))| CaseRecord {
             name: planned.case.name.clone(),
+            path: planned.case.path.display().to_string(),
             title: planned.case.title.clone(),
             problem: planned.case.problem.clone(),
             medium: planned.case.scenario.medium().to_owned(),
@@ -276,10 +277,24 @@ const CERTAIN: f64 = 1e-20;
 
 /// The command that draws an experiment again.
 fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
-    let name = &case.case.name;
-    let estimator = &planned.names.estimator;
-    let (seed, draws) = (plan.options.seed, planned.draws);
-    format!("trueflight run {name} --filter \"*:{estimator}\" --seed {seed} --draws {draws}")
+    let case = case.case;
+    // A built-in case has no file, and a file has no name that the command would know.
+    let is_built_in = suite::find(&case.name).is_some_and(|source| source.path == case.path);
+    let place = if is_built_in { case.name.clone() } else { case.path.display().to_string() };
+    let place = if place.contains(' ') { format!("\"{place}\"") } else { place };
+    // Twins are numbered by the plan; a filter sees them all under one name.
+    let estimator = planned.names.estimator.split(" #").next().unwrap_or_default();
+    let Options { seed, alpha, fixed, strict, .. } = plan.options;
+    let draws = planned.draws;
+    let mut command =
+        format!("trueflight run {place} --filter \"*:{estimator}\" --seed {seed} --draws {draws}");
+    if alpha != Options::default().alpha {
+        command = format!("{command} --alpha {alpha}");
+    }
+    for (flag, _) in [(" --fixed-draws", fixed), (" --strict", strict)].iter().filter(|f| f.1) {
+        command.push_str(flag);
+    }
+    command
 }
 
 /// Fail before inconclusive before underpowered before pass, with every reason of that verdict.

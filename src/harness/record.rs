@@ -1,7 +1,8 @@
 //! What a run found: all that a report may know.
 //!
 //! A record has two parts. `results` is the same to the bit for any number of threads on any
-//! machine; `timing` is not, and is kept apart. Unknown is `None`, never zero.
+//! machine; `timing` is not, and is kept apart. Unknown is `None`, never zero. JSON writes infinite
+//! numbers as `null`: those of [`GateFinding`] may be.
 
 use serde::Serialize;
 
@@ -85,6 +86,8 @@ pub struct Suspect {
 pub struct CaseRecord {
     /// The case's name: its path below the cases folder, without `.toml`.
     pub name: String,
+    /// Its file, as it was given; for a built-in case, its place below `cases/`.
+    pub path: String,
     /// Its title.
     pub title: String,
     /// The problem's name: `transmittance`, `free-flight`, `transmittance-curve`.
@@ -252,11 +255,11 @@ pub struct Finding {
 pub struct GateFinding {
     /// ε: the bias that a pass excludes.
     pub tolerance: f64,
-    /// V: the variance of the scalar in theory.
+    /// V: the variance of the scalar in theory; it may be infinite.
     pub variance: f64,
     /// The observed mean of the scalar, 0 when all is well.
     pub mean: f64,
-    /// How many draws were planned, 27 V/ε².
+    /// How many draws were planned, 27 V/ε²; infinite where none would do.
     pub planned: f64,
     /// How many draws it took to decide, or were made without a decision.
     pub draws: u64,
@@ -268,7 +271,8 @@ pub struct GateFinding {
     pub ln_p: [f64; 2],
     /// The ln P at which it passes.
     pub ln_p_limit: f64,
-    /// The draws that it would need, where more than were planned.
+    /// The draws that it would need, where more than were planned; infinite where none would do.
+    /// `None` only where the plan suffices: in JSON the finding's verdict tells the two apart.
     pub needed: Option<f64>,
     /// Whether it was decided.
     pub is_decided: bool,

@@ -4,6 +4,7 @@
 //! names lose their middle, and reasons without a place in the table follow below it. What all
 //! rows of a case share stands once, over the table.
 
+mod closing;
 pub mod layout;
 pub mod views;
 
@@ -11,6 +12,7 @@ use std::fmt::Write;
 
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::number::{count, short};
+use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided, wrapped};
 
 /// What the table is about.
@@ -48,7 +50,30 @@ pub fn table(record: &Record, view: View, width: usize, colour: bool) -> String 
         block(&mut text, pen, case, view);
         text.push('\n');
     }
-    closing(&mut text, pen, record, view);
+    closing::write(&mut text, pen, record, view);
+    text
+}
+
+/// The table of a run in short: one line per case, and below it the rows that do not pass.
+#[must_use]
+pub fn brief(record: &Record, width: usize, colour: bool) -> String {
+    let pen = layout::Pen { width: width.max(40), colour };
+    let mut text = String::new();
+    for case in &record.results.cases {
+        let quiet =
+            |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass | Verdict::Refused) | None);
+        let rows: Vec<Row> = case.rows.iter().filter(quiet).cloned().collect();
+        let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
+        if rows.is_empty() {
+            let _ = writeln!(text, "{}", end_elided(&line, pen.width));
+            continue;
+        }
+        let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
+        let shown = CaseRecord { rows, ..case.clone() };
+        grid(&mut text, pen, &shown, View::Run);
+    }
+    text.push('\n');
+    closing::write(&mut text, pen, record, View::Run);
     text
 }
 
@@ -61,6 +86,11 @@ fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
     for line in wrapped(&facts, pen.width) {
         let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
     }
+    grid(text, pen, case, view);
+}
+
+/// The rows with their reasons.
+fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
     let mut grid = Grid { columns: views::columns(case, view) };
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
@@ -86,7 +116,11 @@ fn facts(case: &CaseRecord, view: View) -> Vec<String> {
     }
     if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| !view.is_theory()) {
         let word = if draws == 1 { "draw" } else { "draws" };
-        facts.push(format!("{} {word} each", count(draws)));
+        let what = if view == View::Run { "statistics of " } else { "" };
+        facts.push(format!("{what}{} {word} each", count(draws)));
+    }
+    if let Some(drawn) = views::shared(case, |row| row.drawn).filter(|_| view == View::Run) {
+        facts.push(format!("{} drawn each", count(drawn)));
     }
     facts.retain(|fact| !fact.is_empty());
     facts
@@ -118,59 +152,5 @@ fn footnotes(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View,
             };
             let _ = writeln!(text, "{}{line}", if i == 0 { "  " } else { "    " });
         }
-    }
-}
-
-fn closing(text: &mut String, pen: layout::Pen, record: &Record, view: View) {
-    let results = &record.results;
-    let rows = || results.cases.iter().flat_map(|case| &case.rows);
-    let mut counts = Vec::new();
-    for verdict in [
-        Verdict::Pass,
-        Verdict::Fail,
-        Verdict::Inconclusive,
-        Verdict::Underpowered,
-        Verdict::Refused,
-    ] {
-        let number = rows().filter(|row| row.verdict == Some(verdict)).count();
-        if number > 0 {
-            let words = format!("{number} {}", verdict.word());
-            counts.push(pen.paint(views::paint(verdict), &words));
-        }
-    }
-    let open = rows().filter(|row| row.verdict.is_none()).count();
-    if open > 0 {
-        let skipped = rows().filter(|row| views::is_skipped(row, view)).count();
-        let word = match view {
-            View::Run => "undecided",
-            View::Predict | View::Moments => "predicted",
-            View::Plan => "planned",
-        };
-        if open > skipped {
-            counts.push(format!("{} {word}", open - skipped));
-        }
-        if skipped > 0 {
-            counts.push(pen.paint(Paint::Dim, &format!("{skipped} skipped")));
-        }
-    }
-    let all = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
-    let _ = writeln!(text, "{all}");
-    let mut facts = Vec::new();
-    let gate = &results.gate;
-    if gate.scalars + gate.laws > 0 {
-        let (scalars, laws) = (gate.scalars, gate.laws);
-        let alpha = short(results.alpha, 3);
-        facts.push(format!("{scalars} scalars and {laws} laws share α = {alpha}"));
-    }
-    facts.push(format!("seed {}", results.seed));
-    if view == View::Run {
-        let (seconds, threads) = (short(record.timing.seconds, 3), record.timing.threads);
-        facts.push(format!("{seconds} s, threads: {threads}"));
-    }
-    if results.cut_by_time {
-        facts.push("cut short by the time limit: other machines will differ".to_owned());
-    }
-    for line in wrapped(&facts.join(" · "), pen.width) {
-        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
     }
 }

@@ -8,6 +8,8 @@ pub mod number;
 pub mod plots;
 pub mod rows;
 pub mod self_test;
+pub mod totals;
+pub mod troubles;
 
 use std::fs;
 use std::io::{self, Write};
@@ -48,8 +50,11 @@ pub enum ReportError {
         source: csv::Error,
     },
     /// The json encoder gave up.
-    #[error("cannot encode the rows as json: {0}")]
+    #[error("cannot encode as json: {0}")]
     Json(#[from] serde_json::Error),
+    /// The XML encoder gave up.
+    #[error("cannot encode as JUnit XML: {0}")]
+    Junit(#[from] quick_junit::SerializeError),
     /// A drawing could not be painted.
     #[error("cannot draw {figure}: {message}")]
     Draw {
@@ -79,7 +84,7 @@ pub enum ReportError {
     },
 }
 
-/// Renders every report of the catalogue.
+/// Renders every report that a run writes.
 ///
 /// # Errors
 ///
@@ -108,11 +113,17 @@ fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
     let folder = path.parent().unwrap_or(out_dir);
     fs::create_dir_all(folder)
         .map_err(|source| ReportError::Folder { path: folder.to_owned(), source })?;
-    replace(&path, folder, &artifact.bytes)
+    replace(&path, &artifact.bytes)
         .map_err(|source| ReportError::Write { path: path.clone(), source })
 }
 
-fn replace(path: &Path, folder: &Path, bytes: &[u8]) -> io::Result<()> {
+/// Writes a file under a temporary name beside it and renames it.
+///
+/// # Errors
+///
+/// Where the system refuses.
+pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let mut builder = tempfile::Builder::new();
     // A temporary file is private to its owner unless told otherwise; results are for everyone.
     #[cfg(unix)]
@@ -120,7 +131,7 @@ fn replace(path: &Path, folder: &Path, bytes: &[u8]) -> io::Result<()> {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(fs::Permissions::from_mode(0o644))
     };
-    let mut file = builder.prefix(".trueflight-").tempfile_in(folder)?;
+    let mut file = builder.prefix(".trueflight-").tempfile_in(folder.unwrap_or(Path::new(".")))?;
     file.write_all(bytes)?;
     file.persist(path).map(drop).map_err(|error| error.error)
 }
@@ -131,16 +142,18 @@ pub fn case_path(case: &str, ending: &str) -> PathBuf {
     PathBuf::from(format!("{case}.{ending}"))
 }
 
-/// Lists the reports: from one line each come the module and the rows below.
+/// Lists the reports: from one line each come the module and the rows below. Those after the
+/// semicolon are written only where an option asks for them.
 macro_rules! reports {
-    ($($module:ident :: $Report:ident,)*) => {
+    ($($module:ident :: $Report:ident,)*; $($asked:ident,)*) => {
         $(pub mod $module;)*
+        $(pub mod $asked;)*
 
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
-            Catalogue { name: "reports", pages: &[$($crate::page!($module)),*] };
+            Catalogue { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };
 
-        /// Every report, in the same order.
+        /// Every report that a run writes, in the same order.
         pub const REPORTS: &[&dyn Report] = &[$(&$module::$Report),*];
     };
 }
@@ -150,6 +163,11 @@ reports! {
     case_csv::CaseCsv,
     sweep_plot::SweepPlot,
     anatomy_plot::AnatomyPlot,
+    record_json::RecordJson,
+    ;
+    junit,
+    markdown,
+    annotations,
 }
 
 #[cfg(test)]

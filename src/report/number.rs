@@ -47,6 +47,19 @@ pub fn signed(z: f64) -> String {
     if z.abs() < 1e4 || !z.is_finite() { format!("{z:+.2}") } else { format!("{z:+.1e}") }
 }
 
+/// A share in percent.
+#[must_use]
+pub fn percent(share: f64) -> String {
+    format!("{} %", short(100.0 * share, 3))
+}
+
+/// A range of shares in percent.
+#[must_use]
+pub fn range([least, most]: [f64; 2]) -> String {
+    let [least, most] = [least, most].map(percent);
+    if least == most { least } else { format!("{least} … {most}") }
+}
+
 fn trimmed(text: &str) -> String {
     if text.contains('.') {
         text.trim_end_matches('0').trim_end_matches('.').to_owned()

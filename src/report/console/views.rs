@@ -12,6 +12,8 @@ const ESTIMATOR: Spec = ("estimator", false, 0, |row| row.estimator.clone());
 const CHANNEL: Spec = ("channel", false, 1, |row| row.channel.clone());
 const CONTROL: Spec = ("control", false, 3, |row| row.control.clone());
 const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
+/// What the gate took; the columns beside it are of the fixed draws.
+const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 const SAMPLING: Spec = ("σ\u{302}", true, 1, |row| match row.sampling {
     Some(sampling) => short(sampling, 4),
@@ -67,6 +69,9 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
     // What all rows share stands over the table.
     if !view.is_theory() && shared(case, |row| row.draws).is_none() {
         specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
+    }
+    if view == View::Run && shared(case, |row| row.drawn).is_none() {
+        specs.push(DRAWN);
     }
     if view != View::Plan && shared(case, |row| row.truth).is_none() {
         specs.push(TRUTH);

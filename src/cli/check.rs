@@ -1,0 +1,170 @@
+//! `trueflight check`: the gate in a CI.
+//!
+//! All reports are written before the process ends, whatever the verdict; that they can be is known
+//! before the first draw.
+
+use std::fs::OpenOptions;
+use std::io::{IsTerminal, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use clap::Args;
+use trueflight::harness::{Amount, Options, Record};
+use trueflight::report::{self, Report, annotations, console, junit, markdown, record_json};
+
+use super::drawing::{self, Budget};
+use super::selection::Selection;
+use super::verdict::{self, Inconclusive};
+use super::{Console, USAGE, output};
+
+/// At most so many draws per experiment, where no argument says.
+const DRAWS: Amount = Amount::AtMost(400_000);
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    #[command(flatten)]
+    selection: Selection,
+    /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws (1e8)
+    #[arg(long, value_name = "B", value_parser = drawing::budget)]
+    budget: Option<Budget>,
+    /// What an inconclusive experiment counts as [default: exit code 3]
+    #[arg(long, value_enum, value_name = "AS")]
+    inconclusive: Option<Inconclusive>,
+    /// Write a JUnit report
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
+    /// Write the whole record as JSON
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+    /// Write a summary in Markdown
+    #[arg(long, value_name = "FILE")]
+    markdown: Option<PathBuf>,
+    /// Folder for summary.csv and record.json [default: none is written]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Draw exactly what is planned: no check stops the drawing, none prolongs it
+    #[arg(long)]
+    fixed_draws: bool,
+    /// Let every underpowered check make its experiment inconclusive
+    #[arg(long)]
+    strict: bool,
+    /// Print every row, not only those that do not pass
+    #[arg(long, short)]
+    verbose: bool,
+}
+
+/// Draws, judges, prints, writes.
+pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+    let selection = &arguments.selection;
+    let cases = selection.read(console)?;
+    let (seconds, budget) = match arguments.budget {
+        Some(Budget::Seconds(seconds)) => (Some(seconds), None),
+        Some(Budget::Draws(draws)) => (None, Some(draws)),
+        None => (None, None),
+    };
+    let options = Options {
+        seconds,
+        budget,
+        fixed: arguments.fixed_draws,
+        strict: arguments.strict,
+        ..selection.options(DRAWS)?
+    };
+    arguments.writable()?;
+    let record = selection.on_threads(|| {
+        let plan = selection.plan(&cases, &options)?;
+        Ok(drawing::draw(&plan, console))
+    })?;
+    let written = arguments.write(&record);
+    arguments.print(&record, console)?;
+    if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
+        output::print(&annotations::text(&record))?;
+        summarise(&record);
+    }
+    let code = verdict::exit_code(&record, arguments.inconclusive);
+    for error in &written {
+        output::complain(error);
+    }
+    Ok(if written.is_empty() { code } else { USAGE })
+}
+
+impl Arguments {
+    /// The files that are asked for, each with its option.
+    fn files(&self) -> impl Iterator<Item = (&'static str, &Path)> {
+        let files =
+            [("--junit", &self.junit), ("--json", &self.json), ("--markdown", &self.markdown)];
+        files.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)))
+    }
+
+    /// Better to learn now than after the drawing that something cannot be written.
+    fn writable(&self) -> anyhow::Result<()> {
+        for (flag, path) in self.files() {
+            let wrong =
+                || format!("cannot write {}; give another file with {flag}", path.display());
+            let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+            let folder = folder.unwrap_or(Path::new("."));
+            if path.is_dir() || path.file_name().is_none() {
+                return Err(anyhow::anyhow!("it is a folder").context(wrong()));
+            }
+            if !folder.is_dir() {
+                let missing = anyhow::anyhow!("there is no folder {}", folder.display());
+                return Err(missing.context(wrong()));
+            }
+            tempfile::NamedTempFile::new_in(folder).with_context(wrong)?;
+        }
+        self.out.as_deref().map_or(Ok(()), output::writable)
+    }
+
+    /// Writes all that can be written, and tells what could not.
+    fn write(&self, record: &Record) -> Vec<anyhow::Error> {
+        let mut errors = Vec::new();
+        for (flag, path) in self.files() {
+            let text = match flag {
+                "--junit" => junit::text(record, Inconclusive::in_junit(self.inconclusive)),
+                "--json" => record_json::text(record),
+                _ => Ok(markdown::text(record)),
+            };
+            let written = text
+                .map_err(anyhow::Error::from)
+                .and_then(|text| Ok(report::replace(path, text.as_bytes())?))
+                .with_context(|| format!("cannot write {} ({flag})", path.display()));
+            errors.extend(written.err());
+        }
+        if let Some(out) = &self.out {
+            errors.extend(results(record, out).err());
+        }
+        errors
+    }
+
+    fn print(&self, record: &Record, options: &Console) -> anyhow::Result<()> {
+        if options.quiet {
+            return Ok(());
+        }
+        let (width, colour) = (output::width(), std::io::stdout().is_terminal());
+        let colour = options.color.colours(colour);
+        output::print(&if self.verbose {
+            console::table(record, console::View::Run, width, colour)
+        } else {
+            console::brief(record, width, colour)
+        })
+    }
+}
+
+fn results(record: &Record, out: &Path) -> anyhow::Result<()> {
+    let mut artifacts = report::summary_csv::SummaryCsv.render(record)?;
+    artifacts.extend(record_json::RecordJson.render(record)?);
+    Ok(report::write(&artifacts, out)?)
+}
+
+/// Adds the summary to the page of the job. Without it the verdict is still the verdict.
+fn summarise(record: &Record) {
+    let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) else {
+        return;
+    };
+    let file = OpenOptions::new().append(true).create(true).open(&path);
+    let text = markdown::text(record) + "\n";
+    if let Err(error) = file.and_then(|mut file| file.write_all(text.as_bytes())) {
+        let path = Path::new(&path).display();
+        output::warn(&format!("cannot add the summary to {path}: {error}"));
+    }
+}

@@ -1,0 +1,55 @@
+//! From verdicts to an exit code.
+
+use clap::ValueEnum;
+use trueflight::harness::record::{Record, Verdict};
+use trueflight::report::junit;
+
+use super::{USAGE, output};
+
+/// What an inconclusive experiment does to the exit code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Inconclusive {
+    /// It counts as failing: exit code 1
+    Fail,
+    /// It counts as passing: exit code 0
+    Pass,
+}
+
+impl Inconclusive {
+    /// What it is in a JUnit report.
+    pub fn in_junit(wish: Option<Self>) -> junit::Inconclusive {
+        match wish {
+            None => junit::Inconclusive::Error,
+            Some(Self::Fail) => junit::Inconclusive::Failure,
+            Some(Self::Pass) => junit::Inconclusive::Skipped,
+        }
+    }
+}
+
+/// Fail before refused cases before inconclusive before pass.
+pub fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
+    let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
+    let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
+    if any(Verdict::Fail) {
+        return 1;
+    }
+    let refused = record
+        .results
+        .cases
+        .iter()
+        .find(|case| case.rows.iter().all(|row| row.verdict == Some(Verdict::Refused)));
+    if let Some(case) = refused {
+        output::complain(&anyhow::anyhow!(
+            "every experiment of {} is refused, so nothing was tested; \
+             `trueflight plan` says why",
+            case.name
+        ));
+        return USAGE;
+    }
+    match inconclusive {
+        _ if !any(Verdict::Inconclusive) => 0,
+        None => 3,
+        Some(Inconclusive::Fail) => 1,
+        Some(Inconclusive::Pass) => 0,
+    }
+}

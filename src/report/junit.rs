@@ -1,0 +1,104 @@
+//! JUnit XML, which every CI service shows: one test suite per case, one test per experiment and
+//! channel.
+//!
+//! A fail is a `failure` with every number and the command that repeats it; what is refused or
+//! underpowered is `skipped`; inconclusive is an `error`, a `failure` or `skipped`, as asked for. The
+//! time is processor seconds; where an experiment has several channels, the first has them all. The
+//! form is that of the Jenkins schema `junit-10.xsd`.
+
+use std::time::Duration;
+
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+
+use crate::harness::record::{CaseRecord, Record, Row, Verdict};
+use crate::report::ReportError;
+use crate::report::number::exact;
+use crate::report::troubles::{self, Trouble};
+
+/// What an inconclusive experiment is for JUnit.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Inconclusive {
+    /// An `error`: the test could not do its work.
+    #[default]
+    Error,
+    /// A `failure`.
+    Failure,
+    /// `skipped`: it turns nothing red.
+    Skipped,
+}
+
+/// The record as JUnit XML.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, ReportError> {
+    let mut report = quick_junit::Report::new("trueflight");
+    report.set_time(duration(record.timing.seconds));
+    for (i, case) in record.results.cases.iter().enumerate() {
+        let seconds = record.timing.rows.get(i).map_or(&[][..], Vec::as_slice);
+        report.add_test_suite(suite(record, case, seconds, inconclusive));
+    }
+    // The schema has no count of skipped tests at the root; the suites have theirs.
+    let skipped = format!(" skipped=\"{}\"", report.skipped);
+    Ok(report.to_string()?.replacen(&skipped, "", 1))
+}
+
+fn suite(
+    record: &Record,
+    case: &CaseRecord,
+    seconds: &[Option<f64>],
+    inconclusive: Inconclusive,
+) -> TestSuite {
+    let results = &record.results;
+    let mut suite = TestSuite::new(&*case.name);
+    for (name, value) in [
+        ("title", case.title.clone()),
+        ("seed", results.seed.to_string()),
+        ("alpha", exact(results.alpha)),
+        ("version", results.version.clone()),
+        ("schema", results.schema.to_string()),
+    ] {
+        suite.add_property((name, &*value));
+    }
+    let mut whole = Duration::ZERO;
+    for (i, row) in case.rows.iter().enumerate() {
+        let is_first = i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream;
+        let time = seconds.get(i).copied().flatten().filter(|_| is_first);
+        let time = time.map_or(Duration::ZERO, duration);
+        whole = whole.saturating_add(time);
+        let status = status(case, row, results.seed, inconclusive);
+        let mut test = TestCase::new(troubles::experiment(case, row), status);
+        test.set_classname(&*case.name).set_time(time);
+        suite.add_test_case(test);
+    }
+    suite.set_time(whole);
+    suite
+}
+
+fn status(case: &CaseRecord, row: &Row, seed: u64, inconclusive: Inconclusive) -> TestCaseStatus {
+    let Some(verdict) = row.verdict.filter(|&verdict| verdict != Verdict::Pass) else {
+        return TestCaseStatus::success();
+    };
+    let mut status = match (verdict, inconclusive) {
+        (Verdict::Fail, _) | (Verdict::Inconclusive, Inconclusive::Failure) => {
+            TestCaseStatus::non_success(NonSuccessKind::Failure)
+        }
+        (Verdict::Inconclusive, Inconclusive::Error) => {
+            TestCaseStatus::non_success(NonSuccessKind::Error)
+        }
+        _ => TestCaseStatus::skipped(),
+    };
+    status.set_type(verdict.word());
+    status.set_message(&*row.reason);
+    if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
+        let details: Vec<String> =
+            troubles::of_row(case, row, seed).iter().map(Trouble::details).collect();
+        status.set_description(details.join("\n"));
+    }
+    status
+}
+
+fn duration(seconds: f64) -> Duration {
+    Duration::try_from_secs_f64(seconds).unwrap_or_default()
+}

@@ -1,0 +1,116 @@
+//! A summary in Markdown, as GitHub shows it on the page of a job: the counts, the cases, what fails
+//! and what is inconclusive, each with the command that repeats it.
+
+use std::fmt::Write;
+
+use crate::harness::record::{CaseRecord, Record, Verdict};
+use crate::report::number::range;
+use crate::report::totals;
+use crate::report::troubles::{Trouble, troubles};
+
+/// A job's summary may have a mebibyte: beyond so many rows the file only counts.
+const MOST: usize = 50;
+
+/// The record as a page of Markdown.
+#[must_use]
+pub fn text(record: &Record) -> String {
+    let mut text = String::from("## Trueflight\n\n");
+    let counts: Vec<String> = totals::counts(&record.results.cases)
+        .iter()
+        .map(|(verdict, number)| format!("**{number} {}**", verdict.word()))
+        .collect();
+    let counts = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
+    let _ = writeln!(text, "{counts}\n");
+    for (verdict, title) in [(Verdict::Fail, "Failing"), (Verdict::Inconclusive, "Inconclusive")] {
+        section(&mut text, title, &troubles(record, verdict));
+    }
+    cases(&mut text, &record.results.cases);
+    if !record.results.gate.triage.is_empty() {
+        text.push_str("Look here first (e-BH): ");
+        let suspects: Vec<String> =
+            record.results.gate.triage.iter().take(MOST).map(totals::suspect).collect();
+        let _ = writeln!(
+            text,
+            "{}\n",
+            suspects.iter().map(|s| inert(s)).collect::<Vec<_>>().join("; ")
+        );
+    }
+    let facts: Vec<String> = totals::control(record).iter().map(|fact| inert(fact)).collect();
+    let _ = writeln!(text, "{}", facts.join(" · "));
+    text
+}
+
+fn section(text: &mut String, title: &str, troubles: &[Trouble]) {
+    if troubles.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "### {title}\n\n| case | experiment | check | where | why |");
+    text.push_str("|---|---|---|---|---|\n");
+    for trouble in troubles.iter().take(MOST) {
+        let cells = [
+            trouble.case.name.clone(),
+            trouble.experiment(),
+            trouble.check().to_owned(),
+            trouble.place(),
+            trouble.reason().to_owned(),
+        ];
+        let _ = writeln!(text, "| {} |", cells.map(|cell| inert(&cell)).join(" | "));
+    }
+    more(text, troubles.len());
+    let mut commands: Vec<&str> = Vec::new();
+    for trouble in troubles.iter().take(MOST) {
+        let command = trouble.row.command.as_str();
+        if !command.is_empty() && !commands.contains(&command) {
+            commands.push(command);
+        }
+    }
+    if !commands.is_empty() {
+        let _ = writeln!(text, "\nTo repeat:\n\n```sh\n{}\n```", commands.join("\n"));
+    }
+    text.push('\n');
+}
+
+fn more(text: &mut String, all: usize) {
+    if let Some(left) = all.checked_sub(MOST).filter(|&left| left > 0) {
+        let _ = writeln!(text, "\nand {left} more.");
+    }
+}
+
+fn cases(text: &mut String, cases: &[CaseRecord]) {
+    if cases.is_empty() {
+        return;
+    }
+    text.push_str("### Cases\n\n| case | verdicts | draws | smallest visible bias |\n");
+    text.push_str("|---|---|--:|--:|\n");
+    for case in cases {
+        let bias = case.visible_bias.map(range).unwrap_or_default();
+        let cells = [case.name.clone(), totals::words(case), totals::draws(case), bias];
+        let _ = writeln!(text, "| {} |", cells.map(|cell| inert(&cell)).join(" | "));
+    }
+    text.push('\n');
+}
+
+/// The text without anything that Markdown would take for markup, on one line.
+fn inert(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '\n' | '\r' => plain.push(' '),
+            '|' | '*' | '_' | '`' | '[' | ']' | '<' | '>' | '\\' | '~' | '#' | '&' => {
+                plain.extend(['\\', c]);
+            }
+            _ => plain.push(c),
+        }
+    }
+    plain
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_stay_words() {
+        assert_eq!(inert("a|b\n<c> *d*"), "a\\|b \\<c\\> \\*d\\*");
+    }
+}

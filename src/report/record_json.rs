@@ -1,0 +1,40 @@
+//! `record.json`: the whole record, for machines.
+//!
+//! One object: `schema` (the version of the form), `results` (the same for any number of threads on
+//! any machine) and `timing`. JSON has no infinite numbers: where one stands in the record, as in a
+//! variance without bound or in evidence beyond measure, the file has `null`, as for what is unknown.
+
+use std::path::PathBuf;
+
+use serde::Serialize;
+
+use crate::harness::record::{Record, Results, Timing};
+use crate::report::{Artifact, Report, ReportError};
+
+/// The record as one JSON object.
+pub struct RecordJson;
+
+impl Report for RecordJson {
+    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
+        let bytes = text(record)?.into_bytes();
+        Ok(vec![Artifact { path: PathBuf::from("record.json"), bytes }])
+    }
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: u32,
+    results: &'a Results,
+    timing: &'a Timing,
+}
+
+/// The record as JSON.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn text(record: &Record) -> Result<String, ReportError> {
+    let Record { results, timing } = record;
+    let document = Document { schema: results.schema, results, timing };
+    Ok(serde_json::to_string(&document)? + "\n")
+}

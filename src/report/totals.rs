@@ -1,0 +1,79 @@
+//! What a run comes to, in words that the console and the summaries share.
+
+use crate::harness::record::{CaseRecord, Record, Suspect, Verdict};
+use crate::report::number::{count, percent, short};
+
+const VERDICTS: [Verdict; 5] =
+    [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused];
+
+/// How many rows have each verdict, without those that none has.
+#[must_use]
+pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
+    let rows = || cases.iter().flat_map(|case| &case.rows);
+    let number = |verdict| rows().filter(|row| row.verdict == Some(verdict)).count();
+    let all = VERDICTS.map(|verdict| (verdict, number(verdict)));
+    all.into_iter().filter(|&(_, number)| number > 0).collect()
+}
+
+/// The verdicts of a case: `15 pass, 1 underpowered`.
+#[must_use]
+pub fn words(case: &CaseRecord) -> String {
+    let counts = counts(std::slice::from_ref(case));
+    let words: Vec<String> =
+        counts.iter().map(|(verdict, number)| format!("{number} {}", verdict.word())).collect();
+    if words.is_empty() { "no experiments".to_owned() } else { words.join(", ") }
+}
+
+/// How many draws a case took; the rows of one experiment share theirs.
+#[must_use]
+pub fn draws(case: &CaseRecord) -> String {
+    let own = case.rows.iter().enumerate().filter(|(i, row)| {
+        *i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream
+    });
+    count(own.filter_map(|(_, row)| row.drawn).sum())
+}
+
+/// An entry of the e-BH list: `case: experiment: mean (ln E = 9.1)`.
+#[must_use]
+pub fn suspect(suspect: &Suspect) -> String {
+    let Suspect { case, experiment, check, ln_e } = suspect;
+    format!("{case}: {experiment}: {check} (ln E = {})", short(*ln_e, 3))
+}
+
+/// The error control of a run, fact by fact: levels, margins, what is assumed, what was cut.
+#[must_use]
+pub fn control(record: &Record) -> Vec<String> {
+    let results = &record.results;
+    let gate = &results.gate;
+    let mut facts = Vec::new();
+    if gate.scalars + gate.laws > 0 {
+        let (scalars, laws) = (gate.scalars, gate.laws);
+        let (alpha, beta) = (short(results.alpha, 3), short(gate.beta, 3));
+        facts.push(format!("{scalars} scalars and {laws} laws share α = {alpha}, β = {beta}"));
+    }
+    if let Some(margin) = gate.smallest_margin {
+        let limit = short(gate.ln_e_limit, 3);
+        facts.push(if margin > 0.0 {
+            format!("the largest ln E is {} below its limit {limit}", short(margin, 3))
+        } else {
+            format!("the largest ln E is {} above its limit {limit}", short(-margin, 3))
+        });
+    }
+    if let Some(ln_e) = gate.ln_mean_e {
+        facts.push(format!("ln of the mean e-value {}", short(ln_e, 3)));
+    }
+    if let Some(bias) = gate.worst_bias {
+        facts.push(format!("no pass leaves room for a bias above {}", percent(bias)));
+    }
+    if gate.variance_assumed > 0 {
+        facts.push(format!("{} passes with the variance assumed", gate.variance_assumed));
+    }
+    facts.push(format!("seed {}", results.seed));
+    if results.cut_by_time {
+        facts.push("cut short by the time limit: other machines will differ".to_owned());
+    }
+    if results.cut_by_budget {
+        facts.push("cut short by the budget of draws".to_owned());
+    }
+    facts
+}

@@ -1,0 +1,175 @@
+//! What is wrong with a run, finding by finding: the words that the console and the reports share.
+
+use std::borrow::Cow;
+
+use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
+use crate::report::number::{short, signed};
+
+/// A finding that is not as it should be, with what it belongs to.
+#[derive(Debug, Clone, Copy)]
+pub struct Trouble<'a> {
+    /// The case.
+    pub case: &'a CaseRecord,
+    /// The experiment and channel.
+    pub row: &'a Row,
+    /// The finding; `None` where the row has a verdict and no findings.
+    pub finding: Option<&'a Finding>,
+    /// The run's seed.
+    pub seed: u64,
+}
+
+/// The troubles of all rows with this verdict. What concerns an experiment as a whole stands in all
+/// of its rows and is said once.
+#[must_use]
+pub fn troubles(record: &Record, verdict: Verdict) -> Vec<Trouble<'_>> {
+    let seed = record.results.seed;
+    let mut troubles = Vec::new();
+    for case in &record.results.cases {
+        for (i, row) in case.rows.iter().enumerate() {
+            if row.verdict != Some(verdict) {
+                continue;
+            }
+            let is_first = i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream;
+            let findings = of_row(case, row, seed);
+            troubles.extend(findings.into_iter().filter(|trouble| {
+                is_first || trouble.finding.is_none_or(|finding| !finding.channel.is_empty())
+            }));
+        }
+    }
+    troubles
+}
+
+/// The findings that gave a row its verdict.
+#[must_use]
+pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Trouble<'a>> {
+    let guilty = row.findings.iter().filter(|finding| Some(finding.verdict) == row.verdict);
+    let mut troubles: Vec<Trouble> =
+        guilty.map(|finding| Trouble { case, row, finding: Some(finding), seed }).collect();
+    if troubles.is_empty() {
+        troubles.push(Trouble { case, row, finding: None, seed });
+    }
+    troubles
+}
+
+/// What an experiment is called within its case: `ratio, σ̂ 0.5, control mean, T(5)`.
+#[must_use]
+pub fn experiment(case: &CaseRecord, row: &Row) -> String {
+    named(case, row, &row.channel)
+}
+
+fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
+    let mut parts = vec![row.estimator.clone()];
+    match row.sampling {
+        Some(sampling) => parts.push(format!("σ\u{302} {}", short(sampling, 4))),
+        None if row.sampling_kind.is_empty() => {}
+        None => parts.push(format!("σ\u{302} {}", row.sampling_kind)),
+    }
+    if !row.control.is_empty() {
+        parts.push(format!("control {}", row.control));
+    }
+    let what = case.sweep.as_ref().map_or("", |sweep| sweep.what.as_str());
+    if let Some(swept) = row.swept.filter(|_| what != "sampling") {
+        parts.push(format!("{} {}", if what.is_empty() { "at" } else { what }, short(swept, 4)));
+    }
+    if !channel.is_empty() {
+        parts.push(channel.to_owned());
+    }
+    parts.join(", ")
+}
+
+impl<'a> Trouble<'a> {
+    /// What it is about; without a channel where that is the experiment as a whole.
+    #[must_use]
+    pub fn experiment(&self) -> String {
+        let channel = self.finding.map_or(&self.row.channel, |finding| &finding.channel);
+        named(self.case, self.row, channel)
+    }
+
+    /// The check's name; empty where the row has no findings.
+    #[must_use]
+    pub fn check(&self) -> &'a str {
+        self.finding.map_or("", |finding| finding.check.as_str())
+    }
+
+    /// Why, with the most important numbers.
+    #[must_use]
+    pub fn reason(&self) -> &'a str {
+        let reason = self.finding.map_or("", |finding| finding.reason.as_str());
+        if reason.is_empty() { self.row.reason.as_str() } else { reason }
+    }
+
+    /// Where the random numbers are: `seed 1, block 3`.
+    #[must_use]
+    pub fn place(&self) -> String {
+        let mut place = format!("seed {}", self.seed);
+        if let Some(block) = self.finding.and_then(|finding| finding.block) {
+            place = format!("{place}, block {block}");
+        }
+        place
+    }
+
+    /// Everything on one line, but for the command.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let experiment = self.experiment();
+        let parts = [self.case.name.as_str(), &experiment, self.check(), self.reason()];
+        let parts: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        format!("{} ({})", parts.join(": "), self.place())
+    }
+
+    /// Everything that is known, one name and value to a line.
+    #[must_use]
+    pub fn details(&self) -> String {
+        let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}\n"));
+        lines.collect()
+    }
+
+    fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
+        let row = self.row;
+        let number = |x: f64| Cow::from(short(x, 6));
+        let mut facts: Vec<(&str, Cow<str>)> = vec![
+            ("case", self.case.name.as_str().into()),
+            ("experiment", self.experiment().into()),
+            ("check", self.check().into()),
+            ("reason", self.reason().into()),
+            ("seed", self.seed.to_string().into()),
+        ];
+        let mut add = |name, value: Option<Cow<'a, str>>| {
+            facts.extend(value.map(|value| (name, value)));
+        };
+        add("stream", row.stream.map(|stream| stream.to_string().into()));
+        let finding = self.finding;
+        add("block", finding.and_then(|f| f.block).map(|block| block.to_string().into()));
+        add("draws of the statistics", row.draws.map(|draws| draws.to_string().into()));
+        add("mean", row.mean.map(number));
+        add("standard error", row.standard_error.map(number));
+        add("truth", row.truth.map(number));
+        add("z of the mean", row.z_mean.map(|z| signed(z).into()));
+        add("variance", row.variance.map(number));
+        add("predicted variance", row.predicted_variance.map(number));
+        add("z of the variance", row.z_variance.map(|z| signed(z).into()));
+        add("lookups", row.lookups_per_draw.map(number));
+        add("predicted lookups", row.predicted_lookups.map(number));
+        add("z of the lookups", row.z_lookups.map(|z| signed(z).into()));
+        add("p", finding.and_then(|f| f.p).map(number));
+        if let Some(gate) = finding.and_then(|finding| finding.gate) {
+            let [above, below] = gate.ln_p.map(|p| short(p, 4));
+            let is_declared = finding.is_some_and(|finding| finding.expects_bias);
+            let word = if is_declared { "shows the declared bias" } else { "fails" };
+            add("draws of the gate", Some(gate.draws.to_string().into()));
+            add("mean deviation, relative", Some(number(gate.mean)));
+            add("tolerance", Some(number(gate.tolerance)));
+            add("ln E", Some(limited(&short(gate.ln_e, 4), word, gate.ln_e_limit)));
+            let both = format!("{above} and {below}");
+            add("ln P", Some(limited(&both, "passes", gate.ln_p_limit)));
+            add("draws needed", gate.needed.map(number));
+        }
+        add("repeat", Some(row.command.as_str().into()).filter(|_| !row.command.is_empty()));
+        facts.retain(|fact| !fact.1.is_empty());
+        facts
+    }
+}
+
+fn limited(value: &str, word: &str, limit: f64) -> Cow<'static, str> {
+    format!("{value} ({word} at {})", short(limit, 4)).into()
+}

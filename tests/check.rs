@@ -1,0 +1,223 @@
+//! `trueflight check`: exit codes, reports whatever the verdict, and what GitHub gets.
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use tempfile::TempDir;
+
+/// A case that passes within the usual draws.
+const GOOD: &str = "title = \"a good case\"
+[problem.transmittance]
+medium.piecewise-linear = { knots = [0, 0.5, 2], values = [0.1, 1.0, 0.1] }
+span = [0, 2]
+sampling.constant.value = 1.1
+estimators = [{ woodcock = {} }, { ratio = {} }]
+";
+
+/// The same with an estimator that is wrong and does not say so.
+fn biased() -> String {
+    GOOD.replace("{ woodcock = {} }", "{ ray-marching = { steps = 2 } }")
+}
+
+const FILES: &str = "--junit junit.xml --json record.json --markdown summary.md";
+
+struct Place(TempDir);
+
+impl Place {
+    fn new(text: &str) -> Self {
+        let folder = TempDir::new().expect("a folder");
+        std::fs::create_dir(folder.path().join("cases")).expect("a folder");
+        std::fs::write(folder.path().join("cases/case.toml"), text).expect("a case file");
+        Self(folder)
+    }
+
+    fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::cargo_bin("trueflight").expect("the binary");
+        command.current_dir(self.path()).env("COLUMNS", "120");
+        for name in ["NO_COLOR", "GITHUB_ACTIONS", "GITHUB_STEP_SUMMARY"] {
+            command.env_remove(name);
+        }
+        command.args(arguments.split_whitespace());
+        command
+    }
+
+    /// Expects an exit code.
+    fn check(&self, expected: i32, arguments: &str) -> Output {
+        let output = self.command(&format!("check {arguments}")).output().expect("it runs");
+        assert_eq!(output.status.code(), Some(expected), "{arguments}: {}", said(&output));
+        output
+    }
+
+    fn read(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path().join(name)).unwrap_or_else(|e| panic!("{name}: {e}"))
+    }
+
+    /// All reports exist, are whole, and hold no colours.
+    fn reports(&self) -> [String; 3] {
+        let [junit, json, markdown] =
+            ["junit.xml", "record.json", "summary.md"].map(|name| self.read(name));
+        assert!(junit.trim_end().ends_with("</testsuites>"), "{junit}");
+        let record: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+        assert_eq!(record["schema"], trueflight::harness::record::SCHEMA);
+        assert!(json.starts_with("{\"schema\":"));
+        assert!(markdown.starts_with("## Trueflight"), "{markdown}");
+        for text in [&junit, &json, &markdown] {
+            assert!(!text.contains('\u{1b}'), "colours in a file");
+        }
+        [junit, json, markdown]
+    }
+}
+
+fn said(output: &Output) -> String {
+    [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes)).concat()
+}
+
+fn assert_says(text: &str, words: &[&str]) {
+    for word in words {
+        assert!(text.contains(word), "no \"{word}\" in:\n{text}");
+    }
+}
+
+#[test]
+fn all_pass_is_0_and_quiet_about_it() {
+    let place = Place::new(GOOD);
+    let output = place.check(0, &format!("cases {FILES} --color always"));
+    let text = said(&output);
+    assert_says(&text, &["case  2 pass, ", " draws", "visible bias", "share α = 0.001", "seed 1"]);
+    assert!(!text.contains("woodcock"), "a row that passes is shown:\n{text}");
+    place.reports();
+    assert!(!place.path().join("results").exists());
+    assert_says(&said(&place.check(0, "cases --verbose")), &["woodcock", "ratio"]);
+    assert_eq!(said(&place.check(0, "cases --quiet")), "");
+}
+
+#[test]
+fn a_failure_is_1_and_its_reports_are_written() {
+    let place = Place::new(&biased());
+    let output = place.check(1, &format!("cases {FILES} --out out --seed 3 --color always"));
+    let [junit, _, markdown] = place.reports();
+    let words = ["ray-marching", "off by", "--seed 3 --draws 16384", "trueflight run cases/case"];
+    for text in [said(&output), junit, markdown] {
+        assert_says(&text, &words);
+    }
+    assert_says(&said(&output), &["seed 3, block 0", "repeat: "]);
+    assert!(place.read("out/summary.csv").contains(",fail,"));
+    assert!(place.read("out/record.json").starts_with("{\"schema\":"));
+    assert_eq!(std::fs::read_dir(place.path().join("out")).expect("a folder").count(), 2);
+}
+
+#[test]
+fn what_repeats_a_failure_repeats_it() {
+    let place = Place::new(&biased());
+    let text = said(&place.check(1, "cases"));
+    let line = text.lines().find_map(|line| line.trim().strip_prefix("repeat: trueflight "));
+    let words = line.expect("a command").split('"');
+    let mut command = place.command("");
+    for (i, word) in words.enumerate() {
+        // Every second piece stands in quotes.
+        if i % 2 == 1 {
+            command.arg(word)
+        } else {
+            command.args(word.split_whitespace())
+        };
+    }
+    let output = command.output().expect("it runs");
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert_says(&said(&output), &["ray-marching", "off by"]);
+}
+
+#[test]
+fn inconclusive_is_3_unless_one_says_otherwise() {
+    let place = Place::new(GOOD);
+    for (code, flag, in_junit) in [
+        (3, "", "<error "),
+        (1, "--inconclusive fail", "<failure "),
+        (0, "--inconclusive pass", "<skipped "),
+    ] {
+        let output = place.check(code, &format!("cases --draws 1000 {FILES} {flag}"));
+        let [junit, _, markdown] = place.reports();
+        assert_says(&junit, &[in_junit, "type=\"inconclusive\"", "draws"]);
+        assert_says(&markdown, &["### Inconclusive", "To repeat"]);
+        assert_says(&said(&output), &["2 inconclusive"]);
+        let run = place.command(&format!("run cases --draws 1000 {flag}")).output().expect("runs");
+        assert_eq!(run.status.code(), Some(code), "run {flag}");
+    }
+    assert!(place.read("results/record.json").starts_with("{\"schema\":"));
+    // No wish turns a failure into anything else.
+    Place::new(&biased()).check(1, "cases --inconclusive pass");
+}
+
+#[test]
+fn a_budget_of_draws_is_kept() {
+    let place = Place::new(GOOD);
+    let output = place.check(0, &format!("cases --budget 50000 {FILES}"));
+    assert_says(&said(&output), &["2 underpowered"]);
+    let record: serde_json::Value = serde_json::from_str(&place.read("record.json")).expect("JSON");
+    let rows = record["results"]["cases"][0]["rows"].as_array().expect("rows").clone();
+    let drawn: u64 = rows.iter().filter_map(|row| row["drawn"].as_u64()).sum();
+    assert!(drawn > 30_000 && drawn <= 50_000, "{drawn} draws");
+    place.check(0, "cases --budget 5m");
+}
+
+#[test]
+fn usage_is_2_before_anything_is_drawn() {
+    let place = Place::new(GOOD);
+    std::fs::write(place.path().join("file"), "").expect("a file");
+    std::fs::create_dir(place.path().join("empty")).expect("a folder");
+    for (arguments, words) in [
+        ("cases --filter nothing-of-the-kind", ["--filter", "trueflight plan"]),
+        ("empty", ["empty", "no case file"]),
+        ("cases --budget soon", ["--budget", "30s"]),
+        ("cases --budget 0", ["--budget", "1e8"]),
+        ("cases --inconclusive maybe", ["--inconclusive", "fail"]),
+        ("cases --no-such-flag", ["--no-such-flag", "Usage"]),
+        ("cases --junit nowhere/a.xml", ["--junit", "nowhere"]),
+        ("cases --json file/a.json", ["--json", "file"]),
+        ("cases --markdown cases", ["--markdown", "folder"]),
+        ("cases --out file", ["--out", "file"]),
+    ] {
+        let begin = std::time::Instant::now();
+        let output = place.check(2, &format!("{arguments} --draws 1000000000"));
+        assert!(output.stdout.is_empty(), "{arguments}: {}", said(&output));
+        assert_says(&said(&output), &words);
+        assert!(begin.elapsed().as_secs() < 20, "it drew first");
+    }
+}
+
+#[test]
+fn github_gets_annotations_and_a_summary() {
+    let place = Place::new(&biased());
+    let summary = place.path().join("summary.md");
+    std::fs::write(&summary, "before\n").expect("a file");
+    let on_github = |summary: &Path| {
+        let mut command = place.command("check cases");
+        command.env("GITHUB_ACTIONS", "true").env("GITHUB_STEP_SUMMARY", summary);
+        command.output().expect("it runs")
+    };
+    let output = on_github(&summary);
+    assert_eq!(output.status.code(), Some(1));
+    let text = said(&output);
+    let error = text.lines().find(|line| line.starts_with("::error ")).expect("an annotation");
+    assert_says(error, &["title=fail case%3A ray-marching", "file=cases/case.toml", "%0Arepeat: "]);
+    let written = place.read("summary.md");
+    assert!(written.starts_with("before\n## Trueflight"), "{written}");
+    // A summary that cannot be written is no reason to lose the verdict.
+    let output = on_github(&place.path().join("no/summary.md"));
+    assert_eq!(output.status.code(), Some(1));
+    assert_says(&said(&output), &["warning: ", "no/summary.md", "::error "]);
+    // Elsewhere there is neither.
+    assert!(!said(&place.check(1, "cases")).contains("::error"));
+}
+
+#[test]
+fn the_workflow_in_the_readme_is_the_one_in_the_examples() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |name: &str| std::fs::read_to_string(root.join(name)).expect("a file");
+    let (readme, workflow) = (read("README.md"), read("examples/github-workflow.yml"));
+    assert!(readme.contains(&format!("```yaml\n{workflow}```\n")), "they differ");
+}
