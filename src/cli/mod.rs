@@ -9,6 +9,7 @@
 
 mod completions;
 mod explain;
+mod judge;
 mod list;
 mod output;
 mod plan;
@@ -57,6 +58,8 @@ enum Command {
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
     Explain(explain::Arguments),
+    /// Judge the draws of another renderer, from a file or a pipe
+    Judge(judge::Arguments),
     /// Shell completions
     Completions(completions::Arguments),
 }
@@ -71,6 +74,7 @@ pub fn main() -> ExitCode {
         Command::Plan(arguments) => plan::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
+        Command::Judge(arguments) => judge::main(arguments, console),
         Command::Completions(arguments) => completions::main(arguments),
     };
     match done {

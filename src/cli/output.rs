@@ -79,7 +79,7 @@ pub fn complain(error: &anyhow::Error) {
 }
 
 /// The width of the terminal, or `COLUMNS`, or 120.
-fn width() -> usize {
+pub fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     terminal.or(wished).unwrap_or(120)
