@@ -10,6 +10,7 @@ use trueflight::harness::foreign::judge::{Trial, Wanted};
 use trueflight::harness::foreign::judgement::Judgement;
 use trueflight::harness::foreign::{self, Column, Draws, Format};
 use trueflight::harness::record::Verdict;
+use trueflight::harness::source::CaseError;
 use trueflight::report::console::judgement;
 
 use super::{Console, output, selection};
@@ -159,8 +160,11 @@ impl Arguments {
             return Ok(Claim::new(truth, self.variance, self.kurtosis, self.rounding)?);
         };
         let cases = selection::read_case(name).map_err(|errors| {
-            let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
-            anyhow::anyhow!("--case {name}: {}", shown.join("\n\n"))
+            let shown = errors.iter().map(|error| match error {
+                CaseError::Faulty { .. } => format!("{error}\n\n{}", error.render(false)),
+                other => other.to_string(),
+            });
+            anyhow::anyhow!("--case: {}", shown.collect::<Vec<_>>().join("\n\n"))
         })?;
         let [case] = &cases[..] else {
             let names: Vec<&str> = cases.iter().map(|case: &Case| case.name.as_str()).collect();
