@@ -132,7 +132,7 @@ fn the_verdict_is_that_of_the_gate() {
         let design = Design::new(v, tolerance_of(v, 300_000.0), 4e-13);
         let (mut sums, mut blocks, mut look) = (GateSums::default(), 0u64, 1);
         let mut decided = (Decision::Open, 0);
-        for block in draws.chunks(BLOCK as usize) {
+        for block in draws.chunks(1 << 14) {
             let y: Vec<f64> = block.iter().map(|x| (x - truth) / truth).collect();
             sums.absorb(&y, &design.arguments());
             blocks += 1;

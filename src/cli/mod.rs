@@ -7,6 +7,7 @@
 //! | 2 | usage, a bad case file, input or output |
 //! | 3 | nothing fails, but something is inconclusive |
 
+mod baseline;
 mod completions;
 mod explain;
 mod judge;

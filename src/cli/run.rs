@@ -11,6 +11,7 @@ use trueflight::harness::record::{Record, Verdict};
 use trueflight::harness::{Amount, Options, Plan, judge, run};
 use trueflight::report::{self, console::View};
 
+use super::baseline::BaselineArguments;
 use super::output::{self, Format};
 use super::selection::Selection;
 use super::{Console, USAGE};
@@ -32,6 +33,8 @@ pub struct Arguments {
     /// Let every underpowered check make its experiment inconclusive
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    baseline: BaselineArguments,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -49,6 +52,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     };
     // Better to learn now than after the drawing that nothing can be written.
     writable(&arguments.out)?;
+    let baselines = arguments.baseline.open()?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         Ok(draw(&plan, console))
@@ -60,7 +64,13 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let files = artifacts.len();
         output::print(&format!("{files} files in {}\n", arguments.out.display()))?;
     }
-    Ok(exit_code(&record))
+    let (compared, is_worse) = baselines.close(&record, &cases)?;
+    if arguments.format == Format::Table && !console.quiet {
+        output::print(&compared)?;
+    } else if is_worse {
+        output::complain(&anyhow::anyhow!("worse than the baseline\n{}", compared.trim_end()));
+    }
+    Ok(if is_worse { 1 } else { exit_code(&record) })
 }
 
 fn draw(plan: &Plan, console: &Console) -> Record {

@@ -4,6 +4,7 @@
 //! names lose their middle, and reasons without a place in the table follow below it. What all
 //! rows of a case share stands once, over the table.
 
+pub mod baseline;
 pub mod judgement;
 pub mod layout;
 pub mod views;

@@ -285,11 +285,9 @@ fn variation(
     let near = |x: &&f64| swept.is_some_and(|s| (s - **x).abs() <= SAME * x.abs());
     let distance = |x: &f64| swept.map_or(0.0, |s| (s - x).abs());
     let nearest = axis.values.iter().filter(near);
-    match nearest.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-        Some(&value) => Ok(Some((axis.what, value))),
-        None => {
-            let (what, values) = (axis.what.key(), axis.values.clone());
-            Err(ClaimError::Swept { case: name, estimator, what, values })
-        }
+    if let Some(&value) = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+        return Ok(Some((axis.what, value)));
     }
+    let (what, values) = (axis.what.key(), axis.values.clone());
+    Err(ClaimError::Swept { case: name, estimator, what, values })
 }

@@ -18,8 +18,8 @@ impl Powers {
         let mut lanes = [[0.0; LANES]; 4];
         let (rows, rest) = y.as_chunks::<LANES>();
         for row in rows {
-            for lane in 0..LANES {
-                add(&mut lanes, lane, row[lane]);
+            for (lane, &y) in row.iter().enumerate() {
+                add(&mut lanes, lane, y);
             }
         }
         for (lane, &y) in rest.iter().enumerate() {

@@ -6,10 +6,10 @@
 //!            judged from the first block on before which √((κ − 1)/n) ≤ 0.1, κ the sample kurtosis
 //! ```
 //!
-//! Each block is judged with a V_b that was fixed before its first draw, so that the gains of the
-//! blocks add up to evidence as if V were known, *if* every V_b is at least the true variance. No
+//! Each block is judged with a `V_b` that was fixed before its first draw, so that the gains of the
+//! blocks add up to evidence as if V were known, *if* every `V_b` is at least the true variance. No
 //! draws can show that it is: events that are so rare that none was drawn yet, and that carry the
-//! variance, make V_b too small, a false alarm likely and a pass worthless. What is estimated has
+//! variance, make `V_b` too small, a false alarm likely and a pass worthless. What is estimated has
 //! its error rates only asymptotically, and the verdict says so.
 
 use super::judgement::ScalarFinding;
