@@ -1,5 +1,6 @@
 //! Options of commands that draw: store a run, compare with a stored one.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
@@ -81,10 +82,10 @@ impl Baselines {
         }
         if let Some((name, path)) = &self.save {
             if fails {
-                text += &format!("baseline {name} not stored: something became worse\n");
+                let _ = writeln!(text, "baseline {name} not stored: something became worse");
             } else {
                 run.write(path)?;
-                text += &format!("baseline {name} stored in {}\n", path.display());
+                let _ = writeln!(text, "baseline {name} stored in {}", path.display());
             }
         }
         Ok((text, fails))
