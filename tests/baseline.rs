@@ -40,13 +40,13 @@ fn baseline(seed: u64) -> Baseline {
     Baseline::of(&record(&Plan::new(&cases, &options(seed))), &cases, "program")
 }
 
-/// Draws that are all too large by a factor.
+/// Draws that are all too large by as much.
 struct Biased(Box<dyn Experiment>, f64);
 
 impl Experiment for Biased {
     fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
         self.0.fill(rng, count, buffer);
-        buffer.values.iter_mut().flatten().for_each(|x| *x *= self.1);
+        buffer.values.iter_mut().flatten().for_each(|x| *x += self.1);
     }
 }
 
@@ -139,10 +139,10 @@ fn a_small_bias_adds_up_over_runs() {
         // Three quarters of what a pass excludes.
         let planned = &mut plan.cases[0].experiments[1];
         let (_, scalar) = planned.scalars().next().expect("the mean");
-        let factor = 1.0 + 0.75 * scalar.design.tolerance;
+        let bias = 0.75 * scalar.design.tolerance * (-1f64).exp();
         if let Ok(ready) = planned.outcome.as_mut() {
             let honest = std::mem::replace(&mut ready.experiment, Box::new(Nothing));
-            ready.experiment = Box::new(Biased(honest, factor));
+            ready.experiment = Box::new(Biased(honest, bias));
         }
         limit = plan.levels.ln_fail;
         let found = record(&plan);
