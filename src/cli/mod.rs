@@ -8,9 +8,11 @@
 //! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
 mod check;
+mod baseline;
 mod completions;
 mod drawing;
 mod explain;
+mod judge;
 mod list;
 mod output;
 mod plan;
@@ -65,6 +67,8 @@ enum Command {
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
     Explain(explain::Arguments),
+    /// Judge the draws of another renderer, from a file or a pipe
+    Judge(judge::Arguments),
     /// Shell completions
     Completions(completions::Arguments),
 }
@@ -81,6 +85,7 @@ pub fn main() -> ExitCode {
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
+        Command::Judge(arguments) => judge::main(arguments, console),
         Command::Completions(arguments) => completions::main(arguments),
     };
     match done {

@@ -6,6 +6,7 @@ use clap::Args;
 use trueflight::harness::{Amount, Options};
 use trueflight::report::{self, console::View};
 
+use super::baseline::BaselineArguments;
 use super::output::{self, Format};
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
@@ -31,6 +32,8 @@ pub struct Arguments {
     /// What an inconclusive experiment counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     inconclusive: Option<Inconclusive>,
+    #[command(flatten)]
+    baseline: BaselineArguments,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -48,6 +51,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     };
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
+    let baselines = arguments.baseline.open()?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         Ok(drawing::draw(&plan, console))
@@ -59,5 +63,11 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let files = artifacts.len();
         output::print(&format!("{files} files in {}\n", arguments.out.display()))?;
     }
-    Ok(verdict::exit_code(&record, arguments.inconclusive))
+    let (compared, is_worse) = baselines.close(&record, &cases)?;
+    if arguments.format == Format::Table && !console.quiet {
+        output::print(&compared)?;
+    } else if is_worse {
+        output::complain(&anyhow::anyhow!("worse than the baseline\n{}", compared.trim_end()));
+    }
+    Ok(if is_worse { 1 } else { verdict::exit_code(&record, arguments.inconclusive) })
 }

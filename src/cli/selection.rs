@@ -44,13 +44,7 @@ impl Selection {
             Case::read(source).map_or_else(|error| errors.push(error), |case| cases.push(case));
         }
         for name in &self.cases {
-            let found = match suite::find(name) {
-                Some(source) if !Path::new(name).exists() => {
-                    Case::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
-                }
-                _ => Case::read_all(&[name]),
-            };
-            found.map_or_else(|found| errors.extend(found), |found| cases.extend(found));
+            read_case(name).map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
         if errors.is_empty() {
             return Ok(cases);
@@ -94,6 +88,16 @@ impl Selection {
     }
 }
 
+/// Reads a case file, a folder of them, or a built-in case.
+pub fn read_case(name: &str) -> Result<Vec<Case>, Vec<CaseError>> {
+    match suite::find(name) {
+        Some(source) if !Path::new(name).exists() => {
+            Case::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
+        }
+        _ => Case::read_all(&[name]),
+    }
+}
+
 /// A number of draws such as 4e6.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
 pub fn draws(text: &str) -> Result<u64, String> {
@@ -103,7 +107,8 @@ pub fn draws(text: &str) -> Result<u64, String> {
     }
 }
 
-fn alpha(text: &str) -> Result<f64, String> {
+/// Reads a probability.
+pub fn alpha(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(alpha) if alpha > 0.0 && alpha < 1.0 => Ok(alpha),
         _ => Err("it takes a probability above 0 and below 1, such as 1e-3".into()),

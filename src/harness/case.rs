@@ -9,6 +9,7 @@ use super::sweep::SweepAxis;
 use crate::catalogue::{Domain, Page, Settings};
 use crate::media::Body;
 use crate::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
+use crate::rng::name_hash;
 
 /// A case file, read.
 pub struct Case {
@@ -30,6 +31,8 @@ pub struct Case {
     pub tolerance: Tolerance,
     /// Whether experiments that are too short to pass are allowed.
     pub allow_underpowered: bool,
+    /// A hash of the file's text.
+    pub digest: u64,
 }
 
 /// The smallest relative differences that must be seen; `None` where the case does not say.
@@ -70,7 +73,7 @@ impl Case {
         }
         faults.sort_by_key(|fault| fault.span.start);
         match case {
-            Some(case) if faults.is_empty() => Ok(case),
+            Some(case) if faults.is_empty() => Ok(Self { digest: name_hash(&source.text), ..case }),
             _ => Err(CaseError::Faulty { source_text: source.clone(), faults }),
         }
     }
@@ -117,6 +120,7 @@ impl Case {
             draws: draws?,
             tolerance: tolerance?,
             allow_underpowered: underpowered? == "allow",
+            digest: 0,
         })
     }
 

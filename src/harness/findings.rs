@@ -96,7 +96,7 @@ fn of_question(
             };
             let gate = Some(gate_finding(plan, question, scalar, standing));
             let block = Some(standing.draws.saturating_sub(1) / BLOCK);
-            Finding { verdict, reason, gate, block, ..finding }
+            Finding { gate, block, verdict, reason, ..finding }
         }
         (Kind::Law(law), Total::Law(sums)) => {
             let sums: Vec<f64> = sums.iter().map(crate::numeric::sum::Sum::value).collect();
@@ -117,7 +117,7 @@ fn of_question(
         (Kind::Always(always), &Total::Largest(largest, block)) => {
             let (verdict, reason) = kept(question, always, largest);
             let block = (verdict == Verdict::Fail).then_some(block);
-            Finding { verdict, reason, block, ..finding }
+            Finding { block, verdict, reason, ..finding }
         }
         (Kind::Untestable(why), _) => {
             let reason = format!("{} cannot be tested: {why}", question.what);
@@ -171,24 +171,22 @@ fn decided(
             );
             (Verdict::Fail, reason)
         }
-        Decision::Open => match scalar.underpowered {
-            Some(needed) => {
+        Decision::Open => {
+            if let Some(needed) = scalar.underpowered {
                 let reason = if needed.is_finite() {
                     format!("{what} needs {needed:.1e} draws")
                 } else {
                     format!("the prediction of {what} is known to {:.0e} only", scalar.design.floor)
                 };
-                (too_weak(plan, case, question), reason)
+                return (too_weak(plan, case, question), reason);
             }
-            None => {
-                let [above, below] = evidence.ln_pass;
-                let reason = format!(
-                    "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
-                    standing.draws, plan.levels.ln_pass
-                );
-                (Verdict::Inconclusive, reason)
-            }
-        },
+            let [above, below] = evidence.ln_pass;
+            let reason = format!(
+                "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
+                standing.draws, plan.levels.ln_pass
+            );
+            (Verdict::Inconclusive, reason)
+        }
     }
 }
 

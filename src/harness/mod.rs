@@ -4,6 +4,7 @@
 //! its experiments and shares out the error rate, [`run::draw`] draws them, and [`judge`] turns what
 //! was drawn into a [`Record`], which is all that reports see.
 
+pub mod baseline;
 pub mod case;
 pub mod checks;
 pub mod curves;

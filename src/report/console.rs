@@ -5,6 +5,8 @@
 //! rows of a case share stands once, over the table.
 
 mod closing;
+pub mod baseline;
+pub mod judgement;
 pub mod layout;
 pub mod views;
 

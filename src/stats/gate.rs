@@ -110,16 +110,46 @@ impl Design {
     /// The evidence in the sums over `draws` draws.
     #[must_use]
     pub fn evidence(&self, sums: [f64; SUMS], draws: f64) -> Evidence {
+        self.gains(sums, draws).evidence()
+    }
+
+    /// What the sums over `draws` draws add to each L and P. Where V or ε is chosen anew before a
+    /// block, from what came before it, the gains of the blocks add up.
+    #[must_use]
+    pub fn gains(&self, sums: [f64; SUMS], draws: f64) -> Gains {
         let price = |slope: f64, variance: f64| draws * (0.5 * slope * slope * variance).ln_1p();
         let variance = self.variance + self.floor * self.floor;
-        let against = SLOPES.iter().zip(sums).flat_map(|(m, sum)| {
+        let mut against = [0.0; 2 * SLOPES.len()];
+        for (pair, (m, sum)) in against.chunks_exact_mut(2).zip(SLOPES.iter().zip(sums)) {
             let slope = m * self.slope();
             let paid = price(slope, variance) + draws * slope * self.floor;
-            [sum - paid, -sum - paid]
-        });
-        let ln_e = ln_mean_exp(&against.collect::<Vec<_>>());
+            pair.copy_from_slice(&[sum - paid, -sum - paid]);
+        }
         let paid = price(CALM * self.slope(), VARIANCE_MARGIN * self.variance);
-        Evidence { ln_e, ln_pass: [sums[3] - paid, sums[4] - paid] }
+        Gains { against, pass: [sums[3] - paid, sums[4] - paid] }
+    }
+}
+
+/// The logarithms of what each bet has gained.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Gains {
+    /// The six L.
+    against: [f64; 2 * SLOPES.len()],
+    /// Both P.
+    pass: [f64; 2],
+}
+
+impl Gains {
+    /// Adds the gains of a later block.
+    pub fn add(&mut self, later: &Self) {
+        self.against.iter_mut().zip(later.against).for_each(|(sum, gain)| *sum += gain);
+        self.pass.iter_mut().zip(later.pass).for_each(|(sum, gain)| *sum += gain);
+    }
+
+    /// The evidence that they are.
+    #[must_use]
+    pub fn evidence(&self) -> Evidence {
+        Evidence { ln_e: ln_mean_exp(&self.against), ln_pass: self.pass }
     }
 }
 

@@ -28,6 +28,7 @@ pub struct Classes {
 
 impl Classes {
     /// `wanted` classes, or as many as theory has where that is less.
+    #[must_use]
     pub fn of(subject: &Subject, wanted: usize) -> Option<Self> {
         let Some(theory::Law::Distances { bins, end, escape }) = &subject.prediction.law else {
             return None;
@@ -38,7 +39,7 @@ impl Classes {
     }
 
     /// How many classes, escape not counted.
-    pub fn len(&self) -> usize {
+    pub(super) fn len(&self) -> usize {
         self.ends.len() + 1
     }
 

@@ -9,9 +9,14 @@
 //! NaN and ∞ are read as they are: the gate judges them. Whatever keeps a file from being a list of
 //! numbers is a [`ForeignError`]; nothing is skipped.
 
+pub mod claim;
 mod csv;
+pub mod judge;
+pub mod judgement;
 mod npy;
+mod powers;
 mod raw;
+mod scalar;
 
 use std::convert::Infallible;
 use std::fs::File;
@@ -301,6 +306,23 @@ impl Draws {
         }
         Ok(buffer.len())
     }
+}
+
+/// How many draws a file holds: by its length or its header, else by reading it through.
+///
+/// # Errors
+///
+/// The file cannot be read, or something in it is not a draw.
+pub fn count(path: &Path, format: Format) -> Result<u64, ForeignError> {
+    let mut draws = Draws::open(path, format)?;
+    if let Some(length) = draws.known_length() {
+        return Ok(length);
+    }
+    let (mut buffer, mut count) = (Vec::new(), 0);
+    while draws.read(&mut buffer, 1 << 14)? > 0 {
+        count += buffer.len() as u64;
+    }
+    Ok(count)
 }
 
 /// Every draw, in small pieces.

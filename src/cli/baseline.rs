@@ -1,0 +1,100 @@
+//! Options of commands that draw: store a run, compare with a stored one.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use clap::Args;
+use trueflight::harness::baseline::compare::{Rules, compare};
+use trueflight::harness::baseline::{Baseline, fingerprint};
+use trueflight::harness::{Case, Record};
+use trueflight::report::console::baseline::section;
+
+use super::output;
+
+/// Options that all commands which draw share.
+#[derive(Debug, Clone, Args)]
+pub struct BaselineArguments {
+    /// Store the run as a baseline, to compare later runs with
+    #[arg(long, value_name = "NAME")]
+    save_baseline: Option<String>,
+    /// Compare with a stored run: fail where variance, lookups or time have grown, or where the
+    /// evidence of several runs on unchanged code does
+    #[arg(long, value_name = "NAME")]
+    baseline: Option<String>,
+    /// Folder of the baselines
+    #[arg(long, value_name = "DIR", default_value = "baselines")]
+    baselines: PathBuf,
+    /// How much more processor time per draw is no regression, as a share; `inf` for any
+    #[arg(long, value_name = "R", default_value_t = 0.25, value_parser = share)]
+    #[arg(allow_hyphen_values = true)]
+    time_tolerance: f64,
+}
+
+/// What the drawing must be compared with, and where it is stored; known before the first draw.
+pub struct Baselines {
+    stored: Option<(String, Baseline)>,
+    save: Option<(String, PathBuf)>,
+    executable: String,
+    time_tolerance: f64,
+}
+
+impl BaselineArguments {
+    /// Reads the baseline and tries the folder, before anything is drawn.
+    pub fn open(&self) -> anyhow::Result<Baselines> {
+        let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
+            let path = Baseline::path(&self.baselines, name)?;
+            Ok((name.clone(), Baseline::read(&path)?))
+        });
+        let save = self.save_baseline.as_ref().map(|name| -> anyhow::Result<_> {
+            let path = Baseline::path(&self.baselines, name)?;
+            Baseline::writable(&path)?;
+            Ok((name.clone(), path))
+        });
+        let (stored, save) = (stored.transpose()?, save.transpose()?);
+        let is_idle = stored.is_none() && save.is_none();
+        let executable = if is_idle { String::new() } else { fingerprint()? };
+        Ok(Baselines { stored, save, executable, time_tolerance: self.time_tolerance })
+    }
+}
+
+impl Baselines {
+    /// Compares and stores; answers what to print, and whether something became worse. What became
+    /// worse is not stored.
+    pub fn close(&self, record: &Record, cases: &[Case]) -> anyhow::Result<(String, bool)> {
+        let mut text = String::new();
+        if self.stored.is_none() && self.save.is_none() {
+            return Ok((text, false));
+        }
+        let mut run = Baseline::of(record, cases, &self.executable);
+        let mut fails = false;
+        if let Some((name, stored)) = &self.stored {
+            let rules = Rules {
+                alpha: record.results.alpha,
+                time_tolerance: self.time_tolerance,
+                ln_e_limit: record.results.gate.ln_e_limit,
+            };
+            let (comparison, next) = compare(stored, &run, &rules);
+            fails = comparison.fails();
+            text += &section(&comparison, name, &rules, output::width());
+            if self.save.as_ref().is_some_and(|(save, _)| save == name) {
+                run = next;
+            }
+        }
+        if let Some((name, path)) = &self.save {
+            if fails {
+                let _ = writeln!(text, "baseline {name} not stored: something became worse");
+            } else {
+                run.write(path)?;
+                let _ = writeln!(text, "baseline {name} stored in {}", path.display());
+            }
+        }
+        Ok((text, fails))
+    }
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(share) if share >= 0.0 => Ok(share),
+        _ => Err("it takes a share of 0 or more, such as 0.25, or inf".into()),
+    }
+}

@@ -1,0 +1,293 @@
+//! A run against a stored one.
+//!
+//! ```text
+//! variance  ρ = s²/s₀²,  Var[ln ρ] = (κ − 1)/n + (κ₀ − 1)/n₀
+//! lookups   ρ = N/N₀,    Var[ln ρ] = Var N/(n N²) + Var N₀/(n₀ N₀²)
+//! interval  ρ exp(±z √Var),  z of α over all comparisons, by Bonferroni
+//! time      ρ = t/t₀, t processor time per draw, where both took 0.1 s or more
+//! drift     ln E = stored + new, against the limit of the run
+//! ```
+//!
+//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance
+//! whose relative standard error is above 10 % on either side is not compared. A regression is an
+//! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
+//! time is not known from one figure: it fails beyond a factor that the caller chooses.
+//!
+//! The product of e-values of independent runs is an e-value: its chance to reach the limit is at most
+//! that of one. It is taken only where the program and the text of the case are the same and the seed
+//! is new.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::{Baseline, Entry, Evidence};
+use crate::stats::normal;
+
+/// Times below this are noise.
+const SHORTEST: f64 = 0.1;
+/// The largest relative standard error of a variance that is compared.
+const BLUNT: f64 = 0.1;
+/// Two numbers of lookups without spread are the same if they are this near.
+const ROUNDING: f64 = 1e-9;
+
+/// What the comparison is to say at which level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// The chance that equal code shows any regression of a variance or of lookups.
+    pub alpha: f64,
+    /// How much more time per draw is no regression, as a share.
+    pub time_tolerance: f64,
+    /// The ln E at which a check fails.
+    pub ln_e_limit: f64,
+}
+
+/// What changed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Whether e-values were multiplied, and why not.
+    pub sequel: Sequel,
+    /// How many variances and lookups were compared: α is shared among them.
+    pub compared: usize,
+    /// How many variances were too uncertain to compare.
+    pub blunt: usize,
+    /// What grew or shrank.
+    pub changes: Vec<Change>,
+    /// Checks that fail over all runs together.
+    pub drifts: Vec<Drift>,
+    /// Experiments of this run that the baseline has not.
+    pub added: Vec<String>,
+    /// Experiments of the baseline that this run has not.
+    pub missing: Vec<String>,
+    /// Experiments whose case has another text than in the baseline.
+    pub rewritten: Vec<String>,
+}
+
+/// Whether the e-values of both runs multiply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sequel {
+    /// They do: so many runs together.
+    Run(usize),
+    /// The seed is among those stored: its draws say nothing new.
+    SameSeed,
+    /// Another program drew.
+    OtherProgram,
+}
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// The sample variance of one draw.
+    Variance,
+    /// Lookups per draw.
+    Lookups,
+    /// Processor nanoseconds per draw.
+    Time,
+}
+
+/// A quantity that differs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// The experiment.
+    pub id: String,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its stored value, with its standard error.
+    pub before: [f64; 2],
+    /// Its value now, with its standard error.
+    pub now: [f64; 2],
+    /// now/before.
+    pub ratio: f64,
+    /// Where the true ratio is; `None` for times.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it became worse.
+    pub is_regression: bool,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+/// A check that fails over several runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drift {
+    /// The experiment.
+    pub id: String,
+    /// The check.
+    pub check: String,
+    /// ln E of all runs together.
+    pub ln_e: f64,
+    /// The limit.
+    pub limit: f64,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+/// A value with its standard error, relative to it.
+type Measured = (f64, f64);
+
+impl Entry {
+    fn variance(&self) -> Option<Measured> {
+        let error = ((self.kurtosis? - 1.0).max(0.0) / self.draws as f64).sqrt();
+        Some((self.variance.filter(|&variance| variance > 0.0)?, error))
+    }
+
+    fn lookups(&self) -> Option<Measured> {
+        let lookups = self.lookups.filter(|&lookups| lookups > 0.0)?;
+        Some((lookups, (self.lookups_variance? / self.draws as f64).sqrt() / lookups))
+    }
+
+    fn nanoseconds(&self) -> Option<f64> {
+        let seconds = self.seconds.filter(|&seconds| seconds >= SHORTEST)?;
+        Some(1e9 * seconds / self.drawn as f64)
+    }
+}
+
+impl Comparison {
+    /// Whether anything became worse.
+    #[must_use]
+    pub fn fails(&self) -> bool {
+        !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
+    }
+}
+
+/// Compares a run with a stored one; answers also what to store next: the run, with the e-values of
+/// both where they multiply.
+#[must_use]
+pub fn compare(stored: &Baseline, run: &Baseline, rules: &Rules) -> (Comparison, Baseline) {
+    let before: BTreeMap<&str, &Entry> =
+        stored.entries.iter().map(|entry| (entry.id.as_str(), entry)).collect();
+    let ids: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
+    let mut comparison = Comparison {
+        sequel: sequel(stored, run),
+        compared: 0,
+        blunt: 0,
+        changes: Vec::new(),
+        drifts: Vec::new(),
+        added: Vec::new(),
+        missing: Vec::new(),
+        rewritten: Vec::new(),
+    };
+    let missing = stored.entries.iter().filter(|entry| !ids.contains(entry.id.as_str()));
+    comparison.missing = missing.map(|entry| entry.id.clone()).collect();
+    let mut pairs = Vec::new();
+    for now in &run.entries {
+        match before.get(now.id.as_str()) {
+            None => comparison.added.push(now.id.clone()),
+            Some(before) if before.case != now.case => comparison.rewritten.push(now.id.clone()),
+            Some(before) => pairs.push((*before, now)),
+        }
+    }
+    let questions: Vec<_> = pairs.iter().flat_map(|(before, now)| questions(before, now)).collect();
+    let is_sharp = |question: &&Question| {
+        question.quantity != Quantity::Variance
+            || (question.before.1 <= BLUNT && question.now.1 <= BLUNT)
+    };
+    let sharp: Vec<_> = questions.iter().filter(is_sharp).collect();
+    comparison.compared = sharp.len();
+    comparison.blunt = questions.len() - sharp.len();
+    let z = normal::two_sided(rules.alpha / sharp.len().max(1) as f64);
+    comparison.changes = sharp.iter().filter_map(|question| question.answer(z)).collect();
+    let times = pairs.iter().filter_map(|(before, now)| time(before, now, rules.time_tolerance));
+    comparison.changes.extend(times);
+    let mut next = run.clone();
+    if let Sequel::Run(_) = comparison.sequel {
+        comparison.drifts = multiply(&mut next, &before, rules.ln_e_limit);
+        next.seeds = [&stored.seeds[..], &run.seeds[..]].concat();
+    } else if comparison.sequel == Sequel::SameSeed {
+        for entry in &mut next.entries {
+            let stored = before.get(entry.id.as_str());
+            if let Some(stored) = stored.filter(|stored| stored.case == entry.case) {
+                entry.checks.clone_from(&stored.checks);
+            }
+        }
+        next.seeds.clone_from(&stored.seeds);
+    }
+    (comparison, next)
+}
+
+fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
+    if stored.executable != run.executable {
+        Sequel::OtherProgram
+    } else if run.seeds.iter().any(|seed| stored.seeds.contains(seed)) {
+        Sequel::SameSeed
+    } else {
+        Sequel::Run(stored.seeds.len() + run.seeds.len())
+    }
+}
+
+/// Adds the stored ln E to those of the run; answers those that reach the limit.
+fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, limit: f64) -> Vec<Drift> {
+    let mut drifts = Vec::new();
+    for entry in &mut next.entries {
+        let stored = before.get(entry.id.as_str()).filter(|stored| stored.case == entry.case);
+        let Some(stored) = stored else { continue };
+        for Evidence { check, ln_e } in &mut entry.checks {
+            let Some(earlier) = stored.checks.iter().find(|earlier| earlier.check == *check) else {
+                continue;
+            };
+            *ln_e += earlier.ln_e;
+            if *ln_e >= limit {
+                let (id, command) = (entry.id.clone(), entry.command.clone());
+                drifts.push(Drift { id, check: check.clone(), ln_e: *ln_e, limit, command });
+            }
+        }
+    }
+    drifts
+}
+
+/// One comparison.
+struct Question<'e> {
+    entry: &'e Entry,
+    quantity: Quantity,
+    before: Measured,
+    now: Measured,
+}
+
+/// What two entries can be compared in: not in what a σ̂ learned from other pilot rays decides.
+fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
+    if now.learns && before.seed != now.seed {
+        return Vec::new();
+    }
+    let variance = before.variance().zip(now.variance());
+    let lookups = before.lookups().zip(now.lookups());
+    let question =
+        |quantity| move |(before, now_)| Question { entry: now, quantity, before, now: now_ };
+    let variance = variance.map(question(Quantity::Variance));
+    variance.into_iter().chain(lookups.map(question(Quantity::Lookups))).collect()
+}
+
+impl Question<'_> {
+    /// What changed, if anything.
+    fn answer(&self, z: f64) -> Option<Change> {
+        let (before, now) = (self.before, self.now);
+        let ratio = now.0 / before.0;
+        let error = z * before.1.hypot(now.1) + ROUNDING;
+        if ratio.ln().abs() <= error {
+            return None;
+        }
+        Some(Change {
+            id: self.entry.id.clone(),
+            quantity: self.quantity,
+            before: [before.0, before.0 * before.1],
+            now: [now.0, now.0 * now.1],
+            ratio,
+            interval: Some([ratio * (-error).exp(), ratio * error.exp()]),
+            is_regression: ratio > 1.0,
+            command: self.entry.command.clone(),
+        })
+    }
+}
+
+/// A time that changed by more than the tolerance, in either direction.
+fn time(before: &Entry, now: &Entry, tolerance: f64) -> Option<Change> {
+    let (earlier, later) = (before.nanoseconds()?, now.nanoseconds()?);
+    let ratio = later / earlier;
+    let is_regression = ratio > 1.0 + tolerance;
+    (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
+        id: now.id.clone(),
+        quantity: Quantity::Time,
+        before: [earlier, f64::NAN],
+        now: [later, f64::NAN],
+        ratio,
+        interval: None,
+        is_regression,
+        command: now.command.clone(),
+    })
+}

@@ -1,0 +1,299 @@
+//! Stored runs: what a later run is compared with.
+//!
+//! A baseline is a file `NAME.json` with one entry per experiment and channel. A later run is compared
+//! with it (`compare`): has the variance, the number of lookups or the time grown? And on unchanged
+//! code and cases the e-values of runs with different seeds multiply: a bias too small for one night
+//! is found over many.
+//!
+//! A baseline that is missing, broken or of another form is an error; a file is written under a
+//! temporary name and renamed.
+
+pub mod compare;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use super::case::Case;
+use super::record::{CaseRecord, Record, Row};
+
+/// The version of the file's form.
+pub const SCHEMA: u32 = 1;
+
+/// A stored run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    /// The version of the form, [`SCHEMA`].
+    pub schema: u32,
+    /// The version of the tool.
+    pub version: String,
+    /// A hash of the program that drew.
+    pub executable: String,
+    /// The seeds whose e-values are multiplied into the entries.
+    pub seeds: Vec<u64>,
+    /// The experiments.
+    pub entries: Vec<Entry>,
+}
+
+/// One experiment, one channel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Entry {
+    /// `case|estimator|sampling|control|swept|channel`.
+    pub id: String,
+    /// A hash of the case's text.
+    pub case: String,
+    /// The seed of the numbers below.
+    pub seed: u64,
+    /// Whether its σ̂ depends on the seed.
+    pub learns: bool,
+    /// How many draws the mean, the variance and the lookups are of.
+    pub draws: u64,
+    /// The mean.
+    pub mean: Option<f64>,
+    /// The sample variance.
+    pub variance: Option<f64>,
+    /// The kurtosis in theory.
+    pub kurtosis: Option<f64>,
+    /// Lookups of σ_t per draw; given once per experiment.
+    pub lookups: Option<f64>,
+    /// Their variance in theory.
+    pub lookups_variance: Option<f64>,
+    /// Processor seconds of all draws; given once per experiment.
+    pub seconds: Option<f64>,
+    /// How many draws took them.
+    pub drawn: u64,
+    /// ln E of each check, all seeds together.
+    pub checks: Vec<Evidence>,
+    /// The command that repeats it.
+    pub command: String,
+}
+
+/// The evidence of one check against the experiment.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Evidence {
+    /// The check with what it asked about.
+    pub check: String,
+    /// ln E.
+    pub ln_e: f64,
+}
+
+/// Why a baseline could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum BaselineError {
+    /// Not a plain word.
+    #[error("`{0}` is no name for a baseline; use letters, digits, `.`, `-` and `_`")]
+    Name(String),
+    /// There is no such file.
+    #[error("{}: no such baseline; make it with --save-baseline, or name its folder with --baselines", .0.display())]
+    Missing(PathBuf),
+    /// The system refused to read it.
+    #[error("{}: {cause}; make the file readable", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The file is not a baseline.
+    #[error("{}: not a baseline, or a broken one ({cause}); make it anew with --save-baseline", path.display())]
+    Broken {
+        /// The file.
+        path: PathBuf,
+        /// What the decoder said.
+        cause: serde_json::Error,
+    },
+    /// Another version of the form.
+    #[error(
+        "{}: a baseline of form {found}, this program reads {SCHEMA}; \
+         make it anew with --save-baseline", path.display()
+    )]
+    Schema {
+        /// The file.
+        path: PathBuf,
+        /// Its form.
+        found: u64,
+    },
+    /// The file cannot be written.
+    #[error("{}: cannot be written: {cause}; give another folder with --baselines", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        cause: io::Error,
+    },
+    /// The program cannot read itself.
+    #[error("the program cannot read its own file: {0}; make it readable")]
+    Executable(io::Error),
+}
+
+impl Baseline {
+    /// What a run found, to be stored; `cases` are those of its plan.
+    #[must_use]
+    pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
+        let results = &record.results;
+        let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);
+        let mut entries = Vec::new();
+        for (c, case) in results.cases.iter().enumerate() {
+            let digest = format!("{:016x}", digest(&case.name).unwrap_or(0));
+            for (r, row) in case.rows.iter().enumerate().filter(|(_, row)| row.drawn.is_some()) {
+                let is_first = r == 0 || case.rows[r - 1].stream != row.stream;
+                let seconds = record.timing.rows.get(c).and_then(|rows| *rows.get(r)?);
+                let seconds = seconds.filter(|_| is_first);
+                entries.push(Entry::of(case, row, results.seed, &digest, seconds, is_first));
+            }
+        }
+        Self {
+            schema: SCHEMA,
+            version: results.version.clone(),
+            executable: executable.to_owned(),
+            seeds: vec![results.seed],
+            entries,
+        }
+    }
+
+    /// The file of a baseline.
+    ///
+    /// # Errors
+    ///
+    /// The name is not a plain word.
+    pub fn path(folder: &Path, name: &str) -> Result<PathBuf, BaselineError> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || ".-_".contains(c);
+        if name.is_empty() || name.starts_with('.') || !name.chars().all(plain) {
+            return Err(BaselineError::Name(name.to_owned()));
+        }
+        Ok(folder.join(format!("{name}.json")))
+    }
+
+    /// Reads a baseline.
+    ///
+    /// # Errors
+    ///
+    /// There is none, or it is not what this program writes.
+    pub fn read(path: &Path) -> Result<Self, BaselineError> {
+        let path = path.to_owned();
+        let text = match std::fs::read(&path) {
+            Ok(text) => text,
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
+                return Err(BaselineError::Missing(path));
+            }
+            Err(cause) => return Err(BaselineError::Unreadable { path, cause }),
+        };
+        let tree: serde_json::Value = match serde_json::from_slice(&text) {
+            Ok(tree) => tree,
+            Err(cause) => return Err(BaselineError::Broken { path, cause }),
+        };
+        // The form is asked first: what else is there depends on it.
+        if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
+            && found != u64::from(SCHEMA)
+        {
+            return Err(BaselineError::Schema { path, found });
+        }
+        serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
+    }
+
+    /// Whether a file can be written, known before the drawing.
+    ///
+    /// # Errors
+    ///
+    /// Its folder cannot be made or written into.
+    pub fn writable(path: &Path) -> Result<(), BaselineError> {
+        temporary(path).map(drop).map_err(|cause| unwritable(path, cause))
+    }
+
+    /// Writes the file under a temporary name, then renames it.
+    ///
+    /// # Errors
+    ///
+    /// The system refuses.
+    pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
+        let write = || -> io::Result<()> {
+            let mut file = temporary(path)?;
+            let text = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
+            file.write_all(text.as_bytes())?;
+            file.write_all(b"\n")?;
+            file.persist(path).map(drop).map_err(|error| error.error)
+        };
+        write().map_err(|cause| unwritable(path, cause))
+    }
+}
+
+fn unwritable(path: &Path, cause: io::Error) -> BaselineError {
+    BaselineError::Unwritable { path: path.to_owned(), cause }
+}
+
+/// A temporary file beside the one that is meant; its folder is made.
+fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    let mut builder = tempfile::Builder::new();
+    // A temporary file is private to its owner unless told otherwise; baselines are for everyone.
+    #[cfg(unix)]
+    let builder = {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o644))
+    };
+    builder.prefix(".trueflight-").tempfile_in(folder)
+}
+
+/// A hash of the program that runs: FNV-1a over words of 8 bytes.
+///
+/// # Errors
+///
+/// The program's file cannot be read.
+pub fn fingerprint() -> Result<String, BaselineError> {
+    let path = std::env::current_exe().map_err(BaselineError::Executable)?;
+    let bytes = std::fs::read(path).map_err(BaselineError::Executable)?;
+    let (words, rest) = bytes.as_chunks::<8>();
+    let add = |hash: u64, word: u64| (hash ^ word).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
+    let hash =
+        words.iter().fold(0xcbf2_9ce4_8422_2325, |h, &word| add(h, u64::from_le_bytes(word)));
+    let hash = rest.iter().fold(hash, |hash, &byte| add(hash, u64::from(byte)));
+    Ok(format!("{:016x}", add(hash, bytes.len() as u64)))
+}
+
+impl Entry {
+    fn of(
+        case: &CaseRecord,
+        row: &Row,
+        seed: u64,
+        digest: &str,
+        seconds: Option<f64>,
+        is_first: bool,
+    ) -> Self {
+        let text = |x: Option<f64>| x.map_or(String::new(), |x| x.to_string());
+        let sampling = row.sampling.map_or_else(|| row.sampling_kind.clone(), |x| x.to_string());
+        let id =
+            [&case.name, &row.estimator, &sampling, &row.control, &text(row.swept), &row.channel];
+        let draws = row.draws.unwrap_or(0);
+        // Where the law of the lookups is known and has no spread, there is no deviation.
+        let spread = row.lookups_deviation.map(|deviation| deviation * deviation * draws as f64);
+        let checks = row.findings.iter().filter(|found| {
+            let is_own = is_first || !found.channel.is_empty();
+            !found.expects_bias && is_own
+        });
+        let checks = checks.filter_map(|found| {
+            let ln_e = found.gate?.ln_e;
+            let check = format!("{}: {}", found.check, found.what);
+            ln_e.is_finite().then_some(Evidence { check, ln_e })
+        });
+        Self {
+            id: id.map(String::as_str).join("|"),
+            case: digest.to_owned(),
+            seed,
+            learns: row.sampling_kind.contains("pilot"),
+            draws,
+            mean: row.mean,
+            variance: row.variance,
+            kurtosis: row.predicted_kurtosis,
+            lookups: row.lookups_per_draw.filter(|_| is_first),
+            lookups_variance: spread.or(row.predicted_lookups.map(|_| 0.0)),
+            seconds,
+            drawn: row.drawn.unwrap_or(0),
+            checks: checks.collect(),
+            command: row.command.clone(),
+        }
+    }
+}

@@ -1,0 +1,286 @@
+//! Stored runs: what is flagged against them, what is not, and what adds up over runs.
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use serde_json::Value;
+use tempfile::TempDir;
+use trueflight::estimators::{DrawBuffer, Experiment};
+use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
+use trueflight::harness::baseline::{Baseline, BaselineError};
+use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, judge, run};
+use trueflight::rng::Stream;
+
+const CASE: &str = "title = \"a case\"
+[problem.transmittance]
+medium.constant.extinction = 0.5
+span = [0, 2]
+sampling.constant.value = 1
+estimators = [{ woodcock = {} }, { ratio = {} }]
+";
+
+const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: f64::INFINITY, ln_e_limit: 8.0 };
+
+fn case() -> Case {
+    let source = Source { name: "case".into(), path: "case.toml".into(), text: CASE.into() };
+    Case::read(&source).expect("no mistakes")
+}
+
+fn options(seed: u64) -> Options {
+    Options { seed, draws: Amount::Exactly(200_000), alpha: 1e-6, ..Options::default() }
+}
+
+fn record(plan: &Plan) -> Record {
+    judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+}
+
+fn baseline(seed: u64) -> Baseline {
+    let cases = [case()];
+    Baseline::of(&record(&Plan::new(&cases, &options(seed))), &cases, "program")
+}
+
+/// Draws that are all too large by as much.
+struct Biased(Box<dyn Experiment>, f64);
+
+impl Experiment for Biased {
+    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
+        self.0.fill(rng, count, buffer);
+        buffer.values.iter_mut().flatten().for_each(|x| *x += self.1);
+    }
+}
+
+fn quantities(comparison: &Comparison) -> Vec<(Quantity, bool)> {
+    comparison.changes.iter().map(|change| (change.quantity, change.is_regression)).collect()
+}
+
+#[test]
+fn a_stored_run_comes_back() {
+    let folder = TempDir::new().expect("a folder");
+    let path = Baseline::path(&folder.path().join("new"), "main-1.0").expect("a name");
+    let run = baseline(1);
+    assert_eq!(run.entries.len(), 2);
+    assert!(run.entries[1].id.starts_with("case|ratio|1|"), "{}", run.entries[1].id);
+    run.write(&path).expect("written");
+    let read = Baseline::read(&path).expect("read");
+    let (comparison, next) = compare(&read, &run, &RULES);
+    assert_eq!(comparison.sequel, Sequel::SameSeed);
+    assert!(!comparison.fails() && comparison.changes.is_empty(), "{comparison:?}");
+    assert_eq!(comparison.compared, 4);
+    assert_eq!(next.seeds, [1]);
+    // Nothing but the baseline is left.
+    assert_eq!(std::fs::read_dir(path.parent().expect("a folder")).expect("listed").count(), 1);
+}
+
+#[test]
+fn doctored_baselines_are_flagged_and_equal_runs_are_not() {
+    let (stored, run) = (baseline(1), baseline(2));
+    let (comparison, _) = compare(&stored, &run, &RULES);
+    assert!(!comparison.fails() && comparison.changes.is_empty(), "{comparison:?}");
+    assert_eq!(comparison.sequel, Sequel::Run(2));
+
+    let mut better = stored.clone();
+    better.entries[1].variance = better.entries[1].variance.map(|v| 0.5 * v);
+    better.entries[0].lookups = better.entries[0].lookups.map(|n| 0.9 * n);
+    let (comparison, _) = compare(&better, &run, &RULES);
+    assert!(comparison.fails());
+    assert_eq!(quantities(&comparison), [(Quantity::Lookups, true), (Quantity::Variance, true)]);
+    let change = &comparison.changes[1];
+    let [low, high] = change.interval.expect("an interval");
+    assert!(low > 1.8 && low < change.ratio && change.ratio < high && high < 2.2, "{change:?}");
+    assert!(change.command.contains("--filter") && change.id.contains("ratio"));
+
+    let mut worse = stored.clone();
+    worse.entries[1].variance = worse.entries[1].variance.map(|v| 2.0 * v);
+    let (comparison, _) = compare(&worse, &run, &RULES);
+    assert!(!comparison.fails());
+    assert_eq!(quantities(&comparison), [(Quantity::Variance, false)]);
+}
+
+#[test]
+fn a_time_fails_beyond_its_tolerance_only() {
+    let (mut stored, mut run) = (baseline(1), baseline(1));
+    for (before, now, expected) in
+        [(1.0, 1.2, None), (1.0, 1.3, Some(true)), (1.3, 1.0, Some(false))]
+    {
+        stored.entries[0].seconds = Some(before);
+        run.entries[0].seconds = Some(now);
+        run.entries[0].drawn = stored.entries[0].drawn;
+        let rules = Rules { time_tolerance: 0.25, ..RULES };
+        let (comparison, _) = compare(&stored, &run, &rules);
+        let times = comparison.changes.iter().filter(|change| change.quantity == Quantity::Time);
+        let of_first = times.filter(|change| change.id == run.entries[0].id);
+        let found: Vec<bool> = of_first.map(|change| change.is_regression).collect();
+        assert_eq!(found, expected.into_iter().collect::<Vec<_>>(), "{before} {now}");
+    }
+}
+
+#[test]
+fn what_only_one_side_has_is_listed() {
+    let (stored, mut run) = (baseline(1), baseline(2));
+    run.entries[0].id = "case|new".into();
+    run.entries[1].case = "another text".into();
+    let (comparison, next) = compare(&stored, &run, &RULES);
+    assert_eq!(comparison.added, ["case|new"]);
+    assert_eq!(comparison.missing, [stored.entries[0].id.clone()]);
+    assert_eq!(comparison.rewritten, [stored.entries[1].id.clone()]);
+    assert_eq!(comparison.compared, 0);
+    assert_eq!(next.entries, run.entries);
+}
+
+#[test]
+fn a_small_bias_adds_up_over_runs() {
+    let cases = [case()];
+    let mut failed_after = None;
+    let mut stored: Option<Baseline> = None;
+    let mut limit = 0.0;
+    for seed in 1..=12 {
+        let mut plan = Plan::new(&cases, &Options { fixed: true, ..options(seed) });
+        // Three quarters of what a pass excludes.
+        let planned = &mut plan.cases[0].experiments[1];
+        let (_, scalar) = planned.scalars().next().expect("the mean");
+        let bias = 0.75 * scalar.design.tolerance * (-1f64).exp();
+        if let Ok(ready) = planned.outcome.as_mut() {
+            let honest = std::mem::replace(&mut ready.experiment, Box::new(Nothing));
+            ready.experiment = Box::new(Biased(honest, bias));
+        }
+        limit = plan.levels.ln_fail;
+        let found = record(&plan);
+        let mean = found.results.cases[0].rows[1].findings[0].gate.expect("a scalar");
+        assert!(mean.ln_e < limit, "seed {seed}: one run is enough, {} {limit}", mean.ln_e);
+        let run = Baseline::of(&found, &cases, "program");
+        let Some(before) = stored.take() else {
+            stored = Some(run);
+            continue;
+        };
+        let rules = Rules { ln_e_limit: limit, ..RULES };
+        let (comparison, next) = compare(&before, &run, &rules);
+        assert_eq!(next.seeds.len() as u64, seed);
+        if !comparison.drifts.is_empty() {
+            let drift = &comparison.drifts[0];
+            assert!(drift.id.contains("ratio") && drift.check.contains("mean"), "{drift:?}");
+            assert!(comparison.fails() && drift.ln_e >= limit);
+            failed_after = Some(seed);
+            break;
+        }
+        stored = Some(next);
+    }
+    assert!(failed_after.is_some_and(|runs| runs > 1), "{failed_after:?} {stored:?} {limit}");
+}
+
+/// Stands in for an experiment while that is wrapped.
+struct Nothing;
+
+impl Experiment for Nothing {
+    fn fill(&self, _: &mut Stream, _: usize, _: &mut DrawBuffer) {}
+}
+
+#[test]
+fn another_program_and_the_same_seed_multiply_nothing() {
+    let (stored, mut run) = (baseline(1), baseline(2));
+    run.executable = "another".into();
+    let (comparison, next) = compare(&stored, &run, &RULES);
+    assert_eq!(comparison.sequel, Sequel::OtherProgram);
+    assert_eq!(next, run);
+    let mut twice = stored.clone();
+    twice.seeds.push(2);
+    run.executable.clone_from(&stored.executable);
+    let (comparison, next) = compare(&twice, &run, &RULES);
+    assert_eq!(comparison.sequel, Sequel::SameSeed);
+    assert_eq!(next.seeds, [1, 2]);
+    assert_eq!(next.entries[0].checks, stored.entries[0].checks);
+}
+
+#[test]
+fn what_is_no_baseline_is_an_error_with_its_cure() {
+    let folder = TempDir::new().expect("a folder");
+    let path = folder.path().join("x.json");
+    let read = || Baseline::read(&path).expect_err("an error");
+    assert!(matches!(read(), BaselineError::Missing(_)));
+    for text in ["", "no json", "{}", "[]", "{\"schema\": 1, \"seeds\": [1]}"] {
+        std::fs::write(&path, text).expect("written");
+        assert!(matches!(read(), BaselineError::Broken { .. }), "{text}");
+    }
+    let whole = serde_json::to_string(&baseline(1)).expect("JSON");
+    std::fs::write(&path, &whole[..whole.len() / 2]).expect("written");
+    assert!(matches!(read(), BaselineError::Broken { .. }));
+    std::fs::write(&path, whole.replace("\"schema\":1", "\"schema\":9")).expect("written");
+    assert!(matches!(read(), BaselineError::Schema { found: 9, .. }));
+    assert!(read().to_string().contains("--save-baseline"));
+    for name in ["", "a/b", "..", ".x", "a b"] {
+        assert!(
+            matches!(Baseline::path(folder.path(), name), Err(BaselineError::Name(_))),
+            "{name}"
+        );
+    }
+}
+
+/// A folder in which the command runs.
+fn command(folder: &Path, arguments: &str) -> Output {
+    let mut command = Command::cargo_bin("trueflight").expect("the binary");
+    command.current_dir(folder).env("COLUMNS", "400");
+    let usual = "run case.toml --draws 400000 --alpha 1e-6 --time-tolerance inf";
+    command.args(usual.split(' ')).args(arguments.split_whitespace()).output().expect("it runs")
+}
+
+fn said(output: &Output, code: i32) -> String {
+    let text = [output.stdout.clone(), output.stderr.clone()].concat();
+    let text = String::from_utf8(text).expect("text");
+    assert_eq!(output.status.code(), Some(code), "{text}");
+    text
+}
+
+#[test]
+fn the_command_stores_compares_and_accumulates() {
+    let folder = TempDir::new().expect("a folder");
+    let place = folder.path();
+    std::fs::write(place.join("case.toml"), CASE).expect("a case");
+    let file = place.join("baselines/main.json");
+    let text = said(&command(place, "--save-baseline main"), 0);
+    assert!(text.contains("baseline main stored"), "{text}");
+    let text = said(&command(place, "--baseline main"), 0);
+    assert!(text.contains("this seed already") && text.contains("no change"), "{text}");
+    let text = said(&command(place, "--baseline main --save-baseline main --seed 2"), 0);
+    assert!(text.contains("e-values multiplied"), "{text}");
+    let read = || -> Value {
+        serde_json::from_slice(&std::fs::read(&file).expect("a file")).expect("JSON")
+    };
+    let mut tree = read();
+    assert_eq!(tree["seeds"], serde_json::json!([1, 2]));
+    let variance = tree["entries"][1]["variance"].as_f64().expect("a number");
+    tree["entries"][1]["variance"] = (0.5 * variance).into();
+    std::fs::write(&file, tree.to_string()).expect("written");
+    let both = "--baseline main --save-baseline main --seed 3";
+    let text = said(&command(place, both), 1);
+    assert!(text.contains("REGRESSION") && text.contains("not stored"), "{text}");
+    assert_eq!(read(), tree, "what became worse is not stored");
+    let text = said(&command(place, "--baseline main --quiet"), 1);
+    assert!(text.starts_with("error: worse than the baseline"), "{text}");
+}
+
+#[test]
+fn a_bad_baseline_is_known_before_the_drawing() {
+    let folder = TempDir::new().expect("a folder");
+    let place = folder.path();
+    std::fs::write(place.join("case.toml"), CASE).expect("a case");
+    std::fs::write(place.join("bad.json"), "{").expect("a file");
+    for (arguments, cure) in [
+        ("--baseline nowhere", "--save-baseline"),
+        ("--baselines . --baseline bad", "--save-baseline"),
+        ("--baseline a/b", "letters"),
+        ("--baselines case.toml --save-baseline x", "--baselines"),
+    ] {
+        let begin = std::time::Instant::now();
+        let mut command = Command::cargo_bin("trueflight").expect("the binary");
+        let drawing = "run case.toml --draws 1000000000";
+        let output = command
+            .current_dir(place)
+            .args(drawing.split(' '))
+            .args(arguments.split(' '))
+            .output()
+            .expect("it runs");
+        let text = said(&output, 2);
+        assert!(text.contains(cure), "{text}");
+        assert!(begin.elapsed().as_secs() < 20, "it drew first");
+    }
+}
