@@ -182,6 +182,7 @@ fn record() -> Record {
             cases: vec![case, empty],
         },
         timing: Timing { threads: 2, seconds: 1234.5, rows: vec![times] },
+        comparison: None,
     }
 }
 

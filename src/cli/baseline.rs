@@ -1,15 +1,11 @@
 //! Options of commands that draw: store a run, compare with a stored one.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
-use trueflight::harness::baseline::compare::{Rules, compare};
+use trueflight::harness::baseline::compare::{Comparison, Rules, compare};
 use trueflight::harness::baseline::{Baseline, fingerprint};
 use trueflight::harness::{Case, Record};
-use trueflight::report::console::baseline::section;
-
-use super::output;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]
@@ -58,37 +54,35 @@ impl BaselineArguments {
 }
 
 impl Baselines {
-    /// Compares and stores; answers what to print, and whether something became worse. What became
-    /// worse is not stored.
-    pub fn close(&self, record: &Record, cases: &[Case]) -> anyhow::Result<(String, bool)> {
-        let mut text = String::new();
+    /// Compares a run with the stored one, if there is one; answers what to store.
+    pub fn compare(&self, mut record: Record, cases: &[Case]) -> (Record, Option<Baseline>) {
         if self.stored.is_none() && self.save.is_none() {
-            return Ok((text, false));
+            return (record, None);
         }
-        let mut run = Baseline::of(record, cases, &self.executable);
-        let mut fails = false;
+        let mut run = Baseline::of(&record, cases, &self.executable);
         if let Some((name, stored)) = &self.stored {
             let rules = Rules {
                 alpha: record.results.alpha,
                 time_tolerance: self.time_tolerance,
                 ln_e_limit: record.results.gate.ln_e_limit,
             };
-            let (comparison, next) = compare(stored, &run, &rules);
-            fails = comparison.fails();
-            text += &section(&comparison, name, &rules, output::width());
+            let (comparison, next) = compare(name, stored, &run, &rules);
+            record.comparison = Some(comparison);
             if self.save.as_ref().is_some_and(|(save, _)| save == name) {
                 run = next;
             }
         }
-        if let Some((name, path)) = &self.save {
-            if fails {
-                let _ = writeln!(text, "baseline {name} not stored: something became worse");
-            } else {
-                run.write(path)?;
-                let _ = writeln!(text, "baseline {name} stored in {}", path.display());
-            }
+        (record, Some(run))
+    }
+
+    /// Stores a run where that is wished; what became worse is not stored. Answers what to print.
+    pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
+        let (Some((name, path)), Some(run)) = (&self.save, run) else { return Ok(String::new()) };
+        if record.comparison.as_ref().is_some_and(Comparison::fails) {
+            return Ok(format!("baseline {name} not stored: something became worse\n"));
         }
-        Ok((text, fails))
+        run.write(path)?;
+        Ok(format!("baseline {name} stored in {}\n", path.display()))
     }
 }
 

@@ -12,6 +12,7 @@ use clap::Args;
 use trueflight::harness::{Amount, Options, Record};
 use trueflight::report::{self, Report, annotations, console, junit, markdown, record_json};
 
+use super::baseline::BaselineArguments;
 use super::drawing::{self, Budget};
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
@@ -49,6 +50,8 @@ pub struct Arguments {
     /// Let every underpowered check make its experiment inconclusive
     #[arg(long)]
     strict: bool,
+    #[command(flatten)]
+    baseline: BaselineArguments,
     /// Print every row, not only those that do not pass
     #[arg(long, short)]
     verbose: bool,
@@ -71,12 +74,19 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         ..selection.options(DRAWS)?
     };
     arguments.writable()?;
+    let baselines = arguments.baseline.open()?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         Ok(drawing::draw(&plan, console))
     })?;
-    let written = arguments.write(&record);
+    let (record, run) = baselines.compare(record, &cases);
+    let mut written = arguments.write(&record);
     arguments.print(&record, console)?;
+    match baselines.store(&record, run.as_ref()) {
+        Ok(stored) if !console.quiet => output::print(&stored)?,
+        Ok(_) => {}
+        Err(error) => written.push(error),
+    }
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         output::print(&annotations::text(&record))?;
         summarise(&record);

@@ -7,8 +7,8 @@
 //! | 2 | usage, a bad case file, input or output |
 //! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
-mod check;
 mod baseline;
+mod check;
 mod completions;
 mod drawing;
 mod explain;

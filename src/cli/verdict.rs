@@ -1,6 +1,7 @@
 //! From verdicts to an exit code.
 
 use clap::ValueEnum;
+use trueflight::harness::baseline::compare::Comparison;
 use trueflight::harness::record::{Record, Verdict};
 use trueflight::report::junit;
 
@@ -26,11 +27,12 @@ impl Inconclusive {
     }
 }
 
-/// Fail before refused cases before inconclusive before pass.
+/// Fail, or worse than a stored run, before refused cases before inconclusive before pass.
 pub fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
     let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
     let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
-    if any(Verdict::Fail) {
+    let is_worse = record.comparison.as_ref().is_some_and(Comparison::fails);
+    if is_worse || any(Verdict::Fail) {
         return 1;
     }
     let refused = record

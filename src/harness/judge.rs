@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::plan::{MISS, Options, Plan, Planned, PlannedCase};
+use super::options::Options;
+use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
     Anatomy, CaseRecord, Finding, Gate, MeasuredPoint, Record, Results, Row, SCHEMA, Timing,
     Verdict,
@@ -134,7 +135,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         cut_by_budget: false,
         cases,
     };
-    Record { results, timing }
+    Record { results, timing, comparison: None }
 }
 
 /// A longer list of probabilities is left out of the record.

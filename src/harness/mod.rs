@@ -14,6 +14,7 @@ pub mod findings;
 pub mod foreign;
 pub mod judge;
 pub mod mutation;
+pub mod options;
 pub mod plan;
 pub mod record;
 pub mod run;
@@ -27,6 +28,7 @@ mod written;
 
 pub use case::Case;
 pub use filter::Filter;
-pub use plan::{Amount, Options, Plan};
+pub use options::{Amount, Options};
+pub use plan::Plan;
 pub use record::Record;
 pub use source::{CaseError, Source};

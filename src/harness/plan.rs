@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::case::Case;
 use super::checks::{self, Kind, Question, Scalar, Subject};
-use super::filter::Filter;
+use super::options::Options;
 use super::scenario::{Names, Prepared, Ready, Variation};
 use crate::estimators::{DrawBuffer, Refusal};
 use crate::rng::{Address, PILOT, Stream, name_hash};
@@ -24,70 +24,8 @@ pub const BLOCK: u64 = 1 << 14;
 const LAW_SHARE: f64 = 0.2;
 /// β, the chance that a check passes although the bias is as large as its tolerance.
 pub const MISS: f64 = 0.01;
-/// Draws per experiment where neither the options nor the case say.
-pub const DRAWS: u64 = 4_000_000;
 /// Draws that estimate the variance of a forced experiment, for which theory has none.
 const PILOT_DRAWS: usize = 4096;
-
-/// What a run is asked to do.
-#[derive(Debug, Clone)]
-pub struct Options {
-    /// The seed of all random numbers.
-    pub seed: u64,
-    /// How many draws.
-    pub draws: Amount,
-    /// The chance that a correct run shows any failure.
-    pub alpha: f64,
-    /// Stop drawing after this many seconds.
-    pub seconds: Option<f64>,
-    /// Stop drawing after this many draws of all experiments together.
-    pub budget: Option<u64>,
-    /// Draw exactly what is planned: the gate stops nothing.
-    pub fixed: bool,
-    /// Whether each check that is underpowered makes its experiment inconclusive.
-    pub strict: bool,
-    /// Stop an experiment as soon as the check of this name has failed.
-    pub until_failed: Option<String>,
-    /// Only these experiments.
-    pub filter: Option<Filter>,
-}
-
-/// How many draws an experiment makes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Amount {
-    /// So many, whatever the cases say.
-    Exactly(u64),
-    /// What the case says; without a word of it, [`DRAWS`].
-    Case,
-    /// The same, but at most so many.
-    AtMost(u64),
-}
-
-impl Amount {
-    fn of(self, case: Option<u64>) -> u64 {
-        match self {
-            Self::Exactly(draws) => draws,
-            Self::Case => case.unwrap_or(DRAWS),
-            Self::AtMost(most) => case.unwrap_or(most).min(most),
-        }
-    }
-}
-
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            seed: 1,
-            draws: Amount::Case,
-            alpha: 1e-3,
-            seconds: None,
-            budget: None,
-            fixed: false,
-            strict: false,
-            until_failed: None,
-            filter: None,
-        }
-    }
-}
 
 /// The levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,10 +1,12 @@
 //! What a run found: all that a report may know.
 //!
-//! A record has two parts. `results` is the same to the bit for any number of threads on any
-//! machine; `timing` is not, and is kept apart. Unknown is `None`, never zero. JSON writes infinite
+//! A record has three parts. `results` is the same to the bit for any number of threads on any
+//! machine; `timing` and the `comparison` with a stored run are not, and are kept apart. Unknown is `None`, never zero. JSON writes infinite
 //! numbers as `null`: those of [`GateFinding`] may be.
 
 use serde::Serialize;
+
+use super::baseline::compare::Comparison;
 
 /// The version of the record's form: it grows when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
@@ -16,6 +18,8 @@ pub struct Record {
     pub results: Results,
     /// How long it took, and where.
     pub timing: Timing,
+    /// What changed since a stored run, where it was compared with one.
+    pub comparison: Option<Comparison>,
 }
 
 /// The part of a record that depends on nothing but the cases, the seed and the options.

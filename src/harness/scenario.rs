@@ -310,15 +310,7 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
                     return Err(refusal);
                 }
                 // Forced: the formulas do not hold here, only the truth does.
-                let mut prediction = entry.predict(&setup);
-                for channel in &mut prediction.channels {
-                    channel.moments = None;
-                }
-                prediction.lookups = None;
-                prediction.random_numbers = None;
-                prediction.increments.clear();
-                prediction.law = None;
-                prediction.covariances.clear();
+                let prediction = entry.predict(&setup).only_the_truth();
                 return Ok(Ready { experiment: entry.experiment(setup), prediction });
             }
             let prediction = entry.predict(&setup);

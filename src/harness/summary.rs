@@ -30,7 +30,9 @@ pub fn complete(results: &mut Results) {
 
 fn close(gate: &mut Gate, cases: &[CaseRecord]) {
     let means = || cases.iter().flat_map(|case| &case.rows).flat_map(|row| &row.findings);
-    let passed = |finding: &&Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
+    let passed = |finding: &&Finding| {
+        finding.check == "mean" && finding.verdict == Verdict::Pass && !finding.expects_bias
+    };
     gate.variance_assumed = means().filter(passed).filter(|f| f.reason == ASSUMED).count();
     let biases = means().filter(passed).filter_map(|finding| Some(finding.gate?.tolerance));
     gate.worst_bias = biases.reduce(f64::max);

@@ -6,7 +6,9 @@
 
 use std::fmt::Write;
 
+use crate::harness::baseline::compare::Comparison;
 use crate::harness::record::{Record, Verdict};
+use crate::report::changes;
 use crate::report::troubles::{Trouble, troubles};
 
 /// How many of a kind GitHub shows.
@@ -15,27 +17,42 @@ const MOST: usize = 10;
 /// The commands, one to a line; empty where all is well.
 #[must_use]
 pub fn text(record: &Record) -> String {
-    let mut text = String::new();
-    for (verdict, command) in [(Verdict::Fail, "error"), (Verdict::Inconclusive, "warning")] {
-        let troubles = troubles(record, verdict);
-        let shown = if troubles.len() > MOST { MOST - 1 } else { troubles.len() };
-        for trouble in &troubles[..shown] {
-            let _ = writeln!(text, "{}", annotation(command, verdict, trouble));
-        }
-        let left = troubles.len() - shown;
-        if left > 0 {
-            let word = verdict.word();
-            let _ = writeln!(
-                text,
-                "::{command} title=trueflight {word}::and {left} more; the summary of the job and \
-                 the reports have them all"
-            );
-        }
-    }
-    text
+    let of = |verdict| troubles(record, verdict).into_iter().map(move |t| of_trouble(verdict, &t));
+    let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));
+    let lines = at_most("error", errors.collect()).into_iter();
+    let lines = lines.chain(at_most("warning", of(Verdict::Inconclusive).collect()));
+    lines.fold(String::new(), |text, line| text + &line + "\n")
 }
 
-fn annotation(command: &str, verdict: Verdict, trouble: &Trouble) -> String {
+/// The commands that GitHub shows of one kind.
+fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
+    let all = annotations.len();
+    let shown = if all > MOST { MOST - 1 } else { all };
+    let mut lines: Vec<String> =
+        annotations.into_iter().take(shown).map(|said| format!("::{command} {said}")).collect();
+    if shown < all {
+        lines.push(format!(
+            "::{command} title=trueflight::and {} more; the summary of the job and the reports \
+             have them all",
+            all - shown
+        ));
+    }
+    lines
+}
+
+/// What became worse than in a stored run.
+fn of_changes(comparison: &Comparison) -> Vec<String> {
+    let title = property(&format!("worse than baseline {}", comparison.name));
+    let worse = changes::all(comparison).into_iter().filter(|change| change.is_worse);
+    worse
+        .map(|change| {
+            let said = format!("{}\nrepeat: {}", change.line(), change.command);
+            format!("title={title}::{}", message(&said))
+        })
+        .collect()
+}
+
+fn of_trouble(verdict: Verdict, trouble: &Trouble) -> String {
     let (case, row) = (trouble.case, trouble.row);
     let title = format!("{} {}: {}", verdict.word(), case.name, trouble.experiment());
     let mut properties = format!("title={}", property(&title));
@@ -50,7 +67,7 @@ fn annotation(command: &str, verdict: Verdict, trouble: &Trouble) -> String {
     if !row.command.is_empty() {
         said = format!("{said}\nrepeat: {}", row.command);
     }
-    format!("::{command} {properties}::{}", message(&said))
+    format!("{properties}::{}", message(&said))
 }
 
 fn message(text: &str) -> String {

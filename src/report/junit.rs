@@ -10,8 +10,10 @@ use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
+use crate::harness::baseline::compare::Comparison;
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
+use crate::report::changes;
 use crate::report::number::exact;
 use crate::report::troubles::{self, Trouble};
 
@@ -38,6 +40,9 @@ pub fn text(record: &Record, inconclusive: Inconclusive) -> Result<String, Repor
     for (i, case) in record.results.cases.iter().enumerate() {
         let seconds = record.timing.rows.get(i).map_or(&[][..], Vec::as_slice);
         report.add_test_suite(suite(record, case, seconds, inconclusive));
+    }
+    if let Some(comparison) = &record.comparison {
+        report.add_test_suite(changed(comparison));
     }
     // The schema has no count of skipped tests at the root; the suites have theirs.
     let skipped = format!(" skipped=\"{}\"", report.skipped);
@@ -73,6 +78,22 @@ fn suite(
         suite.add_test_case(test);
     }
     suite.set_time(whole);
+    suite
+}
+
+/// A suite for what changed since a stored run: a test for each change, or one that nothing did.
+fn changed(comparison: &Comparison) -> TestSuite {
+    let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
+    let all = changes::all(comparison);
+    if !all.iter().any(|change| change.is_worse) {
+        suite.add_test_case(TestCase::new("nothing became worse", TestCaseStatus::success()));
+    }
+    for change in all.iter().filter(|change| change.is_worse) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        status.set_type("regression").set_message(&*change.what);
+        status.set_description(format!("{}\nrepeat: {}\n", change.line(), change.command));
+        suite.add_test_case(TestCase::new(change.experiment, status));
+    }
     suite
 }
 

@@ -3,7 +3,9 @@
 
 use std::fmt::Write;
 
+use crate::harness::baseline::compare::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
+use crate::report::changes;
 use crate::report::number::range;
 use crate::report::totals;
 use crate::report::troubles::{Trouble, troubles};
@@ -23,6 +25,9 @@ pub fn text(record: &Record) -> String {
     let _ = writeln!(text, "{counts}\n");
     for (verdict, title) in [(Verdict::Fail, "Failing"), (Verdict::Inconclusive, "Inconclusive")] {
         section(&mut text, title, &troubles(record, verdict));
+    }
+    if let Some(comparison) = &record.comparison {
+        changed(&mut text, comparison);
     }
     cases(&mut text, &record.results.cases);
     if !record.results.gate.triage.is_empty() {
@@ -68,6 +73,22 @@ fn section(text: &mut String, title: &str, troubles: &[Trouble]) {
         let _ = writeln!(text, "\nTo repeat:\n\n```sh\n{}\n```", commands.join("\n"));
     }
     text.push('\n');
+}
+
+/// What changed since a stored run.
+fn changed(text: &mut String, comparison: &Comparison) {
+    let _ = writeln!(text, "### Since baseline {}\n", inert(&comparison.name));
+    let all = changes::all(comparison);
+    for change in all.iter().take(MOST) {
+        let word = if change.is_worse { "**regression**" } else { "improvement" };
+        let _ = writeln!(text, "- {word} {}", inert(&change.line()));
+    }
+    more(text, all.len());
+    if !all.is_empty() {
+        text.push('\n');
+    }
+    let remarks: Vec<String> = changes::remarks(comparison).iter().map(|r| inert(r)).collect();
+    let _ = writeln!(text, "{}\n", remarks.join(" · "));
 }
 
 fn more(text: &mut String, all: usize) {

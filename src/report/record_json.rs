@@ -1,13 +1,14 @@
 //! `record.json`: the whole record, for machines.
 //!
 //! One object: `schema` (the version of the form), `results` (the same for any number of threads on
-//! any machine) and `timing`. JSON has no infinite numbers: where one stands in the record, as in a
+//! any machine), `timing`, and the `comparison` with a stored run or `null`. JSON has no infinite numbers: where one stands in the record, as in a
 //! variance without bound or in evidence beyond measure, the file has `null`, as for what is unknown.
 
 use std::path::PathBuf;
 
 use serde::Serialize;
 
+use crate::harness::baseline::compare::Comparison;
 use crate::harness::record::{Record, Results, Timing};
 use crate::report::{Artifact, Report, ReportError};
 
@@ -26,6 +27,7 @@ struct Document<'a> {
     schema: u32,
     results: &'a Results,
     timing: &'a Timing,
+    comparison: Option<&'a Comparison>,
 }
 
 /// The record as JSON.
@@ -34,7 +36,8 @@ struct Document<'a> {
 ///
 /// Where the encoder gives up.
 pub fn text(record: &Record) -> Result<String, ReportError> {
-    let Record { results, timing } = record;
-    let document = Document { schema: results.schema, results, timing };
+    let Record { results, timing, comparison } = record;
+    let comparison = comparison.as_ref();
+    let document = Document { schema: results.schema, results, timing, comparison };
     Ok(serde_json::to_string(&document)? + "\n")
 }

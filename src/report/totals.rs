@@ -52,12 +52,8 @@ pub fn control(record: &Record) -> Vec<String> {
         facts.push(format!("{scalars} scalars and {laws} laws share α = {alpha}, β = {beta}"));
     }
     if let Some(margin) = gate.smallest_margin {
-        let limit = short(gate.ln_e_limit, 3);
-        facts.push(if margin > 0.0 {
-            format!("the largest ln E is {} below its limit {limit}", short(margin, 3))
-        } else {
-            format!("the largest ln E is {} above its limit {limit}", short(-margin, 3))
-        });
+        let (largest, limit) = (short(gate.ln_e_limit - margin, 3), short(gate.ln_e_limit, 3));
+        facts.push(format!("largest ln E {largest} of {limit}"));
     }
     if let Some(ln_e) = gate.ln_mean_e {
         facts.push(format!("ln of the mean e-value {}", short(ln_e, 3)));

@@ -142,6 +142,24 @@ pub enum Law {
 }
 
 impl Prediction {
+    /// The truth alone, as for an estimator outside its domain.
+    #[must_use]
+    pub fn only_the_truth(self) -> Self {
+        let mut channels = self.channels;
+        for channel in &mut channels {
+            channel.moments = None;
+        }
+        Self {
+            channels,
+            lookups: None,
+            random_numbers: None,
+            law: None,
+            covariances: Vec::new(),
+            increments: Vec::new(),
+            stable_share: self.stable_share,
+        }
+    }
+
     /// An experiment with one unbiased channel.
     #[must_use]
     pub fn single(channel: Channel, lookups: CountLaw) -> Self {

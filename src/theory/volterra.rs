@@ -72,10 +72,13 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
     let tails = Tails { rare_event_size: kurtosis, eighth_moment_ratio: m8 / (m4 * m4) };
     let mut channel = Channel::transmittance(depth, 0.0, moments, tails);
-    if error.is_nan() || error > WORST {
+    let flown = sampling * mesh.support().length();
+    if flown == 0.0 {
+        // Nowhere to collide: every draw is the closed form.
+        channel.moments = Some(Moments::certain(moments.scale));
+    } else if error.is_nan() || error > WORST {
         channel.moments = None;
     }
-    let flown = sampling * mesh.support().length();
     let random_numbers = Some(flown + 1.0);
     Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }

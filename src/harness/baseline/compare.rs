@@ -19,6 +19,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use serde::Serialize;
+
 use super::{Baseline, Entry, Evidence};
 use crate::stats::normal;
 
@@ -30,7 +32,7 @@ const BLUNT: f64 = 0.1;
 const ROUNDING: f64 = 1e-9;
 
 /// What the comparison is to say at which level.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Rules {
     /// The chance that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
@@ -41,8 +43,12 @@ pub struct Rules {
 }
 
 /// What changed.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
+    /// What the stored run is called.
+    pub name: String,
+    /// The levels.
+    pub rules: Rules,
     /// Whether e-values were multiplied, and why not.
     pub sequel: Sequel,
     /// How many variances and lookups were compared: α is shared among them.
@@ -62,7 +68,8 @@ pub struct Comparison {
 }
 
 /// Whether the e-values of both runs multiply.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sequel {
     /// They do: so many runs together.
     Run(usize),
@@ -73,7 +80,8 @@ pub enum Sequel {
 }
 
 /// What is compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// The sample variance of one draw.
     Variance,
@@ -84,7 +92,7 @@ pub enum Quantity {
 }
 
 /// A quantity that differs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Change {
     /// The experiment.
     pub id: String,
@@ -105,7 +113,7 @@ pub struct Change {
 }
 
 /// A check that fails over several runs.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Drift {
     /// The experiment.
     pub id: String,
@@ -150,11 +158,18 @@ impl Comparison {
 /// Compares a run with a stored one; answers also what to store next: the run, with the e-values of
 /// both where they multiply.
 #[must_use]
-pub fn compare(stored: &Baseline, run: &Baseline, rules: &Rules) -> (Comparison, Baseline) {
+pub fn compare(
+    name: &str,
+    stored: &Baseline,
+    run: &Baseline,
+    rules: &Rules,
+) -> (Comparison, Baseline) {
     let before: BTreeMap<&str, &Entry> =
         stored.entries.iter().map(|entry| (entry.id.as_str(), entry)).collect();
     let ids: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
     let mut comparison = Comparison {
+        name: name.to_owned(),
+        rules: *rules,
         sequel: sequel(stored, run),
         compared: 0,
         blunt: 0,

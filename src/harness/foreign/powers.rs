@@ -4,6 +4,8 @@ use crate::numeric::sum::Sum;
 
 /// Independent partial sums, so that additions need not wait for each other.
 const LANES: usize = 8;
+/// Below this share of `E[y²]` the difference `E[y²] − E[y]²` is rounding.
+const RESOLUTION: f64 = 1e-13;
 
 /// Sums of y, y², y³ and y⁴; the blocks of the first are summed in lanes, in a fixed order.
 #[derive(Debug, Clone, Copy, Default)]
@@ -57,8 +59,18 @@ impl Powers {
         let [m, m2, m3, m4] = [1, 2, 3, 4].map(|k| self.raw(k));
         let variance = m2 - m * m;
         let fourth = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m * m * m * m;
-        // A spread of rounding is none.
-        if variance > 1e-24 * m2 { fourth / (variance * variance) } else { f64::INFINITY }
+        // A spread that the subtraction cannot tell from rounding is none.
+        if variance > RESOLUTION * m2 { fourth / (variance * variance) } else { f64::INFINITY }
+    }
+
+    /// The relative standard error of the mean of y²; infinite where all y are 0.
+    pub(super) fn square_error(&self) -> f64 {
+        let (square, fourth) = (self.raw(2), self.raw(4));
+        if square > 0.0 {
+            ((fourth / (square * square) - 1.0).max(0.0) / self.draws as f64).sqrt()
+        } else {
+            f64::INFINITY
+        }
     }
 
     /// An upper estimate of `E[y²]`: the mean of y² and three of its standard errors.
@@ -98,5 +110,7 @@ mod tests {
         let mut powers = Powers::default();
         powers.absorb(&[0.1; 1000]);
         assert!(powers.kurtosis().is_infinite());
+        assert!(powers.square_error() < 1e-8);
+        assert!((powers.upper_square() / 0.01 - 1.0).abs() < 1e-8);
     }
 }

@@ -3,7 +3,7 @@
 //! ```text
 //! known      V_b = V
 //! estimated  V_b = ȳ² + 3 standard errors of it, over the draws before block b
-//!            judged from the first block on before which √((κ − 1)/n) ≤ 0.1, κ the sample kurtosis
+//!            judged from the first block on before which that error is 10 % or less
 //! ```
 //!
 //! Each block is judged with a `V_b` that was fixed before its first draw, so that the gains of the
@@ -115,7 +115,7 @@ impl Scalar {
     /// Whether the next block can be judged; fixes V for it where that is estimated.
     fn prepare(&mut self) -> Option<Design> {
         if let Some(past) = &self.past {
-            let error = ((past.kurtosis() - 1.0).max(0.0) / past.draws() as f64).sqrt();
+            let error = past.square_error();
             let variance = past.upper_square();
             if self.design.is_none() {
                 if past.draws() < BLOCK || !(error <= RELIABLE && variance.is_finite()) {

@@ -16,7 +16,8 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use crate::harness::checks::{self, Kind};
-use crate::harness::plan::{MISS, Options, Plan};
+use crate::harness::options::Options;
+use crate::harness::plan::{MISS, Plan};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, findings, run, suite};
 use crate::stats::{anderson_darling, binomial};
@@ -138,7 +139,9 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
         })
         .collect();
     let mut total = Counts::default();
-    counted.into_iter().for_each(|counts| total.merge(counts));
+    for counts in counted {
+        total.merge(counts);
+    }
     Ok(total.close(levels.scalars, levels.laws))
 }
 
@@ -159,7 +162,9 @@ fn shift(plan: &mut Plan, sign: f64) {
             let honest = std::mem::replace(&mut scalar.observe, Box::new(|_, _| {}));
             scalar.observe = Box::new(move |draws, y| {
                 honest(draws, y);
-                y.iter_mut().for_each(|y| *y += bias);
+                for y in y {
+                    *y += bias;
+                }
             });
         }
     }

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 
 use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::mutation::{self, Walk};
-use crate::harness::plan::{BLOCK, Levels, Options, Plan, Planned};
+use crate::harness::options::Options;
+use crate::harness::plan::{BLOCK, Levels, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, findings, run, suite};
 use crate::mutants::{self, About, StreamMutant, Target, streams};

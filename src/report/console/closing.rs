@@ -5,7 +5,9 @@ use std::fmt::Write;
 
 use super::layout::{self, Column, Field, Grid, Paint, Pen, wrapped};
 use super::{View, views};
+use crate::harness::baseline::compare::Comparison;
 use crate::harness::record::{Record, Verdict};
+use crate::report::changes;
 use crate::report::number::{range, short};
 use crate::report::totals;
 use crate::report::troubles::troubles;
@@ -28,6 +30,30 @@ pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
     }
     for line in wrapped(&facts.join(" · "), pen.width) {
         let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
+    }
+    if let Some(comparison) = &record.comparison {
+        changed(text, pen, comparison);
+    }
+}
+
+/// What changed since a stored run: only what did.
+fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
+    text.push('\n');
+    for change in changes::all(comparison) {
+        let (word, paint) = if change.is_worse {
+            ("REGRESSION", Paint::Red)
+        } else {
+            ("improvement", Paint::Green)
+        };
+        indented(text, pen, &format!("{word} {}", change.line()), Some((word, paint)));
+        if change.is_worse {
+            let _ = writeln!(text, "    repeat: {}", change.command);
+        }
+    }
+    for remark in changes::remarks(comparison) {
+        for line in wrapped(&remark, pen.width) {
+            let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
+        }
     }
 }
 
