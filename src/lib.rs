@@ -10,9 +10,9 @@
 //!
 //! ```text
 //! 7  cli            arguments, exit codes, progress, the only prints (in the binary)
-//! 6  report         record → artifacts: csv, svg, png, console
+//! 6  report         record → artifacts: csv, json, svg, png, console, junit, markdown
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
-//! 4  estimators     draws, one page each
+//! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
 //! 2  problems       what is sought; each integral knows its truth
 //! 1  media   stats  neighbours that have never met

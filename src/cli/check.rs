@@ -4,7 +4,7 @@
 //! before the first draw.
 
 use std::fs::OpenOptions;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
@@ -150,12 +150,11 @@ impl Arguments {
         if options.quiet {
             return Ok(());
         }
-        let (width, colour) = (output::width(), std::io::stdout().is_terminal());
-        let colour = options.color.colours(colour);
+        let pen = output::pen(options);
         output::print(&if self.verbose {
-            console::table(record, console::View::Run, width, colour)
+            console::table(record, console::View::Run, pen)
         } else {
-            console::brief(record, width, colour)
+            console::brief(record, pen)
         })
     }
 }

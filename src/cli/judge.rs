@@ -179,7 +179,9 @@ impl Arguments {
 fn show(judgement: &Judgement, name: &str, form: Shown, console: &Console) -> anyhow::Result<()> {
     match form {
         Shown::Table if console.quiet => Ok(()),
-        Shown::Table => output::print(&judgement::block(judgement, name, output::width())),
+        Shown::Table => {
+            output::print(&judgement::block(judgement, name, output::pen(console).width))
+        }
         Shown::Json => output::print(&(serde_json::to_string_pretty(judgement)? + "\n")),
     }
 }

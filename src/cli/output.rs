@@ -8,7 +8,7 @@ use anyhow::Context;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use trueflight::harness::Record;
-use trueflight::report::console::{self, View};
+use trueflight::report::console::{self, View, layout::Pen};
 use trueflight::report::rows;
 
 use super::Console;
@@ -58,10 +58,7 @@ pub fn print_record(
 ) -> anyhow::Result<()> {
     let text = match format {
         Format::Table if options.quiet => return Ok(()),
-        Format::Table => {
-            let colour = options.color.colours(std::io::stdout().is_terminal());
-            console::table(record, view, width(), colour)
-        }
+        Format::Table => console::table(record, view, pen(options)),
         Format::Csv => rows::csv(record)?,
         Format::Json => rows::json(record)?,
     };
@@ -111,8 +108,14 @@ pub fn writable(out: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// How wide and how colourful stdout is; below 40 columns nothing fits.
+pub fn pen(options: &Console) -> Pen {
+    let colour = options.color.colours(std::io::stdout().is_terminal());
+    Pen { width: width().max(40), colour }
+}
+
 /// The width of the terminal, or `COLUMNS`, or 120.
-pub fn width() -> usize {
+fn width() -> usize {
     let terminal = terminal_size::terminal_size().map(|(width, _)| usize::from(width.0));
     let wished = std::env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
     terminal.or(wished).unwrap_or(120)

@@ -53,7 +53,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         report::write(&page::artifacts(&found)?, out)?;
     }
     if !console.quiet {
-        output::print(&page::table(&found))?;
+        output::print(&page::table(&found, output::pen(console)))?;
     }
     Ok(u8::from(!found.holds()))
 }

@@ -104,6 +104,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             problem: planned.case.problem.clone(),
             medium: planned.case.scenario.medium().to_owned(),
             visible_bias: None,
+            pace: None,
             rows,
             sweep,
             anatomy,

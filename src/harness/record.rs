@@ -101,6 +101,9 @@ pub struct CaseRecord {
     /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
     /// planned to see.
     pub visible_bias: Option<[f64; 2]>,
+    /// How many draws its scalars took to pass, all together, in units of what is typical,
+    /// `17 V/ε²` draws each.
+    pub pace: Option<f64>,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<Row>,
     /// What was swept, with the theory's curves.

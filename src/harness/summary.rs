@@ -1,9 +1,9 @@
-//! What a run comes to: the mean e-value, the e-BH list, the margins, and the biases that each case
-//! could have seen.
+//! What a run comes to: the mean e-value, the e-BH list, the margins, and, for each case, the biases
+//! that it could have seen and how soon it was decided.
 
 use super::findings::ASSUMED;
 use super::record::{CaseRecord, Finding, Gate, Results, Row, Suspect, Verdict};
-use crate::stats::gate::ln_mean_exp;
+use crate::stats::gate::{TYPICAL, ln_mean_exp};
 use crate::stats::multiplicity;
 
 /// Fills in what only the whole run can say.
@@ -11,6 +11,7 @@ pub fn complete(results: &mut Results) {
     let (alpha, cases) = (results.alpha, &mut results.cases);
     for case in cases.iter_mut() {
         case.visible_bias = visible_bias(case);
+        case.pace = pace(case);
     }
     let gate = &mut results.gate;
     let suspects: Vec<Suspect> = cases
@@ -71,4 +72,17 @@ fn visible_bias(case: &CaseRecord) -> Option<[f64; 2]> {
     let tolerances: Vec<f64> = promised.map(|gate| gate.tolerance).collect();
     let least = tolerances.iter().copied().reduce(f64::min)?;
     Some([least, tolerances.iter().copied().fold(least, f64::max)])
+}
+
+/// See [`CaseRecord::pace`].
+fn pace(case: &CaseRecord) -> Option<f64> {
+    let passed = scalars(case).filter(|(_, finding)| finding.verdict == Verdict::Pass);
+    let (taken, typical) = passed.filter_map(|(_, finding)| finding.gate).fold(
+        (0.0, 0.0),
+        |(taken, typical), gate| {
+            let unit = gate.variance / (gate.tolerance * gate.tolerance);
+            (taken + gate.draws as f64, typical + TYPICAL * unit)
+        },
+    );
+    (typical > 0.0).then(|| taken / typical)
 }

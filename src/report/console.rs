@@ -42,10 +42,9 @@ const NARROWEST: usize = 20;
 /// From this width on, reasons may stand in the table.
 const WIDE: usize = 120;
 
-/// The table of a record, `width` columns wide, with ANSI colours if asked for.
+/// The table of a record.
 #[must_use]
-pub fn table(record: &Record, view: View, width: usize, colour: bool) -> String {
-    let pen = layout::Pen { width: width.max(40), colour };
+pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     let mut text = String::new();
     for case in &record.results.cases {
         block(&mut text, pen, case, view);
@@ -57,8 +56,7 @@ pub fn table(record: &Record, view: View, width: usize, colour: bool) -> String 
 
 /// The table of a run in short: one line per case, and below it the rows that do not pass.
 #[must_use]
-pub fn brief(record: &Record, width: usize, colour: bool) -> String {
-    let pen = layout::Pen { width: width.max(40), colour };
+pub fn brief(record: &Record, pen: layout::Pen) -> String {
     let mut text = String::new();
     for case in &record.results.cases {
         let quiet =

@@ -4,85 +4,118 @@ use std::fmt::Write;
 
 use crate::harness::self_test::calibration::Rate;
 use crate::harness::self_test::{Calibration, Caught, SelfTest};
+use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
 use crate::report::rows::table as csv;
 use crate::report::{Artifact, ReportError};
 
 /// The two tables for the screen.
 #[must_use]
-pub fn table(found: &SelfTest) -> String {
+pub fn table(found: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
-    promises(&mut text, &found.calibration);
-    mutants(&mut text, &found.mutants);
+    promises(&mut text, pen, &found.calibration);
+    mutants(&mut text, pen, &found.mutants);
     let verdict = if found.holds() {
-        "every promise is kept and every mutant is caught"
+        pen.paint(Paint::Green, "every promise is kept and every mutant is caught")
     } else {
-        "a promise is broken or a mutant escapes"
+        pen.paint(Paint::Red, "a promise is broken or a mutant escapes")
     };
     let _ = writeln!(text, "{verdict} · {} s", short(found.seconds, 3));
     text
 }
 
-fn promises(text: &mut String, calibration: &Calibration) {
+fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     let Calibration { runs, scalars, laws, draws, .. } = calibration;
-    let _ = writeln!(
-        text,
-        "Calibration: {runs} independent runs of {scalars} scalars and {laws} laws, {} draws",
-        count(*draws)
-    );
-    let _ =
-        writeln!(text, "  {:<44} {:>15} {:>9}  {:<22} promise", "", "count", "rate", "99 % limits");
-    let shares = calibration.uniformity.iter().flat_map(|check| &check.below);
-    for rate in calibration.rates.iter().chain(shares) {
-        let word = if rate.is_kept { "" } else { "  BROKEN" };
-        let [low, high] = rate.limits.map(|limit| short(limit, 2));
-        let counts = format!("{} / {}", rate.count, rate.trials);
-        let _ = writeln!(
-            text,
-            "  {:<44} {counts:>15} {:>9}  {:<22} ≤ {}{word}",
-            rate.what,
-            short(share(rate), 2),
-            format!("[{low}, {high}]"),
-            short(rate.promise, 2)
-        );
-    }
-    for check in &calibration.uniformity {
-        if let Some(p) = check.p {
-            let what = format!("p of {} are uniform", check.check);
-            let _ = writeln!(text, "  {what:<44} Anderson–Darling p = {}", short(p, 2));
+    let title =
+        format!("calibration: {runs} independent runs of {scalars} scalars and {laws} laws");
+    let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
+    let rates: Vec<&Rate> = rates(calibration).collect();
+    let column = |head, field: fn(&Rate) -> String| Column {
+        head,
+        right: true,
+        rank: 0,
+        fields: rates.iter().map(|rate| Field::plain(field(rate))).collect(),
+    };
+    let kept = rates.iter().map(|rate| {
+        let (word, paint) =
+            if rate.is_kept { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
+        Field { text: word.to_owned(), paint }
+    });
+    let mut grid = Grid {
+        columns: vec![
+            Column { right: false, ..column("what", |rate| rate.what.clone()) },
+            column("count", |rate| rate.count.to_string()),
+            column("of", |rate| rate.trials.to_string()),
+            column("rate", |rate| short(share(rate), 2)),
+            column("at least", |rate| short(rate.limits[0], 2)),
+            column("at most (99 %)", |rate| short(rate.limits[1], 2)),
+            column("promised", |rate| short(rate.promise, 2)),
+        ],
+    };
+    grid.push("", kept.collect());
+    grid.fit(pen.width);
+    text.push_str(&grid.render(pen));
+    let uniform = calibration
+        .uniformity
+        .iter()
+        .filter_map(|check| Some(format!("{} {}", check.check, short(check.p?, 2))));
+    let uniform: Vec<String> = uniform.collect();
+    if !uniform.is_empty() {
+        let said =
+            format!("p-values against the uniform law, Anderson–Darling p: {}", uniform.join(", "));
+        for line in wrapped(&said, pen.width) {
+            let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
         }
     }
     text.push('\n');
+}
+
+/// All rates that were promised.
+fn rates(calibration: &Calibration) -> impl Iterator<Item = &Rate> {
+    let shares = calibration.uniformity.iter().flat_map(|check| &check.below);
+    calibration.rates.iter().chain(shares)
 }
 
 fn share(rate: &Rate) -> f64 {
     if rate.trials == 0 { 0.0 } else { rate.count as f64 / rate.trials as f64 }
 }
 
-fn mutants(text: &mut String, mutants: &[Caught]) {
+fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let caught = mutants.iter().filter(|mutant| mutant.is_right()).count();
-    let _ =
-        writeln!(text, "Mutants: {caught} of {} caught, each honest twin passes", mutants.len());
-    let _ = writeln!(text, "  {:<30} {:<28} {:<12} {:>10}  also", "mutant", "on", "check", "draws");
-    for mutant in mutants {
-        let draws = match mutant.draws {
-            Some(draws) => count(draws),
-            None => "ESCAPES".to_owned(),
-        };
-        let others: Vec<&str> =
-            mutant.failed.iter().filter(|name| *name != mutant.check).map(String::as_str).collect();
-        let twin = if mutant.twin_passes { "" } else { "  THE TWIN FAILS" };
-        let on = mutant.case.rsplit('/').next().unwrap_or(mutant.case);
-        let on = format!("{on}: {}", mutant.estimator);
-        let _ = writeln!(
-            text,
-            "  {:<30} {on:<28} {:<12} {draws:>10}  {}{twin}",
-            mutant.name,
-            mutant.check,
-            others.join(", ")
-        );
-    }
-    text.push('\n');
+    let title = format!("mutants: {caught} of {} caught, each honest twin passes", mutants.len());
+    let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
+    let column = |head, right, field: &dyn Fn(&Caught) -> Field| Column {
+        head,
+        right,
+        rank: 0,
+        fields: mutants.iter().map(field).collect(),
+    };
+    let draws = |mutant: &Caught| match mutant.draws {
+        Some(draws) if mutant.twin_passes => Field::plain(count(draws)),
+        Some(_) => Field { text: "THE TWIN FAILS".to_owned(), paint: Paint::Red },
+        None => Field { text: "ESCAPES".to_owned(), paint: Paint::Red },
+    };
+    let others = |mutant: &Caught| {
+        let others = mutant.failed.iter().filter(|name| *name != mutant.check);
+        Field::plain(others.map(String::as_str).collect::<Vec<_>>().join(", "))
+    };
+    let mut grid = Grid {
+        columns: vec![
+            column("mutant", false, &|mutant| Field::plain(mutant.name.to_owned())),
+            Column { rank: 1, ..column("on", false, &|mutant| Field::plain(place(mutant))) },
+            column("caught by", false, &|mutant| Field::plain(mutant.check.to_owned())),
+            column("draws", true, &draws),
+            Column { rank: 2, ..column("also by", false, &others) },
+        ],
+    };
+    grid.fit(pen.width);
+    let _ = writeln!(text, "{}", grid.render(pen));
+}
+
+/// `magnet: ratio`.
+fn place(mutant: &Caught) -> String {
+    let case = mutant.case.rsplit('/').next().unwrap_or(mutant.case);
+    format!("{case}: {}", mutant.estimator)
 }
 
 /// The two tables as CSV files.
@@ -91,8 +124,7 @@ fn mutants(text: &mut String, mutants: &[Caught]) {
 ///
 /// Where the encoder gives up.
 pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
-    let shares = found.calibration.uniformity.iter().flat_map(|check| &check.below);
-    let rates = found.calibration.rates.iter().chain(shares).map(|rate| {
+    let rates = rates(&found.calibration).map(|rate| {
         let [low, high] = rate.limits.map(exact);
         let (count, trials) = (rate.count.to_string(), rate.trials.to_string());
         vec![

@@ -36,6 +36,8 @@ const CALM: f64 = 0.6;
 pub const VARIANCE_MARGIN: f64 = 1.1;
 /// A pass is all but certain within `PLANNED · V/ε²` draws; planning uses it.
 pub const PLANNED: f64 = 27.0;
+/// A correct scalar passes after about `TYPICAL · V/ε²` draws.
+pub const TYPICAL: f64 = 17.0;
 /// Without a decision in `HORIZON · V/ε²` draws a scalar is inconclusive.
 pub const HORIZON: f64 = 60.0;
 /// The widest ε in units of √V: wider promises gather evidence too slowly.

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::{env, fs};
 
 use record::record;
-use trueflight::report::console::{self, View};
+use trueflight::report::console::{self, View, layout::Pen};
 use trueflight::report::junit::Inconclusive;
 use trueflight::report::{self, annotations, junit, markdown, rows};
 
@@ -69,7 +69,7 @@ fn consoles() {
     ];
     for (name, view) in views {
         for width in [80, 160] {
-            let text = console::table(&record(), view, width, false);
+            let text = console::table(&record(), view, Pen { width, colour: false });
             // A command stays whole, so that it can be copied.
             let wrapped = text.lines().filter(|line| !line.contains("repeat: "));
             let widest = wrapped.map(|line| line.chars().count()).max();
@@ -87,7 +87,10 @@ fn what_a_ci_reads() {
     compare(&PathBuf::from("junit.xml"), xml.as_bytes());
     compare(&PathBuf::from("summary.md"), markdown::text(&record).as_bytes());
     compare(&PathBuf::from("annotations.txt"), annotations::text(&record).as_bytes());
-    compare(&PathBuf::from("check.txt"), console::brief(&record, 100, false).as_bytes());
+    compare(
+        &PathBuf::from("check.txt"),
+        console::brief(&record, Pen { width: 100, colour: false }).as_bytes(),
+    );
 }
 
 #[test]
@@ -115,7 +118,8 @@ fn infinite_numbers_do_not_break_the_json() {
 
 #[test]
 fn colours_change_nothing_but_the_colour() {
-    let [plain, coloured] = [false, true].map(|c| console::table(&record(), View::Run, 100, c));
+    let [plain, coloured] = [false, true]
+        .map(|colour| console::table(&record(), View::Run, Pen { width: 100, colour }));
     assert!(coloured.contains("\x1b[1;31mfail\x1b[0m"));
     let mut stripped = coloured;
     for code in ["0", "1", "2", "32", "1;31", "33"] {

@@ -6,9 +6,9 @@ use std::fmt::Write;
 use super::layout::{self, Column, Field, Grid, Paint, Pen, wrapped};
 use super::{View, views};
 use crate::harness::baseline::compare::Comparison;
-use crate::harness::record::{Record, Verdict};
+use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::changes;
-use crate::report::number::{range, short};
+use crate::report::number::{fixed, range, short};
 use crate::report::totals;
 use crate::report::troubles::troubles;
 
@@ -57,21 +57,25 @@ fn changed(text: &mut String, pen: Pen, comparison: &Comparison) {
     }
 }
 
-/// The smallest bias that each case could have seen, a line each.
+/// For each case, the smallest bias that it could have seen, and how soon it was decided.
 fn visible(text: &mut String, pen: Pen, record: &Record) {
-    let known: Vec<_> = record
-        .results
-        .cases
-        .iter()
-        .filter_map(|case| Some((case.name.clone(), range(case.visible_bias?))))
-        .collect();
-    if known.is_empty() {
+    let cases = || record.results.cases.iter().filter(|case| case.visible_bias.is_some());
+    if cases().next().is_none() {
         return;
     }
-    let column = |head, right, fields| Column { head, right, rank: 0, fields };
-    let (names, ranges): (Vec<_>, Vec<_>) =
-        known.into_iter().map(|(name, range)| (Field::plain(name), Field::plain(range))).unzip();
-    let columns = vec![column("case", false, names), column("visible bias", true, ranges)];
+    let column = |head, right, field: fn(&CaseRecord) -> String| Column {
+        head,
+        right,
+        rank: 0,
+        fields: cases().map(|case| Field::plain(field(case))).collect(),
+    };
+    let bias = |case: &CaseRecord| case.visible_bias.map(range).unwrap_or_default();
+    let pace = |case: &CaseRecord| case.pace.map(|pace| fixed(pace, 3)).unwrap_or_default();
+    let columns = vec![
+        column("case", false, |case| case.name.clone()),
+        column("visible bias", true, bias),
+        column("time to verdict", true, pace),
+    ];
     let mut grid = Grid { columns };
     grid.fit(pen.width);
     let _ = writeln!(text, "{}\n", grid.render(pen).trim_end());

@@ -1,0 +1,131 @@
+//! What the gate costs: the built-in suite drawn with and without it, in turn, in one process.
+//!
+//! ```text
+//! cargo bench --bench gate
+//! ```
+//!
+//! Every round draws the same blocks of every experiment of the suite in each of these ways, on one
+//! thread, and takes the processor time; the table shows the medians over the rounds of a round's
+//! differences and ratios.
+//!
+//! | way | what is done to each draw |
+//! |---|---|
+//! | kernels | it is made |
+//! | statistics | mean, variance and lookups of the summary, too |
+//! | gate | and the scalars of the gate |
+//! | all checks | and the sums of the laws and the bounds on every draw |
+
+use cpu_time::ProcessTime;
+use trueflight::estimators::DrawBuffer;
+use trueflight::harness::checks::Kind;
+use trueflight::harness::plan::BLOCK;
+use trueflight::harness::{Amount, Case, Options, Plan, run, suite};
+
+/// Draws per experiment.
+const DRAWS: u64 = 2 * BLOCK;
+/// Rounds; the median counts.
+const ROUNDS: usize = 7;
+
+/// What is asked of the draws.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    Kernels,
+    Statistics,
+    Gate,
+    All,
+}
+
+const WAYS: [Way; 4] = [Way::Kernels, Way::Statistics, Way::Gate, Way::All];
+
+fn main() {
+    let cases: Vec<Case> = suite::suite()
+        .iter()
+        .map(|source| Case::read(source).expect("the built-in cases have no mistakes"))
+        .collect();
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    one.install(|| {
+        report("the built-in suite", &cases, |_, _| true);
+        report("ratio tracking in transmittance/magnet", &cases, |case, estimator| {
+            case == "transmittance/magnet" && estimator == "ratio"
+        });
+    });
+}
+
+/// Times all ways over the experiments that are wanted.
+fn report(title: &str, cases: &[Case], wanted: fn(&str, &str) -> bool) {
+    let options = Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() };
+    let plans = WAYS.map(|way| plan(cases, &options, way, wanted));
+    let draws: u64 = plans[0].experiments().map(|(_, planned)| planned.draws).sum();
+    let mut rounds: Vec<[f64; 4]> = Vec::new();
+    for _ in 0..ROUNDS {
+        let mut seconds = [0.0; 4];
+        for (i, way) in WAYS.into_iter().enumerate() {
+            let begin = ProcessTime::now();
+            if way == Way::Kernels {
+                kernels(&plans[i]);
+            } else {
+                run::draw(&plans[i], &|_| {});
+            }
+            seconds[i] = begin.elapsed().as_secs_f64();
+        }
+        rounds.push(seconds);
+    }
+    let scalars: usize = plans[2].experiments().map(|(_, planned)| planned.questions.len()).sum();
+    println!("{title}: {draws} draws, {scalars} scalars, medians of {ROUNDS} rounds");
+    let names = ["kernels", "statistics", "gate", "all checks"];
+    println!("{:<12} {:>9} {:>18} {:>20}", "", "ns/draw", "added to the last", "times the last");
+    for (i, name) in names.into_iter().enumerate() {
+        let per_draw = |seconds: f64| 1e9 * seconds / draws as f64;
+        let total = median(rounds.iter().map(|round| per_draw(round[i])));
+        let before = i.saturating_sub(1);
+        let added = median(rounds.iter().map(|round| per_draw(round[i] - round[before])));
+        let ratio = median(rounds.iter().map(|round| round[i] / round[before]));
+        println!("{name:<12} {total:>9.1} {added:>18.2} {ratio:>20.3}");
+    }
+}
+
+fn plan<'a>(
+    cases: &'a [Case],
+    options: &Options,
+    way: Way,
+    wanted: fn(&str, &str) -> bool,
+) -> Plan<'a> {
+    let mut plan = Plan::new(cases, options);
+    for case in &mut plan.cases {
+        let name = &case.case.name;
+        case.experiments.retain(|planned| {
+            // Without chance nothing is drawn but one block.
+            let is_drawn = planned.outcome.is_ok() && planned.draws == DRAWS;
+            is_drawn && wanted(name, &planned.names.estimator)
+        });
+        for planned in &mut case.experiments {
+            planned.questions.retain(|question| match way {
+                Way::Kernels | Way::Statistics => false,
+                Way::Gate => matches!(question.kind, Kind::Scalar(_)),
+                Way::All => true,
+            });
+        }
+    }
+    plan
+}
+
+/// The draws alone.
+fn kernels(plan: &Plan) {
+    for (_, planned) in plan.experiments() {
+        let Ok(ready) = &planned.outcome else { continue };
+        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+        for block in 0..planned.draws / BLOCK {
+            let mut stream = planned.stream(block);
+            for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {
+                ready.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+                std::hint::black_box(&buffer);
+            }
+        }
+    }
+}
+
+fn median(values: impl Iterator<Item = f64>) -> f64 {
+    let mut values: Vec<f64> = values.collect();
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
