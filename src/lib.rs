@@ -16,7 +16,7 @@
 //! 3  theory         moments and costs in closed form; never draws a random number
 //! 2  problems       what is sought; each integral knows its truth
 //! 1  media   stats  neighbours that have never met
-//! 0  numeric geometry rng catalogue     know nothing of light
+//! 0  numeric geometry rng catalogue files     know nothing of light
 //! ```
 //!
 //! # Invariants
@@ -36,6 +36,7 @@
 
 pub mod catalogue;
 pub mod estimators;
+pub mod files;
 pub mod geometry;
 pub mod harness;
 pub mod media;

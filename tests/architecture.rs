@@ -11,6 +11,7 @@ use syn::visit::{self, Visit};
 /// Every top-level module with its floor. `cli` and `main` are the binary.
 const FLOORS: &[(&str, u8)] = &[
     ("numeric", 0),
+    ("files", 0),
     ("geometry", 0),
     ("rng", 0),
     ("catalogue", 0),

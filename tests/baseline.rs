@@ -8,7 +8,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
-use trueflight::harness::baseline::{Baseline, BaselineError};
+use trueflight::harness::baseline::{Baseline, BaselineError, Entry};
 use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, judge, run};
 use trueflight::rng::Stream;
 
@@ -20,7 +20,7 @@ sampling.constant.value = 1
 estimators = [{ woodcock = {} }, { ratio = {} }]
 ";
 
-const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: f64::INFINITY, ln_e_limit: 8.0 };
+const RULES: Rules = Rules { alpha: 1e-3, time_tolerance: f64::INFINITY };
 
 fn case() -> Case {
     let source = Source { name: "case".into(), path: "case.toml".into(), text: CASE.into() };
@@ -125,7 +125,38 @@ fn what_only_one_side_has_is_listed() {
     assert_eq!(comparison.missing, [stored.entries[0].id.clone()]);
     assert_eq!(comparison.rewritten, [stored.entries[1].id.clone()]);
     assert_eq!(comparison.compared, 0);
-    assert_eq!(next.entries, run.entries);
+    assert_eq!(next.entries, run.entries, "a rewritten case keeps nothing");
+}
+
+#[test]
+fn what_a_later_run_leaves_out_is_kept_at_the_higher_limit() {
+    let (mut stored, mut run) = (baseline(1), baseline(2));
+    run.entries.truncate(1);
+    stored.ln_e_limit = run.ln_e_limit + 1.0;
+    let (comparison, next) = compare("main", &stored, &run, &RULES);
+    assert_eq!(comparison.missing, [stored.entries[1].id.clone()]);
+    assert_eq!(next.entries[1], stored.entries[1]);
+    assert_eq!(next.ln_e_limit, stored.ln_e_limit);
+}
+
+#[test]
+fn variances_without_a_normal_law_are_not_compared() {
+    let (mut stored, run) = (baseline(1), baseline(2));
+    let compared = |stored: &Baseline| compare("main", stored, &run, &RULES).0;
+    let all = compared(&stored);
+    let n = stored.entries[1].draws as f64;
+    for doctor in [
+        |entry: &mut Entry, n: f64| entry.eighth_moment_ratio = Some(0.02 * n),
+        |entry: &mut Entry, n: f64| entry.rare_event_size = Some(0.2 * n),
+        |entry: &mut Entry, n: f64| entry.kurtosis = Some(1.0 + 50.0 / n),
+        |entry: &mut Entry, n: f64| entry.kurtosis = Some(1.0 + 0.02 * n),
+    ] {
+        let honest = stored.entries[1].clone();
+        doctor(&mut stored.entries[1], n);
+        let now = compared(&stored);
+        assert_eq!((now.compared, now.blunt), (all.compared - 1, all.blunt + 1));
+        stored.entries[1] = honest;
+    }
 }
 
 #[test]
@@ -153,8 +184,7 @@ fn a_small_bias_adds_up_over_runs() {
             stored = Some(run);
             continue;
         };
-        let rules = Rules { ln_e_limit: limit, ..RULES };
-        let (comparison, next) = compare("main", &before, &run, &rules);
+        let (comparison, next) = compare("main", &before, &run, &RULES);
         assert_eq!(next.seeds.len() as u64, seed);
         if !comparison.drifts.is_empty() {
             let drift = &comparison.drifts[0];

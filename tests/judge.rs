@@ -214,6 +214,23 @@ fn draws_without_spread_are_the_truth() {
 }
 
 #[test]
+fn a_spread_near_rounding_goes_through_the_gate() {
+    let tight: Vec<f64> = uniform(100_000).iter().map(|x| 1.0 + 1e-10 * (x - 1.0)).collect();
+    let off: Vec<f64> = tight.iter().map(|x| x + 1e-10).collect();
+    let place = Place::new(&[("tight.f64", &raw(&tight)), ("off.f64", &raw(&off))]);
+    let claim = "--truth 1 --variance 2.0833333333333333e-22 --kurtosis 1.8";
+    place.expect(0, &format!("{claim} tight.f64"), &[]);
+    place.expect(1, &format!("{claim} off.f64"), &[]);
+    // Rounding that hides more than the widest tolerance is a mistake of the caller's.
+    place.expect(2, "--truth 1 --variance 1 --rounding 0.02 tight.f64", &[]);
+    place.expect(2, "--truth 1 --variance-tolerance 0.1 tight.f64", &[]);
+    // Draws without any spread that are all wrong.
+    std::fs::write(place.0.path().join("wrong.f64"), raw(&vec![0.9; 100_000])).expect("a file");
+    place.expect(1, "--truth 1 wrong.f64", &[]);
+    place.expect(1, "--truth 1e-300 wrong.f64", &[]);
+}
+
+#[test]
 fn a_truth_of_0_takes_an_absolute_tolerance() {
     let draws: Vec<f64> = uniform(200_000).iter().map(|x| x - 1.0).collect();
     let place = Place::new(&[("x.f64", &raw(&draws))]);

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use trueflight::harness::baseline::compare::{Comparison, Rules, compare};
 use trueflight::harness::baseline::{Baseline, fingerprint};
+use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
 
 /// Options that all commands which draw share.
@@ -61,11 +62,7 @@ impl Baselines {
         }
         let mut run = Baseline::of(&record, cases, &self.executable);
         if let Some((name, stored)) = &self.stored {
-            let rules = Rules {
-                alpha: record.results.alpha,
-                time_tolerance: self.time_tolerance,
-                ln_e_limit: record.results.gate.ln_e_limit,
-            };
+            let rules = Rules { alpha: record.results.alpha, time_tolerance: self.time_tolerance };
             let (comparison, next) = compare(name, stored, &run, &rules);
             record.comparison = Some(comparison);
             if self.save.as_ref().is_some_and(|(save, _)| save == name) {
@@ -75,11 +72,16 @@ impl Baselines {
         (record, Some(run))
     }
 
-    /// Stores a run where that is wished; what became worse is not stored. Answers what to print.
+    /// Stores a run where that is wished; what fails or became worse is not stored. Answers what to
+    /// print.
     pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
         let (Some((name, path)), Some(run)) = (&self.save, run) else { return Ok(String::new()) };
         if record.comparison.as_ref().is_some_and(Comparison::fails) {
             return Ok(format!("baseline {name} not stored: something became worse\n"));
+        }
+        let mut rows = record.results.cases.iter().flat_map(|case| &case.rows);
+        if rows.any(|row| row.verdict == Some(Verdict::Fail)) {
+            return Ok(format!("baseline {name} not stored: something fails\n"));
         }
         run.write(path)?;
         Ok(format!("baseline {name} stored in {}\n", path.display()))

@@ -9,17 +9,20 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::Args;
-use trueflight::harness::{Amount, Options, Record};
-use trueflight::report::{self, Report, annotations, console, junit, markdown, record_json};
+use trueflight::files;
+use trueflight::harness::{Case, Options, Record};
+use trueflight::report::{
+    self, Artifact, Report, annotations, console, junit, markdown, record_json,
+};
 
 use super::baseline::BaselineArguments;
 use super::drawing::{self, Budget};
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
-use super::{Console, USAGE, output};
+use super::{Console, output};
 
-/// At most so many draws per experiment, where no argument says.
-const DRAWS: Amount = Amount::AtMost(400_000);
+/// So many draws per experiment where neither an argument nor the case says.
+const DRAWS: u64 = 400_000;
 
 /// Arguments of `check`.
 #[derive(Debug, Args)]
@@ -73,29 +76,25 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         strict: arguments.strict,
         ..selection.options(DRAWS)?
     };
-    arguments.writable()?;
+    arguments.writable(&cases)?;
     let baselines = arguments.baseline.open()?;
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         Ok(drawing::draw(&plan, console))
     })?;
     let (record, run) = baselines.compare(record, &cases);
-    let mut written = arguments.write(&record);
-    arguments.print(&record, console)?;
+    let mut errors = arguments.write(&record);
+    errors.extend(arguments.print(&record, console).err());
     match baselines.store(&record, run.as_ref()) {
-        Ok(stored) if !console.quiet => output::print(&stored)?,
+        Ok(stored) if !console.quiet => errors.extend(output::print(&stored).err()),
         Ok(_) => {}
-        Err(error) => written.push(error),
+        Err(error) => errors.push(error),
     }
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
-        output::print(&annotations::text(&record))?;
+        errors.extend(output::print(&annotations::text(&record)).err());
         summarise(&record);
     }
-    let code = verdict::exit_code(&record, arguments.inconclusive);
-    for error in &written {
-        output::complain(error);
-    }
-    Ok(if written.is_empty() { code } else { USAGE })
+    Ok(verdict::close(&record, arguments.inconclusive, &errors))
 }
 
 impl Arguments {
@@ -106,21 +105,25 @@ impl Arguments {
         files.into_iter().filter_map(|(flag, path)| Some((flag, path.as_deref()?)))
     }
 
-    /// Better to learn now than after the drawing that something cannot be written.
-    fn writable(&self) -> anyhow::Result<()> {
+    /// Better to learn now than after the drawing that something cannot be written, or would be
+    /// written over the cases or over another report.
+    fn writable(&self, cases: &[Case]) -> anyhow::Result<()> {
+        let mut taken: Vec<PathBuf> =
+            cases.iter().filter_map(|case| case.path.canonicalize().ok()).collect();
         for (flag, path) in self.files() {
             let wrong =
                 || format!("cannot write {}; give another file with {flag}", path.display());
+            files::writable(path).with_context(wrong)?;
             let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-            let folder = folder.unwrap_or(Path::new("."));
-            if path.is_dir() || path.file_name().is_none() {
-                return Err(anyhow::anyhow!("it is a folder").context(wrong()));
+            let folder = folder.unwrap_or(Path::new(".")).canonicalize().with_context(wrong)?;
+            let place = path.canonicalize().ok();
+            let place = place.unwrap_or_else(|| folder.join(path.file_name().unwrap_or_default()));
+            let is_plain = !place.exists() || place.is_file();
+            if is_plain && taken.contains(&place) {
+                let why = anyhow::anyhow!("it is a case or another report");
+                return Err(why.context(wrong()));
             }
-            if !folder.is_dir() {
-                let missing = anyhow::anyhow!("there is no folder {}", folder.display());
-                return Err(missing.context(wrong()));
-            }
-            tempfile::NamedTempFile::new_in(folder).with_context(wrong)?;
+            taken.push(place);
         }
         self.out.as_deref().map_or(Ok(()), output::writable)
     }
@@ -136,12 +139,17 @@ impl Arguments {
             };
             let written = text
                 .map_err(anyhow::Error::from)
-                .and_then(|text| Ok(report::replace(path, text.as_bytes())?))
+                .and_then(|text| Ok(files::replace(path, text.as_bytes())?))
                 .with_context(|| format!("cannot write {} ({flag})", path.display()));
             errors.extend(written.err());
         }
         if let Some(out) = &self.out {
-            errors.extend(results(record, out).err());
+            match results(record) {
+                Ok(artifacts) => {
+                    errors.extend(report::write(&artifacts, out).into_iter().map(Into::into));
+                }
+                Err(error) => errors.push(error),
+            }
         }
         errors
     }
@@ -159,10 +167,10 @@ impl Arguments {
     }
 }
 
-fn results(record: &Record, out: &Path) -> anyhow::Result<()> {
+fn results(record: &Record) -> anyhow::Result<Vec<Artifact>> {
     let mut artifacts = report::summary_csv::SummaryCsv.render(record)?;
     artifacts.extend(record_json::RecordJson.render(record)?);
-    Ok(report::write(&artifacts, out)?)
+    Ok(artifacts)
 }
 
 /// Adds the summary to the page of the job. Without it the verdict is still the verdict.

@@ -28,12 +28,13 @@ pub struct Arguments {
     truth: Option<f64>,
     /// The variance of one draw; without it, it is estimated and not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true, conflicts_with = "case")]
+    #[arg(group = "claimed")]
     variance: Option<f64>,
     /// The kurtosis of one draw (3 for the normal law); without it, it is estimated
     #[arg(long, value_name = "K", allow_hyphen_values = true, conflicts_with = "case")]
     kurtosis: Option<f64>,
     /// Take truth, variance and kurtosis from theory: a case file or a built-in case
-    #[arg(long, value_name = "CASE", requires = "estimator")]
+    #[arg(long, value_name = "CASE", requires = "estimator", group = "claimed")]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
     #[arg(long, value_name = "NAME", requires = "case")]
@@ -52,7 +53,7 @@ pub struct Arguments {
     #[arg(long, value_name = "E", allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// The same for the variance, relative to it [default: what the draws can see, at most 0.2]
-    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, requires = "claimed")]
     variance_tolerance: Option<f64>,
     /// Chance that correct draws fail
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = selection::alpha)]

@@ -1,7 +1,7 @@
 //! `trueflight plan`: what would run, what is refused, and why.
 
 use clap::Args;
-use trueflight::harness::{Amount, judge};
+use trueflight::harness::{judge, options::DRAWS};
 use trueflight::report::console::View;
 
 use super::Console;
@@ -22,7 +22,7 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
-    let options = selection.options(Amount::Case)?;
+    let options = selection.options(DRAWS)?;
     let record = selection.on_threads(|| Ok(judge::planned(&selection.plan(&cases, &options)?)))?;
     output::print_record(&record, View::Plan, arguments.format, console)?;
     Ok(0)

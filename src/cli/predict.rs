@@ -1,7 +1,7 @@
 //! `trueflight predict`: theory only, no draws.
 
 use clap::Args;
-use trueflight::harness::{Amount, judge};
+use trueflight::harness::{judge, options::DRAWS};
 use trueflight::report::console::View;
 
 use super::Console;
@@ -25,7 +25,7 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
-    let options = selection.options(Amount::Case)?;
+    let options = selection.options(DRAWS)?;
     let record =
         selection.on_threads(|| Ok(judge::predicted(&selection.plan(&cases, &options)?)))?;
     let view = if arguments.moments { View::Moments } else { View::Predict };

@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use trueflight::harness::{Amount, Options};
+use trueflight::harness::Options;
+use trueflight::harness::options::DRAWS;
 use trueflight::report::{self, console::View};
 
 use super::baseline::BaselineArguments;
@@ -47,7 +48,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         seconds: arguments.time,
         fixed: arguments.fixed_draws,
         strict: arguments.strict,
-        ..selection.options(Amount::Case)?
+        ..selection.options(DRAWS)?
     };
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
@@ -57,13 +58,25 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         Ok(drawing::draw(&plan, console))
     })?;
     let (record, run) = baselines.compare(record, &cases);
-    let artifacts = report::render(&record)?;
-    report::write(&artifacts, &arguments.out)?;
-    output::print_record(&record, View::Run, arguments.format, console)?;
-    let stored = baselines.store(&record, run.as_ref())?;
-    if arguments.format == Format::Table && !console.quiet {
-        let files = artifacts.len();
-        output::print(&format!("{files} files in {}\n{stored}", arguments.out.display()))?;
+    let mut errors = Vec::new();
+    let files = report::render(&record).map(|artifacts| {
+        let failed = report::write(&artifacts, &arguments.out);
+        let written = artifacts.len() - failed.len();
+        errors.extend(failed.into_iter().map(anyhow::Error::from));
+        written
+    });
+    errors.extend(output::print_record(&record, View::Run, arguments.format, console).err());
+    let stored = baselines.store(&record, run.as_ref()).unwrap_or_else(|error| {
+        errors.push(error);
+        String::new()
+    });
+    match files {
+        Ok(files) if arguments.format == Format::Table && !console.quiet => {
+            let said = format!("{files} files in {}\n{stored}", arguments.out.display());
+            errors.extend(output::print(&said).err());
+        }
+        Ok(_) => {}
+        Err(error) => errors.push(error.into()),
     }
-    Ok(verdict::exit_code(&record, arguments.inconclusive))
+    Ok(verdict::close(&record, arguments.inconclusive, &errors))
 }

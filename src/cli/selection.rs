@@ -23,7 +23,7 @@ pub struct Selection {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
-    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: at most 4e5]
+    /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: 4e5]
     #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
@@ -47,7 +47,7 @@ impl Selection {
             read_case(name).map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
         if errors.is_empty() {
-            return Ok(cases);
+            return distinct(cases);
         }
         let colour = console.color.colours(std::io::stderr().is_terminal());
         let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
@@ -57,11 +57,11 @@ impl Selection {
         anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
     }
 
-    /// The options of a plan; `usual` is what is drawn where no argument says.
-    pub fn options(&self, usual: Amount) -> anyhow::Result<Options> {
+    /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.
+    pub fn options(&self, usual: u64) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        let draws = self.draws.map_or(usual, Amount::Exactly);
+        let draws = self.draws.map_or(Amount::CaseOr(usual), Amount::Exactly);
         Ok(Options { seed: self.seed, draws, alpha: self.alpha, filter, ..Options::default() })
     }
 
@@ -86,6 +86,25 @@ impl Selection {
         let threads = self.threads.map_or(0, usize::from);
         rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
     }
+}
+
+/// Leaves out what is given twice. Two cases of one name would share their random numbers and files.
+fn distinct(cases: Vec<Case>) -> anyhow::Result<Vec<Case>> {
+    let mut kept: Vec<Case> = Vec::with_capacity(cases.len());
+    for case in cases {
+        let place = |case: &Case| case.path.canonicalize().unwrap_or_else(|_| case.path.clone());
+        match kept.iter().find(|other| other.name == case.name) {
+            None => kept.push(case),
+            Some(other) if place(other) == place(&case) => {}
+            Some(other) => anyhow::bail!(
+                "two cases are called {}: {} and {}; rename one, or run them apart",
+                case.name,
+                other.path.display(),
+                case.path.display()
+            ),
+        }
+    }
+    Ok(kept)
 }
 
 /// Reads a case file, a folder of them, or a built-in case.

@@ -50,7 +50,9 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         Ok(SelfTest { calibration, mutants, seconds: begin.elapsed().as_secs_f64() })
     })?;
     if let Some(out) = &arguments.out {
-        report::write(&page::artifacts(&found)?, out)?;
+        if let Some(error) = report::write(&page::artifacts(&found)?, out).into_iter().next() {
+            return Err(error.into());
+        }
     }
     if !console.quiet {
         output::print(&page::table(&found, output::pen(console)))?;

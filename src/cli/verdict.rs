@@ -27,8 +27,15 @@ impl Inconclusive {
     }
 }
 
+/// The exit code at the end of a command, with what went wrong beside the verdicts.
+pub fn close(record: &Record, inconclusive: Option<Inconclusive>, errors: &[anyhow::Error]) -> u8 {
+    errors.iter().for_each(output::complain);
+    let code = exit_code(record, inconclusive);
+    if errors.is_empty() { code } else { USAGE }
+}
+
 /// Fail, or worse than a stored run, before refused cases before inconclusive before pass.
-pub fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
+fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
     let verdicts = || record.results.cases.iter().flat_map(|case| &case.rows);
     let any = |verdict| verdicts().any(|row| row.verdict == Some(verdict));
     let is_worse = record.comparison.as_ref().is_some_and(Comparison::fails);

@@ -1,6 +1,7 @@
 //! A case as written: a problem, its estimators, a sweep and what the user asks of the answer.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::scenario::{AnyScenario, Scenario};
@@ -156,7 +157,12 @@ fn files(path: &Path) -> Result<Vec<std::path::PathBuf>, CaseError> {
     }
     let mut found = Vec::new();
     let mut folders = vec![path.to_owned()];
+    let mut seen = BTreeSet::new();
     while let Some(folder) = folders.pop() {
+        // A link may lead back to a folder above it.
+        if !seen.insert(folder.canonicalize().map_err(unreadable)?) {
+            continue;
+        }
         for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
             let entry = entry.map_err(unreadable)?.path();
             if entry.is_dir() {
@@ -190,7 +196,13 @@ fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
 fn read_tolerance(settings: &Settings) -> Option<Tolerance> {
     let read = |key: &'static str| {
         if settings.has(key) {
-            settings.number(key, Domain::Positive).map(Some)
+            let tolerance = settings.number(key, Domain::Positive)?;
+            if tolerance >= 1.0 {
+                let help = "a tolerance is relative, as in 0.01";
+                settings.fault(key, "a tolerance below 1 is expected", help);
+                return None;
+            }
+            Some(Some(tolerance))
         } else {
             Some(None)
         }

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //! gate   failed ⇒ fail, passed ⇒ pass, open ⇒ underpowered if that was known, else inconclusive
-//! law    p-values of the whole run together, by Holm
+//! law    p-values of the whole run together, by Holm; none where the draws were cut short
 //! bound  broken by any draw ⇒ fail
 //! ```
 //!
 //! A mean passes on the strength of its variance; where that one is underpowered the finding says
-//! `variance assumed`. A mean that is underpowered makes its experiment inconclusive unless the
+//! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its experiment inconclusive unless the
 //! case allows it.
 
 use rayon::prelude::*;
@@ -16,6 +16,7 @@ use super::checks::{Always, Inspected, Kind, Question, Scalar};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::record::{Finding, GateFinding, Verdict};
 use super::run::{Drawn, Draws, Standing, Total};
+use crate::numeric::sum::Sum;
 use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
 
@@ -98,11 +99,20 @@ fn of_question(
             let block = Some(standing.draws.saturating_sub(1) / BLOCK);
             Finding { gate, block, verdict, reason, ..finding }
         }
+        (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
+            let (what, fixed, drawn) = (&question.what, planned.fixed, drawn.draws);
+            let reason = format!("{what}: cut after {drawn} of {fixed} draws");
+            Finding { reason, ..finding }
+        }
         (Kind::Law(law), Total::Law(sums)) => {
-            let sums: Vec<f64> = sums.iter().map(crate::numeric::sum::Sum::value).collect();
-            let draws = drawn.draws.min(planned.fixed);
-            let p = law.p_value(&sums, draws as f64)?;
-            Finding { p: Some(p), verdict: Verdict::Pass, ..finding }
+            let sums: Vec<f64> = sums.iter().map(Sum::value).collect();
+            match law.p_value(&sums, planned.fixed as f64) {
+                Some(p) => Finding { p: Some(p), verdict: Verdict::Pass, ..finding },
+                None => {
+                    let reason = format!("{} has too few draws for a test", question.what);
+                    Finding { verdict: Verdict::Underpowered, reason, ..finding }
+                }
+            }
         }
         (Kind::Inspection(look), _) => {
             let ready = planned.outcome.as_ref().ok()?;
@@ -110,7 +120,7 @@ fn of_question(
                 experiment: ready.experiment.as_ref(),
                 channels: channels.len(),
                 stream: &|block| planned.stream(block),
-                blocks: drawn.draws.div_ceil(BLOCK),
+                blocks: planned.fixed.div_ceil(BLOCK),
             };
             Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
         }
@@ -198,7 +208,7 @@ fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict {
 
 /// The verdict on a bias that the case declares.
 fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, standing: &Standing) -> (Verdict, String) {
-    let bias = format!("{:+.2e} %", 100.0 * standing.mean);
+    let bias = percent(standing.mean);
     let was_cut = drawn.draws < planned.draws;
     match standing.decision {
         Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
@@ -214,6 +224,12 @@ fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, standing: &Standing) ->
     }
 }
 
+/// A relative difference in percent.
+fn percent(difference: f64) -> String {
+    let percent = 100.0 * difference;
+    if percent.abs() >= 0.01 { format!("{percent:+.2} %") } else { format!("{percent:+.1e} %") }
+}
+
 /// The verdict on a bound that every draw must keep.
 fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String) {
     let what = &question.what;
@@ -222,7 +238,7 @@ fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String)
         return if is_kept {
             (Verdict::Fail, "expected a bias, found none".into())
         } else {
-            (Verdict::Pass, format!("biased-as-expected: {:+.2e} %", 100.0 * largest))
+            (Verdict::Pass, format!("biased-as-expected: {}", percent(largest)))
         };
     }
     if is_kept {
@@ -240,15 +256,22 @@ fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String)
 
 /// A mean passes if the variance of its channel does, or could not be tested.
 fn rely_on_variance(findings: &mut [Finding]) {
-    let unsure: Vec<String> = findings
+    let variances: Vec<(String, Verdict)> = findings
         .iter()
         .filter(|finding| finding.check == "variance" && finding.verdict != Verdict::Pass)
-        .map(|finding| finding.channel.clone())
+        .map(|finding| (finding.channel.clone(), finding.verdict))
         .collect();
     for finding in findings.iter_mut() {
         let relies = finding.check == "mean" && finding.verdict == Verdict::Pass;
-        if relies && finding.reason.is_empty() && unsure.contains(&finding.channel) {
+        let variance = variances.iter().find(|(channel, _)| *channel == finding.channel);
+        let Some((_, verdict)) = variance.filter(|_| relies && !finding.expects_bias) else {
+            continue;
+        };
+        if *verdict == Verdict::Underpowered {
             ASSUMED.clone_into(&mut finding.reason);
+        } else {
+            finding.verdict = Verdict::Inconclusive;
+            "the mean relies on a variance that does not pass".clone_into(&mut finding.reason);
         }
     }
 }
@@ -269,10 +292,11 @@ fn shown_anywhere(findings: &mut [Finding]) {
 /// Judges the p-values of a run together.
 fn judge_laws(plan: &Plan, findings: &mut [&mut Finding]) {
     let p: Vec<f64> = findings.iter().filter_map(|finding| finding.p).collect();
-    let rejected = multiplicity::holm(&p, plan.levels.law_alpha);
+    let rejected = multiplicity::holm(&p, plan.levels.laws, plan.levels.law_alpha);
     let laws = findings.iter_mut().filter(|finding| finding.p.is_some());
     for (finding, rejected) in laws.zip(rejected) {
-        if rejected {
+        // A p-value that is not a number comes from draws that are none.
+        if rejected || finding.p.is_some_and(f64::is_nan) {
             finding.verdict = Verdict::Fail;
             let p = finding.p.unwrap_or(0.0);
             finding.reason = format!("{} differs from theory: p = {p:.1e}", finding.what);

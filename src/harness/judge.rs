@@ -184,6 +184,7 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
                 .filter(|law| law.pmf.len() <= LONGEST_LAW)
                 .map_or_else(Vec::new, |law| law.pmf.clone()),
             rare_event_size: finite(channel.moments.map(|_| channel.tails.rare_event_size)),
+            eighth_moment_ratio: finite(channel.moments.map(|_| channel.tails.eighth_moment_ratio)),
             log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),
             ..blank.clone()
         }
@@ -277,19 +278,29 @@ fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
 /// A relative variance below this is rounding.
 const CERTAIN: f64 = 1e-20;
 
-/// The command that draws an experiment again.
+/// A word as a shell reads it, whatever is in it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=-".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}
+
+/// The command that draws an experiment again, and writes nothing.
 fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
     let case = case.case;
     // A built-in case has no file, and a file has no name that the command would know.
     let is_built_in = suite::find(&case.name).is_some_and(|source| source.path == case.path);
     let place = if is_built_in { case.name.clone() } else { case.path.display().to_string() };
-    let place = if place.contains(' ') { format!("\"{place}\"") } else { place };
     // Twins are numbered by the plan; a filter sees them all under one name.
     let estimator = planned.names.estimator.split(" #").next().unwrap_or_default();
     let Options { seed, alpha, fixed, strict, .. } = plan.options;
+    let (place, filter) = (quoted(&place), quoted(&format!("*:{estimator}")));
     let draws = planned.draws;
-    let mut command =
-        format!("trueflight run {place} --filter \"*:{estimator}\" --seed {seed} --draws {draws}");
+    let mut command = format!(
+        "trueflight check {place} --filter {filter} --seed {seed} --draws {draws} --verbose"
+    );
     if alpha != Options::default().alpha {
         command = format!("{command} --alpha {alpha}");
     }

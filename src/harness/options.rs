@@ -33,10 +33,8 @@ pub struct Options {
 pub enum Amount {
     /// So many, whatever the cases say.
     Exactly(u64),
-    /// What the case says; without a word of it, [`DRAWS`].
-    Case,
-    /// The same, but at most so many.
-    AtMost(u64),
+    /// What the case says; without a word of it, so many.
+    CaseOr(u64),
 }
 
 impl Amount {
@@ -44,8 +42,7 @@ impl Amount {
     pub(super) fn of(self, case: Option<u64>) -> u64 {
         match self {
             Self::Exactly(draws) => draws,
-            Self::Case => case.unwrap_or(DRAWS),
-            Self::AtMost(most) => case.unwrap_or(most).min(most),
+            Self::CaseOr(draws) => case.unwrap_or(draws),
         }
     }
 }
@@ -54,7 +51,7 @@ impl Default for Options {
     fn default() -> Self {
         Self {
             seed: 1,
-            draws: Amount::Case,
+            draws: Amount::CaseOr(DRAWS),
             alpha: 1e-3,
             seconds: None,
             budget: None,

@@ -137,7 +137,11 @@ impl<'a> Plan<'a> {
             |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
         let ready: usize = cases.iter().map(ready).sum();
         // A budget is shared out evenly; what is saved goes to those that are still open.
-        let share = options.budget.map(|budget| (budget / ready.max(1) as u64).max(2));
+        let share = options.budget.map(|budget| {
+            let share = (budget / ready.max(1) as u64).max(2);
+            // In whole blocks, since looks come at their ends.
+            if share < BLOCK { share } else { share / BLOCK * BLOCK }
+        });
         cases.par_iter_mut().for_each(|planned_case| {
             let case = planned_case.case;
             for planned in &mut planned_case.experiments {
@@ -285,7 +289,10 @@ impl Planned {
             questions = checks::questions(&subject);
         }
         (self.draws, self.fixed) = (subject.draws, subject.fixed);
-        self.horizon = if options.fixed { self.draws } else { horizon(self.draws) };
+        // A budget of less than a block leaves nothing to go on with.
+        let is_tight = options.budget.is_some() && self.draws < BLOCK;
+        let is_fixed = options.fixed || is_tight;
+        self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
         self.questions = questions;
     }
 
@@ -315,14 +322,15 @@ fn horizon(draws: u64) -> u64 {
     (draws as f64 * gate::HORIZON / gate::PLANNED).ceil() as u64
 }
 
-/// The most draws that a question with the case's own tolerance needs, within `most`.
+/// The draws that keep every promise that `most` draws can keep, at the case's own tolerances and,
+/// where it has none, at the widest that are worth a promise.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most `most`
 fn needed(questions: &[Question], most: u64) -> u64 {
-    let wanted = questions.iter().filter_map(|question| match &question.kind {
-        Kind::Scalar(scalar) if scalar.by_case => Some(scalar.draws),
+    let promised = questions.iter().filter_map(|question| match &question.kind {
+        Kind::Scalar(scalar) if scalar.underpowered.is_none() => Some(scalar.least),
         _ => None,
     });
-    let needed = wanted.fold(0.0, f64::max);
+    let needed = promised.fold(0.0, f64::max);
     if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }
 }
 

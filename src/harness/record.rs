@@ -198,6 +198,8 @@ pub struct Row {
     pub lookups_pmf: Vec<f64>,
     /// `n(2)`: with fewer draws the events that make the variance are not seen.
     pub rare_event_size: Option<f64>,
+    /// `E[X⁸]/E[X⁴]²`, which says how heavy the tails of the sample variance are.
+    pub eighth_moment_ratio: Option<f64>,
     /// All values of the row are in units of `exp(−log_unit)`; `None` where they are as they are.
     pub log_unit: Option<f64>,
 }

@@ -102,9 +102,14 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
     while !cut_by_time && fronts.iter().any(|front| !front.is_done) {
+        // What others need for their fixed draws is not taken from them.
+        let mut reserved: u64 = fronts.iter().map(Front::reserve).sum();
         for front in fronts.iter_mut().filter(|front| !front.is_done) {
-            if !take(&mut budget, front.stage()) {
+            reserved -= front.reserve();
+            if !take(&mut budget, front.stage(), reserved) {
                 (front.is_done, cut_by_budget) = (true, true);
+            } else {
+                reserved += front.reserve().saturating_sub(front.stage());
             }
         }
         for units in units(&fronts).chunks(BATCH) {
@@ -139,9 +144,10 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     Draws { cases, cut_by_time, cut_by_budget }
 }
 
-/// Takes draws from the budget, if there is one and it has them.
-fn take(budget: &mut Option<u64>, draws: u64) -> bool {
-    let left = budget.map(|left| left.checked_sub(draws));
+/// Takes draws from the budget, if there is one and it has them beside those that are reserved.
+fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
+    let enough = |left: &u64| *left >= reserved;
+    let left = budget.map(|left| left.checked_sub(draws).filter(enough));
     match left {
         Some(None) => false,
         Some(left) => {
@@ -216,6 +222,15 @@ impl Front<'_> {
     /// The draws up to the next look.
     fn stage(&self) -> u64 {
         (self.look * BLOCK).min(self.planned.horizon) - self.drawn.draws
+    }
+
+    /// The draws that are still to come up to the fixed number, in whole blocks.
+    fn reserve(&self) -> u64 {
+        if self.is_done {
+            return 0;
+        }
+        let fixed = self.planned.fixed.div_ceil(BLOCK) * BLOCK;
+        fixed.min(self.planned.horizon).saturating_sub(self.drawn.draws)
     }
 
     /// Merges what was drawn, up to the next look.

@@ -31,6 +31,12 @@ pub enum CaseError {
         /// What the system said.
         cause: std::io::Error,
     },
+    /// A name that no report could show.
+    #[error("{name:?}: a case's name has no control characters; rename the file")]
+    Name {
+        /// The name.
+        name: String,
+    },
     /// A folder holds no case files.
     #[error("{path}: no case file (*.toml) in this folder")]
     Empty {
@@ -81,7 +87,8 @@ impl CaseError {
 }
 
 impl Source {
-    /// Reads a file; its name is its path below a folder called `cases`, or its file name.
+    /// Reads a file; its name is its path below a folder called `cases`, or its file name, wherever it
+    /// is read from.
     ///
     /// # Errors
     ///
@@ -89,7 +96,8 @@ impl Source {
     pub fn read(path: &Path) -> Result<Self, CaseError> {
         let text = std::fs::read_to_string(path)
             .map_err(|cause| CaseError::Unreadable { path: path.display().to_string(), cause })?;
-        let parts: Vec<String> = path
+        let whole = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+        let parts: Vec<String> = whole
             .with_extension("")
             .components()
             .map(|part| part.as_os_str().to_string_lossy().into_owned())
@@ -99,6 +107,9 @@ impl Source {
             Some(at) if at < parts.len() => parts[at..].join("/"),
             _ => parts.last().cloned().unwrap_or_default(),
         };
+        if name.chars().any(char::is_control) {
+            return Err(CaseError::Name { name });
+        }
         Ok(Self { name, path: path.to_owned(), text })
     }
 

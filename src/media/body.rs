@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{CATALOGUE, Medium, Profile, Volume};
+use super::{CATALOGUE, FreeFlight, Medium, Profile, Visitor, Volume};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
@@ -37,14 +37,18 @@ impl Body {
             (true, false) => {
                 let field = read_line(settings);
                 let span = read_span(settings);
-                let (name, profile) = field?;
-                Some(Self::Line { name, profile: Arc::new(profile), span: span? })
+                let ((name, profile), span) = (field?, span?);
+                let pieces = profile.visit(Pieces(span));
+                not_too_many(settings, "medium", pieces)?;
+                Some(Self::Line { name, profile: Arc::new(profile), span })
             }
             (false, true) => {
                 let field = read_volume(settings);
                 let ray = settings.table("ray").and_then(|ray| read_ray(&ray));
-                let (name, volume) = field?;
-                Some(Self::Volume { name, volume: Arc::new(volume), ray: ray? })
+                let ((name, volume), ray) = (field?, ray?);
+                let pieces = volume.pieces(volume.bounds().clip(&ray).length());
+                not_too_many(settings, "volume", pieces)?;
+                Some(Self::Volume { name, volume: Arc::new(volume), ray })
             }
             (both, _) => {
                 let found = if both { "both `medium` and `volume`" } else { "no field is given" };
@@ -90,6 +94,26 @@ impl Body {
             }
         }
     }
+}
+
+/// More pieces than this along one ray are a mistake in the case: they would fill the memory.
+const MOST_PIECES: f64 = 1e7;
+
+struct Pieces(Span);
+impl Visitor for Pieces {
+    type Output = f64;
+    fn visit<F: FreeFlight>(self, field: &F) -> f64 {
+        field.pieces(self.0)
+    }
+}
+
+fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<()> {
+    if pieces <= MOST_PIECES {
+        return Some(());
+    }
+    let found = format!("about {pieces:.1e} pieces along the ray, more than {MOST_PIECES:.0e}");
+    settings.fault(key, found, "make it shorter, or its features larger");
+    None
 }
 
 fn names() -> Vec<String> {

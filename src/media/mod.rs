@@ -43,6 +43,12 @@ pub trait OpticalDepth: Extinction {
         Vec::new()
     }
 
+    /// About how many breaks there are, known without finding them.
+    fn pieces(&self, span: Span) -> f64 {
+        let _ = span;
+        0.0
+    }
+
     /// How many Gauss nodes between two breaks integrate `σ_t` and its square to rounding; `None`
     /// where no fixed number does and panels are halved until they agree.
     fn panel_nodes(&self) -> Option<usize> {
@@ -90,6 +96,12 @@ pub trait Field: Sized + Send + Sync + 'static {
 
     /// A number that `σ_t` exceeds nowhere in the box.
     fn majorant(&self, within: &Aabb) -> f64;
+
+    /// About how many pieces a ray sees in a length at most, known without finding them.
+    fn pieces(&self, length: f64) -> f64 {
+        let _ = length;
+        0.0
+    }
 
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
@@ -164,6 +176,12 @@ macro_rules! media {
             #[must_use]
             pub fn majorant(&self, within: &Aabb) -> f64 {
                 match self { $(Self::$Field(field) => field.majorant(within)),* }
+            }
+
+            /// About how many pieces a ray sees in a length at most.
+            #[must_use]
+            pub fn pieces(&self, length: f64) -> f64 {
+                match self { $(Self::$Field(field) => field.pieces(length)),* }
             }
 
             /// What the ray sees on the stretch `inside`.

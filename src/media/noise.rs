@@ -220,6 +220,12 @@ impl Field for Noise {
         self.bounds
     }
 
+    fn pieces(&self, length: f64) -> f64 {
+        let Spectrum { frequency, octaves, .. } = self.spectrum;
+        // Planes in three directions, √3 of them per cell's length; the finest octave has half of all.
+        3f64.sqrt() * length * frequency * f64::from(1u32 << octaves)
+    }
+
     fn extinction_at(&self, p: Point) -> f64 {
         self.spectrum.value((p * self.spectrum.frequency).0, self.unit)
     }

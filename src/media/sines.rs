@@ -101,9 +101,13 @@ impl OpticalDepth for Waves {
         Known::new(length * mean, length * error * f64::EPSILON)
     }
 
-    fn breaks(&self, span: Span) -> Vec<f64> {
+    fn pieces(&self, span: Span) -> f64 {
         let fastest = self.parts.iter().fold(0.0f64, |f, wave| f.max(wave.frequency.abs()));
-        let half_periods = (fastest * span.length() / PI).ceil();
+        (fastest * span.length() / PI).ceil()
+    }
+
+    fn breaks(&self, span: Span) -> Vec<f64> {
+        let half_periods = self.pieces(span);
         let at = |n: f64| span.from + span.length() * (n / half_periods);
         std::iter::successors(Some(1.0), |n| Some(n + 1.0))
             .take_while(|&n| n < half_periods)
@@ -165,6 +169,11 @@ impl Field for Sines {
 
     fn bounds(&self) -> Bounds {
         self.bounds
+    }
+
+    fn pieces(&self, length: f64) -> f64 {
+        let fastest = self.waves.iter().map(|wave| wave.1.dot(wave.1).sqrt()).fold(0.0, f64::max);
+        (fastest * length / PI).ceil()
     }
 
     fn extinction_at(&self, p: Point) -> f64 {

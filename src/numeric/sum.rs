@@ -19,8 +19,12 @@ impl Sum {
     #[inline]
     pub fn add(&mut self, x: f64) {
         let total = self.sum + x;
-        self.correction +=
-            if self.sum.abs() >= x.abs() { (self.sum - total) + x } else { (x - total) + self.sum };
+        // An infinite sum stays infinite: nothing is rounded away that could be told.
+        if total.is_finite() {
+            let (large, small) =
+                if self.sum.abs() >= x.abs() { (self.sum, x) } else { (x, self.sum) };
+            self.correction += (large - total) + small;
+        }
         self.sum = total;
     }
 
@@ -53,5 +57,11 @@ mod tests {
     fn small_terms_survive_a_large_one() {
         let sum: Sum = [1.0, 1e100, 1.0, -1e100].into_iter().collect();
         assert_eq!(sum.value(), 2.0);
+    }
+
+    #[test]
+    fn an_infinite_sum_is_infinite() {
+        let sum: Sum = [1.0, f64::INFINITY, 1.0].into_iter().collect();
+        assert_eq!(sum.value(), f64::INFINITY);
     }
 }

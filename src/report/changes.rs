@@ -32,7 +32,9 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let mut remarks =
         vec![format!("baseline {name}: {compared} variances and lookups compared at α = {alpha}")];
     if *blunt > 0 {
-        remarks.push(format!("too few draws to compare the variance: {blunt} times"));
+        remarks.push(format!(
+            "too few draws, or too heavy a tail, to compare the variance: {blunt} times"
+        ));
     }
     remarks.push(match comparison.sequel {
         Sequel::Run(runs) => format!(

@@ -59,8 +59,7 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
 pub fn brief(record: &Record, pen: layout::Pen) -> String {
     let mut text = String::new();
     for case in &record.results.cases {
-        let quiet =
-            |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass | Verdict::Refused) | None);
+        let quiet = |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
         let rows: Vec<Row> = case.rows.iter().filter(quiet).cloned().collect();
         let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
         if rows.is_empty() {

@@ -13,10 +13,11 @@ pub mod totals;
 pub mod troubles;
 
 use std::fs;
-use std::io::{self, Write};
+use std::io;
 use std::path::{Component, Path, PathBuf};
 
 use crate::catalogue::Catalogue;
+use crate::files;
 use crate::harness::record::Record;
 
 /// A file that a report would have.
@@ -43,7 +44,7 @@ pub trait Report: Send + Sync {
 #[non_exhaustive]
 pub enum ReportError {
     /// The csv encoder gave up.
-    #[error("cannot encode {name} as csv: {source}")]
+    #[error("cannot encode {name} as csv")]
     Csv {
         /// The file.
         name: String,
@@ -68,7 +69,7 @@ pub enum ReportError {
     #[error("`{}` leads out of the results; name the case without `..` or a leading `/`", .0.display())]
     Outside(PathBuf),
     /// A folder could not be made.
-    #[error("cannot make the folder {}: {source}; give another with --out", path.display())]
+    #[error("cannot make the folder {}; give another with --out", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -76,7 +77,7 @@ pub enum ReportError {
         source: io::Error,
     },
     /// A file could not be written.
-    #[error("cannot write {}: {source}; free the place or give another with --out", path.display())]
+    #[error("cannot write {}; free the place or give another with --out", path.display())]
     Write {
         /// The file.
         path: PathBuf,
@@ -95,14 +96,11 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(rendered?.into_iter().flatten().collect())
 }
 
-/// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed, so that
-/// a killed run leaves no torn file.
-///
-/// # Errors
-///
-/// Where a path leads out of `out_dir`, or the system refuses a folder or a file.
-pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Result<(), ReportError> {
-    artifacts.iter().try_for_each(|artifact| write_one(artifact, out_dir))
+/// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed. What can be
+/// written is, whatever becomes of the others; answers what could not.
+#[must_use]
+pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Vec<ReportError> {
+    artifacts.iter().filter_map(|artifact| write_one(artifact, out_dir).err()).collect()
 }
 
 fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
@@ -114,27 +112,8 @@ fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
     let folder = path.parent().unwrap_or(out_dir);
     fs::create_dir_all(folder)
         .map_err(|source| ReportError::Folder { path: folder.to_owned(), source })?;
-    replace(&path, &artifact.bytes)
+    files::replace(&path, &artifact.bytes)
         .map_err(|source| ReportError::Write { path: path.clone(), source })
-}
-
-/// Writes a file under a temporary name beside it and renames it.
-///
-/// # Errors
-///
-/// Where the system refuses.
-pub fn replace(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let mut builder = tempfile::Builder::new();
-    // A temporary file is private to its owner unless told otherwise; results are for everyone.
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o644))
-    };
-    let mut file = builder.prefix(".trueflight-").tempfile_in(folder.unwrap_or(Path::new(".")))?;
-    file.write_all(bytes)?;
-    file.persist(path).map(drop).map_err(|error| error.error)
 }
 
 /// A case's file: its name, which may have folders, with an ending.
@@ -185,7 +164,7 @@ mod tests {
         let old = out.path().join("a/b.csv");
         fs::create_dir_all(out.path().join("a")).expect("a folder");
         fs::write(&old, "old and longer").expect("a file");
-        write(&[artifact("a/b.csv")], out.path()).expect("writes");
+        assert!(write(&[artifact("a/b.csv")], out.path()).is_empty());
         assert_eq!(fs::read(&old).expect("reads"), b"new");
         assert_eq!(fs::read_dir(out.path().join("a")).expect("lists").count(), 1);
     }
@@ -195,7 +174,7 @@ mod tests {
     fn results_are_readable_by_all() {
         use std::os::unix::fs::PermissionsExt;
         let out = tempfile::tempdir().expect("a temporary folder");
-        write(&[artifact("b.csv")], out.path()).expect("writes");
+        assert!(write(&[artifact("b.csv")], out.path()).is_empty());
         let mode = fs::metadata(out.path().join("b.csv")).expect("exists").permissions().mode();
         assert_eq!(mode & 0o777, 0o644);
     }
@@ -204,7 +183,7 @@ mod tests {
     fn a_path_out_of_the_results_is_refused() {
         let out = tempfile::tempdir().expect("a temporary folder");
         for path in ["../b.csv", "/b.csv", "a/../../b.csv"] {
-            let error = write(&[artifact(path)], out.path()).expect_err("must refuse");
+            let error = write(&[artifact(path)], out.path()).pop().expect("must refuse");
             assert!(matches!(error, ReportError::Outside(_)), "{error}");
         }
     }
@@ -213,7 +192,7 @@ mod tests {
     fn a_failure_names_the_path_and_the_cure() {
         let out = tempfile::tempdir().expect("a temporary folder");
         fs::write(out.path().join("a"), "a file where a folder must be").expect("a file");
-        let error = write(&[artifact("a/b.csv")], out.path()).expect_err("must fail").to_string();
+        let error = write(&[artifact("a/b.csv")], out.path()).pop().expect("must fail").to_string();
         assert!(error.contains("--out") && error.contains('a'), "{error}");
     }
 }

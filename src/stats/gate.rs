@@ -173,10 +173,13 @@ impl Evidence {
     }
 }
 
-/// ln of the mean of `e^x`.
+/// ln of the mean of `e^x`; not a number if one of them is none.
 #[must_use]
 pub fn ln_mean_exp(x: &[f64]) -> f64 {
     let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
+    if x.iter().any(|x| x.is_nan()) {
+        return f64::NAN;
+    }
     if !largest.is_finite() {
         return largest;
     }

@@ -17,15 +17,17 @@
 
 use std::cmp::Ordering;
 
-/// Which hypotheses Holm's procedure rejects at family-wise level `alpha`.
+/// Which hypotheses Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses` of which
+/// those without a p-value count as 1.
 #[must_use]
-pub fn holm(p: &[f64], alpha: f64) -> Vec<bool> {
+pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
+    let hypotheses = hypotheses.max(p.len());
     let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
     let mut order: Vec<usize> = (0..p.len()).collect();
     order.sort_by(|&i, &j| p[i].total_cmp(&p[j]));
     let mut rejected = vec![false; p.len()];
     for (rank, &index) in order.iter().enumerate() {
-        if p[index] > alpha / (p.len() - rank) as f64 {
+        if p[index] > alpha / (hypotheses - rank) as f64 {
             break;
         }
         rejected[index] = true;
@@ -83,11 +85,13 @@ mod tests {
     #[test]
     fn holm_steps_down_and_stops() {
         // Thresholds .0125, .0167, .025, .05: the third fails, so the fourth is never asked.
-        assert_eq!(holm(&[0.03, 0.005, 0.04, 0.013], 0.05), [false, true, false, true]);
+        assert_eq!(holm(&[0.03, 0.005, 0.04, 0.013], 4, 0.05), [false, true, false, true]);
+        // The same among eight: .00625, .00714.
+        assert_eq!(holm(&[0.03, 0.005, 0.007, 0.013], 8, 0.05), [false, true, true, false]);
         // One at exactly its threshold is rejected.
-        assert_eq!(holm(&[0.05, 0.025], 0.05), [true, true]);
-        assert_eq!(holm(&[], 0.05), [false; 0]);
-        assert_eq!(holm(&[f64::NAN, 0.02], 0.05), [false, true]);
+        assert_eq!(holm(&[0.05, 0.025], 2, 0.05), [true, true]);
+        assert_eq!(holm(&[], 0, 0.05), [false; 0]);
+        assert_eq!(holm(&[f64::NAN, 0.02], 2, 0.05), [false, true]);
     }
 
     #[test]

@@ -8,6 +8,8 @@
 //! Source: D. E. Knuth, *The Art of Computer Programming*, volume 2, 3rd edition (1997), section
 //! 3.3.2 I (the test of collisions). A law of 53 bits gives n²/2⁵⁴ ties, one of 24 bits n²/2²⁵.
 
+use crate::stats::chi_square;
+
 /// How many values equal another one before them; sorts the values.
 ///
 /// `0` and `−0` are equal; NaN equals nothing.
@@ -15,6 +17,16 @@
 pub fn ties(values: &mut [f64]) -> usize {
     values.sort_unstable_by(f64::total_cmp);
     values.windows(2).filter(|pair| pair[0] == pair[1]).count()
+}
+
+/// The chance of so many ties or more where `expected` are expected: a Poisson number of them.
+#[must_use]
+pub fn p_value(ties: usize, expected: f64) -> f64 {
+    if ties == 0 {
+        return 1.0;
+    }
+    // P(N ≥ k) = P(Gamma(k) < λ) = P(χ² with 2k degrees < 2λ).
+    chi_square::lower(2.0 * expected, 2.0 * ties as f64)
 }
 
 /// Whether every finite value is a single-precision number; false without finite values.
@@ -52,6 +64,14 @@ mod tests {
         assert_eq!(ties(&mut fine), 0);
         let found = ties(&mut coarse) as f64;
         assert!((found - expected).abs() < 5.0 * expected.sqrt(), "{found} against {expected}");
+    }
+
+    #[test]
+    fn chances_of_ties_by_hand() {
+        assert_eq!(p_value(0, 1e-8), 1.0);
+        assert!((p_value(1, 1e-8) / 1e-8 - 1.0).abs() < 1e-7);
+        let (x, two) = (0.5f64, p_value(2, 0.5));
+        assert!((two - (1.0 - (-x).exp() * (1.0 + x))).abs() < 1e-12);
     }
 
     #[test]

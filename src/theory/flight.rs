@@ -33,7 +33,9 @@ pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
         let escaped = escape.value * (ray.length() - mean).powi(k);
         if mean == 0.0 { 0.0 } else { (collided + escaped) / mean.powi(k) }
     });
-    let truth = Known::new(mean, mean * (mesh.relative_error() + 1e-14));
+    // A distance is a difference of positions, and these have the resolution of the ray's end.
+    let grain = f64::EPSILON * ray.to.abs().max(ray.from.abs());
+    let truth = Known::new(mean, mean * (mesh.relative_error() + 1e-14) + grain);
     let moments = Moments { scale: mean, relative, error: mesh.relative_error() + 1e-13 };
     let channel = Channel::unbiased(truth, moments, Tails::LIGHT);
     let law = distances(mesh, ray, escape.value);
@@ -77,5 +79,5 @@ fn distances(mesh: &Mesh, ray: Span, escape: f64) -> Option<Law> {
             mesh.medium().free_flight(depth).map(|t| t - ray.from)
         })
         .collect();
-    Some(Law::Distances { bins: bins?, end: ray.length(), escape })
+    Some(Law::Distances { bins: bins?, end: ray.length(), from: ray.from, escape })
 }

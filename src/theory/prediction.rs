@@ -136,6 +136,8 @@ pub enum Law {
         bins: Vec<f64>,
         /// The end of the ray: the value of a draw that escapes.
         end: f64,
+        /// The position of the ray's beginning, which positions have the resolution of.
+        from: f64,
         /// The probability of escaping.
         escape: f64,
     },

@@ -66,7 +66,8 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
         m4 - 4.0 * m3 * m1 + 6.0 * m2 * m1 * m1 - 3.0 * m1.powi(4),
     ];
     let relative = [central[0].max(0.0), central[1], central[2].max(0.0)];
-    let noise = (mesh.relative_error() + 1e-14) * m4.abs().max(1.0);
+    let terms = m4.abs() + 4.0 * (m3 * m1).abs() + 6.0 * (m2 * m1 * m1).abs() + 3.0 * m1.powi(4);
+    let noise = (mesh.relative_error() + 1e-14) * terms;
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
     let moments = Moments { scale: depth.exp_neg().value, relative, error };
     let kurtosis = moments.kurtosis().unwrap_or(1.0);

@@ -47,6 +47,7 @@ fn drawn(estimator: &str, control: &str, swept: f64, z: f64) -> Row {
         lookups_variance: Some(lookups),
         lookups_pmf: vec![0.25, 0.5, 0.25],
         rare_event_size: Some(15.5),
+        eighth_moment_ratio: Some(40.5),
         predicted_skewness: Some(0.75),
         predicted_kurtosis: Some(12.5),
         detectable_bias: Some(0.003),
@@ -257,7 +258,7 @@ fn comparison() -> Comparison {
     };
     Comparison {
         name: "main".to_owned(),
-        rules: Rules { alpha: 0.01, time_tolerance: 0.25, ln_e_limit: 8.5 },
+        rules: Rules { alpha: 0.01, time_tolerance: 0.25 },
         sequel: Sequel::Run(3),
         compared: 12,
         blunt: 1,

@@ -4,7 +4,7 @@
 //! s = τ⁻¹(−ln u),  u uniform in (0, 1];  a depth beyond τ(0, S) escapes and scores S
 //! ```
 //!
-//! Exact for every field whose optical depth is; where that has no closed inverse, the root is
+//! For τ ≤ 700; exact for every field whose optical depth is; where that has no closed inverse, the root is
 //! bracketed to the last bits. It evaluates the optical depth, never σ_t: no lookups.
 //!
 //! The optical depth is theory, which uses the platform's library: the last bits of these draws, and
@@ -30,8 +30,8 @@ impl Estimator<FreeFlight> for Inversion {
         Some(Self)
     }
 
-    fn domain(&self, _: &Setup<FreeFlight>) -> Result<(), Refusal> {
-        Ok(())
+    fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
+        super::resolved(setup)
     }
 
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {

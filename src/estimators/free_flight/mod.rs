@@ -1,7 +1,19 @@
 //! Samplers of the free flight along a ray.
 
-use crate::estimators::estimators;
+use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::FreeFlight;
+
+/// Beyond this optical depth, theory's quadratures do not resolve where the flights end.
+const DEEPEST: f64 = 700.0;
+
+/// Whether theory can say where flights end.
+fn resolved(setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
+    let depth = setup.mesh.optical_depth().value;
+    if depth <= DEEPEST {
+        return Ok(());
+    }
+    Err(Refusal::mismatch("an optical depth of at most 700", format!("τ = {depth:.6}")))
+}
 
 estimators! {
     FreeFlight:

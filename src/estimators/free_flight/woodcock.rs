@@ -4,7 +4,7 @@
 //! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̄(tᵢ),  tᵢ a Poisson process of rate σ̄;  S if there is none
 //! ```
 //!
-//! Exact in law for `σ̄ ≥ σ_t`; refused elsewhere. Lookups are those of `woodcock` for the
+//! Exact in law for `σ̄ ≥ σ_t`; refused elsewhere and for τ > 700. Lookups are those of `woodcock` for the
 //! transmittance: `E = ∫ σ̄ T dt`.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
@@ -30,7 +30,8 @@ impl Estimator<FreeFlight> for Woodcock {
     }
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
-        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        super::resolved(setup)
     }
 
     fn predict(&self, setup: &Setup<FreeFlight>) -> Prediction {

@@ -19,6 +19,9 @@ use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
 use crate::rng::{Address, PILOT, exponential};
 
+/// A pilot ray with more collisions than this is a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e6;
+
 /// What pilot rays teach.
 #[derive(Debug, Clone, Copy)]
 pub struct Pilot {
@@ -56,6 +59,11 @@ impl Recipe for Pilot {
         let mut largest = 0.0f64;
         for ray in 0..self.rays {
             let mut rng = Address { block: ray, lane: PILOT, ..site.address }.stream();
+            let collisions = sampling * support.length();
+            if collisions.is_nan() || collisions > MOST_COLLISIONS {
+                let needs = "at most a million collisions of a pilot ray";
+                return Err(Refusal::mismatch(needs, format!("{collisions:.1e} are expected")));
+            }
             let flown = Piecewise::constant(sampling, support);
             let mut cursor = flown.begin();
             while flown.fly(&mut cursor, exponential(&mut rng)).is_some() {

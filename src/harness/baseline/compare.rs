@@ -1,21 +1,24 @@
 //! A run against a stored one.
 //!
 //! ```text
-//! variance  ρ = s²/s₀²,  Var[ln ρ] = (κ − 1)/n + (κ₀ − 1)/n₀
+//! variance  ρ = s²/s₀²,  Var[ln ρ] = v(κ, n) + v(κ₀, n₀),  v = (κ − (n − 3)/(n − 1))/n
 //! lookups   ρ = N/N₀,    Var[ln ρ] = Var N/(n N²) + Var N₀/(n₀ N₀²)
 //! interval  ρ exp(±z √Var),  z of α over all comparisons, by Bonferroni
 //! time      ρ = t/t₀, t processor time per draw, where both took 0.1 s or more
 //! drift     ln E = stored + new, against the limit of the run
 //! ```
 //!
-//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance
-//! whose relative standard error is above 10 % on either side is not compared. A regression is an
+//! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is
+//! not compared where, on either side, its relative standard error is above 10 %, its law is not near
+//! normal (E[X⁸]/E[X⁴]² > n/100, or fewer draws than ten times the rare-event size), or hardly anything
+//! of it is left to chance (κ − 1 < 100/n). A regression is an
 //! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
 //! time is not known from one figure: it fails beyond a factor that the caller chooses.
 //!
 //! The product of e-values of independent runs is an e-value: its chance to reach the limit is at most
 //! that of one. It is taken only where the program and the text of the case are the same and the seed
-//! is new.
+//! is new. The limit is the highest of the runs that are joined, since what a later run selects is
+//! selected by what an earlier one showed; entries that the later run has not drawn are kept.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,6 +31,12 @@ use crate::stats::normal;
 const SHORTEST: f64 = 0.1;
 /// The largest relative standard error of a variance that is compared.
 const BLUNT: f64 = 0.1;
+/// The largest share of the draws that `E[X⁸]/E[X⁴]²` may be where a sample variance is near normal.
+const HEAVY: f64 = 0.01;
+/// Draws in units of the rare-event size, from which on the variance's events are seen.
+const SEEN: f64 = 10.0;
+/// The least `(κ − 1) n` of a variance that is left to chance.
+const LEAST: f64 = 100.0;
 /// Two numbers of lookups without spread are the same if they are this near.
 const ROUNDING: f64 = 1e-9;
 
@@ -38,8 +47,6 @@ pub struct Rules {
     pub alpha: f64,
     /// How much more time per draw is no regression, as a share.
     pub time_tolerance: f64,
-    /// The ln E at which a check fails.
-    pub ln_e_limit: f64,
 }
 
 /// What changed.
@@ -132,8 +139,19 @@ type Measured = (f64, f64);
 
 impl Entry {
     fn variance(&self) -> Option<Measured> {
-        let error = ((self.kurtosis? - 1.0).max(0.0) / self.draws as f64).sqrt();
+        let (n, kurtosis) = (self.draws as f64, self.kurtosis?);
+        let error = ((kurtosis - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt();
         Some((self.variance.filter(|&variance| variance > 0.0)?, error))
+    }
+
+    /// Whether the sample variance has a law that can be compared.
+    fn is_sharp(&self) -> bool {
+        let n = self.draws as f64;
+        let error = self.variance().map_or(f64::INFINITY, |(_, error)| error);
+        let heavy = self.eighth_moment_ratio.unwrap_or(f64::INFINITY);
+        let rare = self.rare_event_size.unwrap_or(f64::INFINITY);
+        let chance = self.kurtosis.map_or(0.0, |kurtosis| (kurtosis - 1.0) * n);
+        error <= BLUNT && heavy <= HEAVY * n && SEEN * rare <= n && chance >= LEAST
     }
 
     fn lookups(&self) -> Option<Measured> {
@@ -190,23 +208,26 @@ pub fn compare(
         }
     }
     let questions: Vec<_> = pairs.iter().flat_map(|(before, now)| questions(before, now)).collect();
-    let is_sharp = |question: &&Question| {
-        question.quantity != Quantity::Variance
-            || (question.before.1 <= BLUNT && question.now.1 <= BLUNT)
+    let blunt = |pair: &&(&Entry, &Entry)| {
+        let has_both = pair.0.variance().is_some() && pair.1.variance().is_some();
+        has_both && is_comparable(pair.0, pair.1) && !(pair.0.is_sharp() && pair.1.is_sharp())
     };
-    let sharp: Vec<_> = questions.iter().filter(is_sharp).collect();
-    comparison.compared = sharp.len();
-    comparison.blunt = questions.len() - sharp.len();
-    let z = normal::two_sided(rules.alpha / sharp.len().max(1) as f64);
-    comparison.changes = sharp.iter().filter_map(|question| question.answer(z)).collect();
+    comparison.compared = questions.len();
+    comparison.blunt = pairs.iter().filter(blunt).count();
+    let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
+    comparison.changes = questions.iter().filter_map(|question| question.answer(z)).collect();
     let times = pairs.iter().filter_map(|(before, now)| time(before, now, rules.time_tolerance));
     comparison.changes.extend(times);
     let mut next = run.clone();
+    if comparison.sequel != Sequel::OtherProgram {
+        next.ln_e_limit = next.ln_e_limit.max(stored.ln_e_limit);
+        next.entries.extend(not_drawn(stored, run));
+    }
     if let Sequel::Run(_) = comparison.sequel {
-        comparison.drifts = multiply(&mut next, &before, rules.ln_e_limit);
+        comparison.drifts = multiply(&mut next, &before, run);
         next.seeds = [&stored.seeds[..], &run.seeds[..]].concat();
     } else if comparison.sequel == Sequel::SameSeed {
-        for entry in &mut next.entries {
+        for entry in next.entries.iter_mut().take(run.entries.len()) {
             let stored = before.get(entry.id.as_str());
             if let Some(stored) = stored.filter(|stored| stored.case == entry.case) {
                 entry.checks.clone_from(&stored.checks);
@@ -228,9 +249,10 @@ fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
 }
 
 /// Adds the stored ln E to those of the run; answers those that reach the limit.
-fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, limit: f64) -> Vec<Drift> {
+fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, run: &Baseline) -> Vec<Drift> {
     let mut drifts = Vec::new();
-    for entry in &mut next.entries {
+    let limit = next.ln_e_limit;
+    for entry in next.entries.iter_mut().take(run.entries.len()) {
         let stored = before.get(entry.id.as_str()).filter(|stored| stored.case == entry.case);
         let Some(stored) = stored else { continue };
         for Evidence { check, ln_e } in &mut entry.checks {
@@ -247,6 +269,19 @@ fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, limit: f64) ->
     drifts
 }
 
+/// The stored entries that the run has not drawn, of cases that it has not with another text.
+fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
+    let case = |entry: &Entry| entry.id.split('|').next().unwrap_or_default().to_owned();
+    let texts: BTreeMap<String, &str> =
+        run.entries.iter().map(|entry| (case(entry), entry.case.as_str())).collect();
+    let drawn: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
+    let kept = stored.entries.iter().filter(|entry| {
+        let is_drawn = drawn.contains(entry.id.as_str());
+        !is_drawn && texts.get(&case(entry)).is_none_or(|text| *text == entry.case)
+    });
+    kept.cloned().collect()
+}
+
 /// One comparison.
 struct Question<'e> {
     entry: &'e Entry,
@@ -255,12 +290,18 @@ struct Question<'e> {
     now: Measured,
 }
 
-/// What two entries can be compared in: not in what a σ̂ learned from other pilot rays decides.
+/// Whether both are of the same σ̂: not where it was learned from other pilot rays.
+fn is_comparable(before: &Entry, now: &Entry) -> bool {
+    !now.learns || before.seed == now.seed
+}
+
+/// What two entries can be compared in.
 fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
-    if now.learns && before.seed != now.seed {
+    if !is_comparable(before, now) {
         return Vec::new();
     }
-    let variance = before.variance().zip(now.variance());
+    let is_sharp = before.is_sharp() && now.is_sharp();
+    let variance = before.variance().zip(now.variance()).filter(|_| is_sharp);
     let lookups = before.lookups().zip(now.lookups());
     let question =
         |quantity| move |(before, now_)| Question { entry: now, quantity, before, now: now_ };

@@ -10,13 +10,14 @@
 
 pub mod compare;
 
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
 use super::case::Case;
 use super::record::{CaseRecord, Record, Row};
+use crate::files;
 
 /// The version of the file's form.
 pub const SCHEMA: u32 = 1;
@@ -30,6 +31,8 @@ pub struct Baseline {
     pub version: String,
     /// A hash of the program that drew.
     pub executable: String,
+    /// The largest ln E at which a scalar fails, of all runs that are joined here.
+    pub ln_e_limit: f64,
     /// The seeds whose e-values are multiplied into the entries.
     pub seeds: Vec<u64>,
     /// The experiments.
@@ -55,6 +58,10 @@ pub struct Entry {
     pub variance: Option<f64>,
     /// The kurtosis in theory.
     pub kurtosis: Option<f64>,
+    /// `E[X⁸]/E[X⁴]²` in theory.
+    pub eighth_moment_ratio: Option<f64>,
+    /// The rare-event size in theory.
+    pub rare_event_size: Option<f64>,
     /// Lookups of σ_t per draw; given once per experiment.
     pub lookups: Option<f64>,
     /// Their variance in theory.
@@ -104,6 +111,14 @@ pub enum BaselineError {
         /// What the decoder said.
         cause: serde_json::Error,
     },
+    /// A number that no run has.
+    #[error("{}: the numbers of {id} are those of no run; make it anew with --save-baseline", path.display())]
+    Nonsense {
+        /// The file.
+        path: PathBuf,
+        /// The entry.
+        id: String,
+    },
     /// Another version of the form.
     #[error(
         "{}: a baseline of form {found}, this program reads {SCHEMA}; \
@@ -148,6 +163,7 @@ impl Baseline {
             schema: SCHEMA,
             version: results.version.clone(),
             executable: executable.to_owned(),
+            ln_e_limit: results.gate.ln_e_limit,
             seeds: vec![results.seed],
             entries,
         }
@@ -190,7 +206,14 @@ impl Baseline {
         {
             return Err(BaselineError::Schema { path, found });
         }
-        serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
+        let stored: Self = match serde_json::from_value(tree) {
+            Ok(stored) => stored,
+            Err(cause) => return Err(BaselineError::Broken { path, cause }),
+        };
+        match stored.entries.iter().find(|entry| !entry.makes_sense()) {
+            Some(entry) => Err(BaselineError::Nonsense { path, id: entry.id.clone() }),
+            None => Ok(stored),
+        }
     }
 
     /// Whether a file can be written, known before the drawing.
@@ -199,7 +222,9 @@ impl Baseline {
     ///
     /// Its folder cannot be made or written into.
     pub fn writable(path: &Path) -> Result<(), BaselineError> {
-        temporary(path).map(drop).map_err(|cause| unwritable(path, cause))
+        folder_of(path)
+            .and_then(|()| files::writable(path))
+            .map_err(|cause| unwritable(path, cause))
     }
 
     /// Writes the file under a temporary name, then renames it.
@@ -209,33 +234,21 @@ impl Baseline {
     /// The system refuses.
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
         let write = || -> io::Result<()> {
-            let mut file = temporary(path)?;
             let text = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-            file.write_all(text.as_bytes())?;
-            file.write_all(b"\n")?;
-            file.persist(path).map(drop).map_err(|error| error.error)
+            folder_of(path)?;
+            files::replace(path, (text + "\n").as_bytes())
         };
         write().map_err(|cause| unwritable(path, cause))
     }
 }
 
-fn unwritable(path: &Path, cause: io::Error) -> BaselineError {
-    BaselineError::Unwritable { path: path.to_owned(), cause }
+/// Makes the folder of a file.
+fn folder_of(path: &Path) -> io::Result<()> {
+    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))
 }
 
-/// A temporary file beside the one that is meant; its folder is made.
-fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let mut builder = tempfile::Builder::new();
-    // A temporary file is private to its owner unless told otherwise; baselines are for everyone.
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o644))
-    };
-    builder.prefix(".trueflight-").tempfile_in(folder)
+fn unwritable(path: &Path, cause: io::Error) -> BaselineError {
+    BaselineError::Unwritable { path: path.to_owned(), cause }
 }
 
 /// A hash of the program that runs: FNV-1a over words of 8 bytes.
@@ -255,6 +268,18 @@ pub fn fingerprint() -> Result<String, BaselineError> {
 }
 
 impl Entry {
+    /// Whether its numbers can be those of a run.
+    fn makes_sense(&self) -> bool {
+        let sizes = [self.variance, self.lookups, self.lookups_variance, self.seconds];
+        let is_size = |x: &f64| *x >= 0.0 && *x < f64::MAX;
+        let is_ratio = |x: &f64| *x >= 1.0;
+        self.draws > 0
+            && self.drawn > 0
+            && sizes.iter().flatten().all(is_size)
+            && self.kurtosis.iter().all(is_ratio)
+            && self.mean.is_none_or(f64::is_finite)
+    }
+
     fn of(
         case: &CaseRecord,
         row: &Row,
@@ -288,6 +313,8 @@ impl Entry {
             mean: row.mean,
             variance: row.variance,
             kurtosis: row.predicted_kurtosis,
+            eighth_moment_ratio: row.eighth_moment_ratio,
+            rare_event_size: row.rare_event_size,
             lookups: row.lookups_per_draw.filter(|_| is_first),
             lookups_variance: spread.or(row.predicted_lookups.map(|_| 0.0)),
             seconds,

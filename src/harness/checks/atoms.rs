@@ -2,7 +2,7 @@
 //!
 //! It applies where theory knows all values: 0 and 1 of tracking estimators, the powers
 //! `T_c (1 − r)^N` of a constant ratio, the single value of deterministic estimators. A draw that
-//! is none of them counts as strange, and more than a handful of those fail the check.
+//! is none of them is strange: a single one fails the check where the list is complete.
 
 use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
@@ -58,7 +58,9 @@ impl Law for Values {
         // A product of many factors may fall below the last listed power; such draws are as rare
         // as the probability that the list leaves out.
         let left_out = (1.0 - self.probability.iter().sum::<f64>()).max(0.0);
-        if sums[known] > 10.0 + 10.0 * left_out * draws {
+        let expected = left_out * draws;
+        let strange = if expected < 1e-6 { 0.0 } else { 10.0 + 10.0 * expected };
+        if sums[known] > strange {
             return Some(0.0);
         }
         chi_square::p_value(&sums[..known], &self.probability)

@@ -7,7 +7,7 @@
 //! It applies to problems with several channels, and is reported with the farther one. Neighbours
 //! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
 
-use super::mean::is_certain;
+use super::mean::is_faint;
 use super::{Ask, Check, Kind, Known, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 use crate::theory::prediction::Covariance as Predicted;
@@ -36,7 +36,7 @@ impl Check for Covariance {
 
 fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
     let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
-    if is_certain(subject, first) || is_certain(subject, second) {
+    if is_faint(subject, first) || is_faint(subject, second) {
         return None;
     }
     let scale = [first, second].map(|channel| {

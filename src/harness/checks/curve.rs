@@ -15,21 +15,43 @@
 use super::{Ask, Check, Kind, Known, Law, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::stats::{chi_square, reflection};
+use crate::theory::Increment;
 
 /// The largest bias of an increment, relative to T, that is still worth a promise.
 const CAP: f64 = 0.05;
-/// The relative error of a clock.
-const ERROR: f64 = 1e-9;
+/// A step whose variance is known worse than this is not part of a limit law.
+const SHARP: f64 = 1e-3;
 
 /// The check of the curve.
 pub struct Curve;
 
-/// The increments `X_j/T_j − X_{j−1}/T_{j−1}`.
+/// The increments `X_j/T_j − X_{j−1}/T_{j−1}`, of which some may be joined.
 struct Increments {
+    /// The channel j at the end of each.
+    at: Vec<usize>,
     /// `1/T_j`.
     scale: Vec<f64>,
     /// `Δg_j`.
     clock: Vec<f64>,
+}
+
+impl Increments {
+    /// Joins to the next what rounding in `draws` draws could spoil: a step counts if
+    /// `Δg > n (10³ δ)²`. `None` if there is no such step.
+    fn of(subject: &Subject, scale: &[f64]) -> Option<Self> {
+        let least = subject.fixed as f64 * (1e3 * rounding_of(subject)).powi(2);
+        let mut joined = Self { at: Vec::new(), scale: Vec::new(), clock: Vec::new() };
+        let mut clock = 0.0;
+        for (j, increment) in subject.prediction.increments.iter().enumerate() {
+            clock += increment.variance;
+            if clock > least {
+                joined.at.push(j);
+                joined.scale.push(scale[j]);
+                joined.clock.push(std::mem::take(&mut clock));
+            }
+        }
+        (!joined.at.is_empty()).then_some(joined)
+    }
 }
 
 impl Law for Increments {
@@ -40,8 +62,8 @@ impl Law for Increments {
     fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
         for i in 0..draws.lookups.len() {
             let mut before = 1.0;
-            for ((values, scale), sum) in draws.values.iter().zip(&self.scale).zip(&mut *sums) {
-                let now = values[i] * scale;
+            for ((&j, scale), sum) in self.at.iter().zip(&self.scale).zip(&mut *sums) {
+                let now = draws.values[j][i] * scale;
                 *sum += now - before;
                 before = now;
             }
@@ -49,19 +71,13 @@ impl Law for Increments {
     }
 
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
-        let (mut square, mut degrees) = (0.0, 0.0);
+        let (mut square, degrees) = (0.0, self.clock.len() as f64);
         let (mut path, mut furthest, mut clock) = (0.0, 0.0f64, 0.0);
         for (&sum, &step) in sums.iter().zip(&self.clock) {
-            if step > 0.0 {
-                square += sum * sum / (draws * step);
-                degrees += 1.0;
-            }
+            square += sum * sum / (draws * step);
             path += sum;
             furthest = furthest.max(f64::abs(path));
             clock += step;
-        }
-        if degrees == 0.0 {
-            return None;
         }
         let supremum = reflection::upper_tail(furthest / (draws * clock).sqrt());
         // Two looks at the same draws.
@@ -79,18 +95,21 @@ impl Check for Curve {
         let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
         let rare = channels.iter().fold(0.0f64, |most, c| most.max(c.tails.rare_event_size));
         let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
-        let clock: Vec<f64> = increments.iter().map(|step| step.variance).collect();
-        if clock.iter().all(|&step| step <= 0.0) {
-            return Vec::new();
+        let is_long = subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare);
+        if is_long && increments.iter().all(|step| step.error <= SHARP) {
+            let law = Increments::of(subject, &scale).map(|law| Kind::Law(Box::new(law)));
+            return law
+                .map(|law| Ask::whole("the curve along one walk", law))
+                .into_iter()
+                .collect();
         }
-        if subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare) {
-            let law = Increments { scale, clock };
-            return vec![Ask::whole("the curve along one walk", Kind::Law(Box::new(law)))];
-        }
-        let steps = clock.iter().enumerate().filter(|step| *step.1 > 0.0 && step.1.is_finite());
+        let has_spread = |increment: &Increment| {
+            increment.variance > 0.0 && (increment.variance * (1.0 + increment.error)).is_finite()
+        };
+        let steps = increments.iter().enumerate().filter(|(_, increment)| has_spread(increment));
         steps
-            .map(|(j, &variance)| {
-                Ask::channel(j, "the step to it", step(subject, j, &scale, variance))
+            .map(|(j, increment)| {
+                Ask::channel(j, "the step to it", step(subject, j, &scale, increment))
             })
             .collect()
     }
@@ -100,7 +119,7 @@ impl Check for Curve {
     }
 }
 
-fn step(subject: &Subject, j: usize, scale: &[f64], variance: f64) -> Kind {
+fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Kind {
     let (here, before) = (scale[j], j.checked_sub(1).map(|i| (i, scale[i])));
     let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
         y.extend((0..draws.lookups.len()).map(|draw| {
@@ -108,7 +127,8 @@ fn step(subject: &Subject, j: usize, scale: &[f64], variance: f64) -> Kind {
             draws.values[j][draw] * here - last
         }));
     };
-    let known = Known { variance, error: ERROR, floor: rounding_of(subject) };
+    let Increment { variance, error, .. } = *increment;
+    let known = Known { variance, error, floor: rounding_of(subject) };
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
     Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
 }

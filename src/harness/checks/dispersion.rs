@@ -8,7 +8,7 @@
 //! streams that depend on each other make them differ too much. Neither need show in the mean of
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
-use super::mean::is_certain;
+use super::mean::is_faint;
 use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
 use crate::harness::plan::BLOCK;
@@ -23,6 +23,8 @@ pub struct Dispersion;
 struct BlockMeans {
     mean: f64,
     scale: f64,
+    /// The fewest draws of a block that make its mean near normal.
+    least: f64,
 }
 
 impl Law for BlockMeans {
@@ -36,8 +38,12 @@ impl Law for BlockMeans {
     }
 
     fn close(&self, draws: usize, sums: &mut [f64]) {
-        sums[0] = sums[0] * sums[0] / draws as f64;
-        sums[1] = 1.0;
+        if draws as f64 >= self.least {
+            sums[0] = sums[0] * sums[0] / draws as f64;
+            sums[1] = 1.0;
+        } else {
+            sums.fill(0.0);
+        }
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
@@ -52,10 +58,11 @@ impl Check for Dispersion {
         let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
         let needed = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
         let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
-        if subject.expect_biased || is_certain(subject, channel) || !enough {
+        if subject.expect_biased || is_faint(subject, channel) || !enough {
             return Vec::new();
         }
-        let law = BlockMeans { mean: channel.mean.value, scale: 1.0 / moments.variance().sqrt() };
+        let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
+        let law = BlockMeans { mean, scale, least: needed };
         vec![Ask::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
     }
 }

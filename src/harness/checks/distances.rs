@@ -30,7 +30,7 @@ impl Classes {
     /// `wanted` classes, or as many as theory has where that is less.
     #[must_use]
     pub fn of(subject: &Subject, wanted: usize) -> Option<Self> {
-        let Some(theory::Law::Distances { bins, end, escape }) = &subject.prediction.law else {
+        let Some(theory::Law::Distances { bins, end, escape, .. }) = &subject.prediction.law else {
             return None;
         };
         let step = (bins.len() + 1) / wanted.min(bins.len() + 1);

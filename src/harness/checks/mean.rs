@@ -6,7 +6,7 @@
 //!
 //! The mean may pass only if the variance of the same experiment passes too; where that one is
 //! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
-//! to rounding. A case that declares an experiment biased passes only if the bias is shown; where
+//! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. A case that declares an experiment biased passes only if the bias is shown; where
 //! theory has no variance for it, that of pilot draws is used, doubled.
 
 use super::{Always, Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
@@ -19,13 +19,20 @@ const CAP: f64 = 0.05;
 /// The check of the mean.
 pub struct Mean;
 
-/// Whether the draws have no spread beyond rounding, in theory.
+/// So many standard deviations no draw is away from its mean: by Chebyshev's inequality, with chance
+/// 1e-16 per draw.
+pub const FURTHEST: f64 = 1e8;
+
+/// Whether rounding spoils what the draws' spread says, if they have any.
 #[must_use]
-pub fn is_certain(subject: &Subject, channel: &Channel) -> bool {
-    let floor = floor(subject, channel);
-    channel.moments.is_some_and(|moments| {
-        moments.relative[0].sqrt() * moments.scale / channel.unit <= 1e3 * floor
-    })
+pub fn is_faint(subject: &Subject, channel: &Channel) -> bool {
+    deviation(channel).is_some_and(|deviation| deviation <= 1e3 * floor(subject, channel))
+}
+
+/// √V in units of the channel.
+fn deviation(channel: &Channel) -> Option<f64> {
+    let moments = channel.moments?;
+    Some(moments.relative[0].sqrt() * moments.scale / channel.unit)
 }
 
 /// δ: what the truth's own error and rounding may add, in units of the channel.
@@ -46,14 +53,14 @@ impl Check for Mean {
 fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
     let floor = floor(subject, channel);
-    if is_certain(subject, channel) {
+    if let Some(furthest) = deviation(channel).map(|d| FURTHEST * d).filter(|&far| far <= floor) {
         let largest = move |draws: &DrawBuffer| {
             draws.values[index].iter().fold(0.0, |most: f64, x| {
                 let y = ((x - truth) * scale).abs();
                 if y.is_nan() { y } else { most.max(y) }
             })
         };
-        return Kind::Always(Always { largest: Box::new(largest), bound: floor });
+        return Kind::Always(Always { largest: Box::new(largest), bound: floor + furthest });
     }
     let known = match (channel.moments, subject.pilot_variance) {
         (Some(moments), _) => {

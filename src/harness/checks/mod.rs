@@ -73,8 +73,8 @@ pub struct Scalar {
     pub design: Design,
     /// How many draws the question is planned for.
     pub draws: f64,
-    /// Whether the case says how large a difference matters.
-    pub by_case: bool,
+    /// The least draws that are worth a promise: those that the widest ε worth it needs.
+    pub least: f64,
     /// The draws that it would need to pass, where more than are planned: it may fail, but was
     /// never promised to pass.
     pub underpowered: Option<f64>,
@@ -115,11 +115,11 @@ impl Scalar {
         let underpowered = if blurred {
             Some(f64::INFINITY)
         } else {
-            let least = needs(design.tolerance.min(widest));
-            (least > draws * (1.0 + 1e-6)).then_some(least)
+            let needed = needs(design.tolerance.min(widest));
+            (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
-        let by_case = wanted.tolerance.is_some();
-        Self { observe, design, draws: needs(design.tolerance), by_case, underpowered }
+        let least = needs(Design::new(variance, widest, known.floor).tolerance);
+        Self { observe, design, draws: needs(design.tolerance), least, underpowered }
     }
 }
 

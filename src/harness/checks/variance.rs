@@ -9,7 +9,7 @@
 //! most of the time. Nothing is asked of draws without spread, of draws with two equally distant
 //! values, and of experiments that a case declares biased.
 
-use super::mean::is_certain;
+use super::mean::is_faint;
 use super::{Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::theory::Channel;
@@ -39,7 +39,7 @@ impl Check for Variance {
 fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     let moments = channel.moments?;
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
-    if is_certain(subject, channel) || kurtosis <= TWO_POINT {
+    if is_faint(subject, channel) || kurtosis <= TWO_POINT {
         return None;
     }
     let variance = moments.variance();
@@ -48,7 +48,9 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     }
     let noise = rounding_of(subject) * channel.truth.value.abs() / variance.sqrt();
     let floor = moments.error + noise * (2.0 + noise);
-    let known = Known { variance: kurtosis - 1.0, error: 4.0 * moments.error, floor };
+    // κ = m₄/m₂² is known three times worse than m₂ and m₄, and κ − 1 worse still.
+    let error = moments.error * (1.0 + 3.0 * kurtosis / (kurtosis - 1.0));
+    let known = Known { variance: kurtosis - 1.0, error, floor };
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
     let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
         y.extend(draws.values[index].iter().map(|x| {

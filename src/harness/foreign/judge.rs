@@ -13,18 +13,19 @@
 //! `stats::gate`, so the same draws get the same verdict as in a run.
 //!
 //! With T, V and κ known, correct draws fail with chance at most α, whatever their law, and draws
-//! whose mean is off by ε pass with chance at most β, as long as their variance is at most 1.1 V:
-//! the check of the variance sees to that. Where V or κ is not known, it is estimated from the draws
+//! whose mean is off by ε pass with chance at most β, as long as their variance is at most 1.1 V. The
+//! check of the variance passes below 1 + its own ε: at 1.2 V the chance is 1.2 %, at 2 V 6 %. Where V or κ is not known, it is estimated from the draws
 //! before each block (`scalar`): the promises then hold only for many draws, and not at all where
 //! rare events, unseen so far, carry the variance; such a verdict says `variance estimated` or
 //! `kurtosis estimated`. Draws without spread must all be the truth to rounding. A draw that is not
-//! a finite number fails.
+//! a finite number fails, and so does one whose distance from the truth overflows.
 
 use super::claim::{Claim, ClaimError};
 use super::judgement::Judgement;
 use super::powers::Powers;
 use super::scalar::{Ask, Levels, Scalar};
 use super::{Draws, ForeignError};
+use crate::harness::checks::mean::FURTHEST;
 use crate::harness::plan::{BLOCK, MISS};
 use crate::harness::record::Verdict;
 use crate::stats::gate;
@@ -99,16 +100,34 @@ impl Trial {
             _ => Ok(()),
         };
         blurred("mean", wanted.tolerance, claim.floor())?;
+        // Without a tolerance of the caller's, one above the cap would be chosen.
+        if wanted.tolerance.is_none() && claim.truth != 0.0 {
+            blurred("mean", Some(MEAN_CAP), claim.floor())?;
+        }
         if let Some(variance) = claim.variance.filter(|&variance| variance > 0.0) {
             blurred("variance", wanted.variance_tolerance, claim.variance_floor(variance))?;
         }
         Ok(trial)
     }
 
-    /// Whether the draws have no spread beyond rounding, by the claim.
+    /// √V in units of u, by the claim.
+    fn deviation(&self) -> Option<f64> {
+        self.claim.variance.map(|variance| variance.sqrt() / self.claim.unit)
+    }
+
+    /// Whether the draws have no spread, by the claim.
     fn is_certain(&self) -> bool {
-        let claim = &self.claim;
-        claim.variance.is_some_and(|v| v == 0.0 || v.sqrt() / claim.unit <= 1e3 * claim.floor())
+        self.deviation().is_some_and(|deviation| FURTHEST * deviation <= self.claim.floor())
+    }
+
+    /// Whether rounding spoils what the spread says.
+    fn is_faint(&self) -> bool {
+        self.deviation().is_some_and(|deviation| deviation <= 1e3 * self.claim.floor())
+    }
+
+    /// What no draw of a claim without spread may exceed, in units of u.
+    fn bound(&self) -> f64 {
+        self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
     }
 
     /// Reads and judges.
@@ -155,7 +174,7 @@ impl<'t> Bench<'t> {
         let kurtosis = claim.kurtosis.map(|k| (k - 1.0) * (1.0 + 4.0 * claim.variance_error));
         let is_certain = trial.is_certain();
         let asks_variance = claim.variance.is_some()
-            && !is_certain
+            && !trial.is_faint()
             && claim.kurtosis.is_none_or(|kurtosis| kurtosis > TWO_POINT);
         let count = if asks_variance { 2.0 } else { 1.0 };
         let levels = Levels { ln_fail: (count / wanted.alpha).ln(), ln_pass: -MISS.ln() };
@@ -198,11 +217,11 @@ impl<'t> Bench<'t> {
     fn absorb(&mut self, block: &[f64]) {
         let claim = &self.trial.claim;
         let (truth, scale) = (claim.truth, 1.0 / claim.unit);
-        // x · 0 is 0 for every finite x and not a number otherwise.
-        let is_finite = block.iter().map(|x| x * 0.0).sum::<f64>() == 0.0;
-        let bound = claim.floor();
+        let is_finite = block.iter().map(|x| zero_or_nan((x - truth) * scale)).sum::<f64>() == 0.0;
+        let bound = self.trial.bound();
         let is_wrong = |x: &f64| {
-            !x.is_finite() || (self.mean.is_none() && ((x - truth) * scale).abs() > bound)
+            let y = (x - truth) * scale;
+            zero_or_nan(y) != 0.0 || (self.mean.is_none() && y.abs() > bound)
         };
         let suspicious = !is_finite || self.mean.is_none();
         if let Some(at) = suspicious.then(|| block.iter().position(is_wrong)).flatten() {
@@ -284,8 +303,14 @@ impl<'t> Bench<'t> {
             reasons.map(|found| found.reason.as_str()).collect::<Vec<_>>().join("; ");
         if let Some(Refuted { index, value }) = self.refuted {
             judgement.verdict = Verdict::Fail;
-            judgement.reason = if value.is_finite() {
-                let (truth, bound) = (claim.truth, claim.floor() * claim.unit);
+            let is_far = zero_or_nan((value - claim.truth) / claim.unit) != 0.0;
+            judgement.reason = if value.is_finite() && is_far {
+                format!(
+                    "numeric: draw {index} is {value:e}, beyond measure for a truth of {:e}",
+                    claim.truth
+                )
+            } else if value.is_finite() {
+                let (truth, bound) = (claim.truth, self.trial.bound() * claim.unit);
                 format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding")
             } else {
                 format!("numeric: draw {index} is {value}, counted from 0")
@@ -293,6 +318,12 @@ impl<'t> Bench<'t> {
         }
         judgement.guarantees = guarantees(claim, judgement);
     }
+}
+
+/// 0 for numbers whose square is finite, and not a number otherwise.
+#[inline(always)]
+fn zero_or_nan(y: f64) -> f64 {
+    y * y * 0.0
 }
 
 /// n: the draws that the tolerances asked for need, at most those that there are.
