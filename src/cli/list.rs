@@ -6,7 +6,7 @@ use std::io::IsTerminal;
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{Estimated, controls, sampling};
-use trueflight::harness::{case::Case, checks, suite};
+use trueflight::harness::{self, case::Case, checks, suite};
 use trueflight::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
 use trueflight::{media, report};
 
@@ -34,6 +34,7 @@ enum What {
     Problems,
     Checks,
     Reports,
+    Files,
     Cases,
 }
 
@@ -58,6 +59,7 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
         ("problems".into(), problems::CATALOGUE),
         ("checks".into(), checks::CATALOGUE),
         ("reports".into(), report::CATALOGUE),
+        ("files".into(), harness::CATALOGUE),
     ]
 }
 

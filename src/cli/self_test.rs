@@ -49,10 +49,12 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let mutants = mutation::all(arguments.seed)?;
         Ok(SelfTest { calibration, mutants, seconds: begin.elapsed().as_secs_f64() })
     })?;
-    if let Some(out) = &arguments.out {
-        if let Some(error) = report::write(&page::artifacts(&found)?, out).into_iter().next() {
-            return Err(error.into());
-        }
+    let written = match &arguments.out {
+        Some(out) => report::write(&page::artifacts(&found)?, out),
+        None => Vec::new(),
+    };
+    if let Some(error) = written.into_iter().next() {
+        return Err(error.into());
     }
     if !console.quiet {
         output::print(&page::table(&found, output::pen(console)))?;

@@ -1,4 +1,29 @@
 //! A case as written: a problem, its estimators, a sweep and what the user asks of the answer.
+//!
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `title` | one line for tables and plots | required |
+//! | `draws` | planned draws per experiment; `--draws` overrides it | 4e6; `check`: 4e5 |
+//! | `tolerance.mean` | ε of means, relative to the truth (to 1 − T for τ < 0.1), below 1 | what the draws see, at most 0.05 |
+//! | `tolerance.variance` | ε of variances, relative | what the draws see, at most 0.2 |
+//! | `tolerance.lookups` | ε of the numbers of lookups, relative | what the draws see, at most 0.02 |
+//! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
+//! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
+//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve` | required |
+//!
+//! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
+//! others need, at most `draws`.
+//!
+//! Within `[problem.NAME]`:
+//!
+//! | key | meaning |
+//! |---|---|
+//! | `medium.NAME = { … }` with `span = [from, to]` | a field along a line |
+//! | `volume.NAME = { … }` with `ray = { origin, direction, length }` | a field in space, seen along a ray |
+//! | `sampling.NAME = { … }` | σ̂, for every estimator that takes one |
+//! | `control.NAME = { … }` | σ_c, for every estimator that takes one |
+//! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
+//! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect` |
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;

@@ -106,13 +106,14 @@ fn of_question(
         }
         (Kind::Law(law), Total::Law(sums)) => {
             let sums: Vec<f64> = sums.iter().map(Sum::value).collect();
-            match law.p_value(&sums, planned.fixed as f64) {
-                Some(p) => Finding { p: Some(p), verdict: Verdict::Pass, ..finding },
-                None => {
-                    let reason = format!("{} has too few draws for a test", question.what);
-                    Finding { verdict: Verdict::Underpowered, reason, ..finding }
-                }
-            }
+            let p = law.p_value(&sums, planned.fixed as f64);
+            let (verdict, reason) = if p.is_some() {
+                (Verdict::Pass, String::new())
+            } else {
+                let reason = format!("{} has too few draws for a test", question.what);
+                (Verdict::Underpowered, reason)
+            };
+            Finding { p, verdict, reason, ..finding }
         }
         (Kind::Inspection(look), _) => {
             let ready = planned.outcome.as_ref().ok()?;

@@ -26,6 +26,12 @@ pub mod summary;
 pub mod sweep;
 mod written;
 
+use crate::catalogue::Catalogue;
+
+/// The manual of case files.
+pub const CATALOGUE: Catalogue =
+    Catalogue { name: "case files", pages: &[crate::page!(case), crate::page!(sweep)] };
+
 pub use case::Case;
 pub use filter::Filter;
 pub use options::{Amount, Options};

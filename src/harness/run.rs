@@ -106,10 +106,10 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
         let mut reserved: u64 = fronts.iter().map(Front::reserve).sum();
         for front in fronts.iter_mut().filter(|front| !front.is_done) {
             reserved -= front.reserve();
-            if !take(&mut budget, front.stage(), reserved) {
-                (front.is_done, cut_by_budget) = (true, true);
-            } else {
+            if take(&mut budget, front.stage(), reserved) {
                 reserved += front.reserve().saturating_sub(front.stage());
+            } else {
+                (front.is_done, cut_by_budget) = (true, true);
             }
         }
         for units in units(&fronts).chunks(BATCH) {

@@ -1,4 +1,15 @@
-//! What is swept in a case.
+//! What is swept in a case: every experiment is drawn at every value.
+//!
+//! | key | varies | takes |
+//! |---|---|---|
+//! | `sweep.sampling` | a constant σ̂, for every estimator without its own | 1/length, > 0 |
+//! | `sweep.sampling-scale` | a factor on each estimator's own σ̂ | > 0 |
+//! | `sweep.albedo` | the albedo, for estimators that have one | 0 to 1 |
+//! | `sweep.control` | a constant control, for estimators that take one and have none of their own | 1/length |
+//! | `sweep.points` | the number of explorer points, for controls through explorers | whole, ≥ 2 |
+//!
+//! Each is `{ values = [ … ] }`, or `{ from, to, points, scale }` with `scale = "linear"` or `"log"`,
+//! `points` values from end to end. Estimators that do not depend on it are drawn once.
 
 use crate::catalogue::{Domain, Settings};
 

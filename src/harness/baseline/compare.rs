@@ -10,7 +10,7 @@
 //!
 //! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is
 //! not compared where, on either side, its relative standard error is above 10 %, its law is not near
-//! normal (E[X⁸]/E[X⁴]² > n/100, or fewer draws than ten times the rare-event size), or hardly anything
+//! normal (`E[X⁸]/E[X⁴]²` > n/100, or fewer draws than ten times the rare-event size), or hardly anything
 //! of it is left to chance (κ − 1 < 100/n). A regression is an
 //! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
 //! time is not known from one figure: it fails beyond a factor that the caller chooses.

@@ -5,7 +5,7 @@
 //! ```
 //!
 //! over the classes k of the law: the first term is the random number's resolution, 1e-8 for 2¹⁴
-//! distances, the second that of a double at the distance s_k. Flights of 24 bits tie 8 times on
+//! distances, the second that of a double at the distance `s_k`. Flights of 24 bits tie 8 times on
 //! average. Whether all distances are single-precision numbers is asked where they have room to differ.
 //!
 //! Coarse random numbers and positions in single precision escape every mean and variance. The
