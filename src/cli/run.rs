@@ -18,7 +18,7 @@ use super::{Console, drawing};
 pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
-    /// Folder for summary.csv, record.json, the cases' CSV files and the plots
+    /// Folder for summary.csv, checks.csv, record.json, the cases' CSV files and the plots
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine

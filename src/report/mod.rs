@@ -140,6 +140,7 @@ macro_rules! reports {
 
 reports! {
     summary_csv::SummaryCsv,
+    checks_csv::ChecksCsv,
     case_csv::CaseCsv,
     sweep_plot::SweepPlot,
     anatomy_plot::AnatomyPlot,

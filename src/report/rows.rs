@@ -26,7 +26,7 @@ impl JoinedRow<'_> {
     /// Nanoseconds of processor time for one lookup of `σ_t`; `None` where nothing was looked up.
     #[must_use]
     pub fn ns_per_lookup(&self) -> Option<f64> {
-        let lookups = self.row.draws? as f64 * self.row.lookups_per_draw?;
+        let lookups = self.row.drawn? as f64 * self.row.lookups_per_draw?;
         (lookups > 0.0).then_some(self.seconds? * 1e9 / lookups)
     }
 }
@@ -150,6 +150,7 @@ const VERDICTS: &[Column] = columns! {
     best_sampling = |joined| Number(joined.row.best_sampling);
     best_fom = |joined| Number(joined.row.best_fom);
     p_law = |joined| Number(joined.row.p_law);
+    drawn = |joined| Count(joined.row.drawn);
     loss_1 = |joined| Number(joined.row.losses.map(|losses| losses[0]));
     loss_2 = |joined| Number(joined.row.losses.map(|losses| losses[1]));
     loss_3 = |joined| Number(joined.row.losses.map(|losses| losses[2]));

@@ -46,7 +46,7 @@ fn files() {
         }
         compare(&artifact.path, &artifact.bytes);
     }
-    assert_eq!(artifacts.len(), 10);
+    assert_eq!(artifacts.len(), 11);
 }
 
 #[test]
