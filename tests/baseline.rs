@@ -10,7 +10,8 @@ use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::baseline::{Baseline, BaselineError};
 use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, judge, run};
-use trueflight::rng::Stream;
+use trueflight::estimators::Kernel;
+use trueflight::rng::Streams;
 
 const CASE: &str = "title = \"a case\"
 [problem.transmittance]
@@ -172,7 +173,7 @@ fn a_small_bias_adds_up_over_runs() {
 struct Nothing;
 
 impl Experiment for Nothing {
-    fn fill(&self, _: &mut Stream, _: usize, _: &mut DrawBuffer) {}
+    fn fill_by(&self, _: Kernel, _: &mut Streams, _: usize, _: &mut DrawBuffer) {}
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! without settings, `volume.eq21 = {}`. Its largest extinction is 1 per length.
 //!
 //! Lookups use `((1 + cos u)/2)⁵ = cos¹⁰(u/2)` and `(2 + sin v)/3 = (1 + 2 cos²(v/2 − π/4))/3`,
-//! products of squares that cost two cosines. The optical depth is a Fourier sum of 17 terms,
+//! products of squares that cost two cosines without their signs, of angles in half turns. The optical depth is a Fourier sum of 17 terms,
 //! with u = 1.5(x + y + z), v = z/2 and c = (252, 420, 240, 90, 20, 2)/1024,
 //!
 //! ```text
@@ -23,7 +23,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36(2),
 //! 2017, Eq. 21.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 
 use super::sines::{highest_sine, sinc};
 use super::{Extinction, Field, FreeFlight, OpticalDepth};
@@ -49,20 +49,25 @@ pub struct Eq21Ray {
     v: (f64, f64),
 }
 
-/// `σ_t` from `u/2` and `v/2 − π/4`.
+/// `σ_t` from `u/2π` and `v/2π − 1/4`, in half turns.
 #[inline(always)]
 fn shape<L: Lane>(half_u: L, turned_v: L) -> L {
-    let (a, b) = (half_u.cos(), turned_v.cos());
+    let (a, b) = (half_u.cos_pi_size(), turned_v.cos_pi_size());
     let squared = a * a;
     let fourth = squared * squared;
-    fourth * fourth * squared * (b * b * (2.0 / 3.0) + 1.0 / 3.0)
+    let slow = (b * b).times_plus(b.each(2.0 / 3.0), b.each(1.0 / 3.0));
+    fourth * fourth * squared * slow
 }
+
+/// Half an angle in half turns.
+const HALF_TURNS: f64 = 0.5 * FRAC_1_PI;
 
 impl Extinction for Eq21Ray {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        let half_u = t * (0.5 * self.u.1) + 0.5 * self.u.0;
-        let turned_v = t * (0.5 * self.v.1) + (0.5 * self.v.0 - FRAC_PI_4);
+        let (u, v) = (self.u, self.v);
+        let half_u = t.times_plus(t.each(u.1 * HALF_TURNS), t.each(u.0 * HALF_TURNS));
+        let turned_v = t.times_plus(t.each(v.1 * HALF_TURNS), t.each(v.0 * HALF_TURNS - 0.25));
         shape(half_u, turned_v)
     }
 }
@@ -115,7 +120,7 @@ impl Field for Eq21 {
     }
 
     fn extinction_at(&self, p: Point) -> f64 {
-        shape(0.5 * p.dot(U), 0.5 * p.dot(V) - FRAC_PI_4)
+        shape(p.dot(U) * HALF_TURNS, p.dot(V) * HALF_TURNS - 0.25)
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

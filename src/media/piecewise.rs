@@ -12,9 +12,9 @@ use crate::numeric::{Known, Lane, Span, sum::Sum};
 /// Outside the knots the first and the last value go on. Integral and inverse are closed forms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piecewise {
-    knots: Vec<f64>,
-    left: Vec<f64>,
-    slope: Vec<f64>,
+    pub(super) knots: Vec<f64>,
+    pub(super) left: Vec<f64>,
+    pub(super) slope: Vec<f64>,
     depth: Vec<f64>,
 }
 
@@ -156,7 +156,7 @@ impl Piecewise {
     }
 
     #[inline]
-    fn line(&self, piece: usize, t: f64) -> f64 {
+    pub(super) fn line(&self, piece: usize, t: f64) -> f64 {
         self.left[piece] + self.slope[piece] * (t - self.knots[piece])
     }
 
@@ -190,7 +190,7 @@ impl Piecewise {
         if let [value] = self.left[..]
             && self.slope[0] == 0.0
         {
-            cursor.t += depth / value;
+            cursor.t = Lane::times_plus(depth, 1.0 / value, cursor.t);
             return (cursor.t < self.knots[1]).then_some(value);
         }
         while cursor.piece < self.left.len() {
@@ -198,7 +198,7 @@ impl Piecewise {
             let here = self.line(cursor.piece, cursor.t);
             let left = (end - cursor.t) * 0.5 * (here + self.line(cursor.piece, end));
             if depth < left {
-                let root = (here * here + 2.0 * slope * depth).max(0.0).sqrt();
+                let root = Lane::or_more(here * here + 2.0 * slope * depth, 0.0).sqrt();
                 cursor.t += 2.0 * depth / (here + root);
                 return Some(self.line(cursor.piece, cursor.t));
             }

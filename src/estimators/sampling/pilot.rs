@@ -17,7 +17,7 @@ use super::Recipe;
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
-use crate::rng::{Address, PILOT, exponential};
+use crate::rng::{Address, exponential};
 
 /// What pilot rays teach.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +55,7 @@ impl Recipe for Pilot {
         let mut sampling = self.start.unwrap_or(10.0 / support.length());
         let mut largest = 0.0f64;
         for ray in 0..self.rays {
-            let mut rng = Address { block: ray, lane: PILOT, ..site.address }.stream();
+            let mut rng = Address { block: ray, ..site.address }.pilot();
             let flown = Piecewise::constant(sampling, support);
             let mut cursor = flown.begin();
             while flown.fly(&mut cursor, exponential(&mut rng)).is_some() {

@@ -1,0 +1,257 @@
+//! Eight draws side by side: the packet kernel of the product walk and of the free flight.
+//!
+//! Specification: draw j is, bit for bit, the draw that [`super::walk::product`] or the page
+//! `free_flight/woodcock` makes from stream j mod 8.
+//!
+//! Each lane walks its own walk. A walk that ends begins anew at once, so that no lane waits, and
+//! every lane makes a number of draws that was fixed beforehand: to stop when enough draws are done
+//! would prefer short walks, which is a bias. Steps have no branches. They are noted row by row; after
+//! [`STEPS`] of them the rows are searched for walks that ended, and those become draws. A lane that
+//! has made its draws walks on until the others have; its stream is then set back to where its last
+//! draw left it.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
+
+use super::rules::Collision;
+use super::walk::Books;
+use super::{DrawBuffer, Setup};
+use crate::media::course::{Course, Even, Pieces};
+use crate::media::{Control, Extinction};
+use crate::numeric::pack::WIDTH;
+use crate::numeric::{Lane, Span};
+use crate::rng::{LANES, Streams, Xoshiro};
+
+/// Steps between two searches; eight notes of who ended make a word.
+const STEPS: usize = 32;
+
+/// What is to be drawn.
+pub struct Request<'a> {
+    /// The streams of the block, where the draws before left them.
+    pub streams: &'a mut Streams,
+    /// How many draws.
+    pub count: usize,
+    /// Where they go.
+    pub buffer: &'a mut DrawBuffer,
+}
+
+/// What is noted of a step: three numbers of each lane, before the step's outcome.
+#[derive(Clone, Copy, Default)]
+#[repr(align(64))]
+struct Row([[f64; WIDTH]; 3]);
+
+/// Which walks ended in a step, as bits, and which of them because they reached the end.
+struct Ends {
+    ended: u64,
+    escaped: u64,
+}
+
+/// Eight walks.
+trait Walks<S: Simd> {
+    /// How many words of its stream a step takes.
+    const WORDS: usize;
+
+    /// One step of each; walks that end begin anew.
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
+
+    /// The value and the defect of a walk that ended in the step of a row.
+    fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64);
+}
+
+/// `count` draws of a product estimator.
+#[inline(always)]
+pub fn product<S: Simd, P, M: Extinction, R: Collision>(
+    simd: S,
+    setup: &Setup<P>,
+    rule: &R,
+    medium: &M,
+    request: Request,
+) {
+    let (control, begin) = (&setup.control, setup.control_transmittance);
+    let weight = f64x8::splat(simd, begin);
+    let from = f64x8::splat(simd, setup.sampling.knots()[0]);
+    let books = Books::open(weight);
+    match setup.sampling.single_value() {
+        Some(value) => {
+            let course = Even::new(simd, &setup.sampling, value);
+            run(simd, Products { rule, medium, control, begin, from, course, weight, books }, request);
+        }
+        None => {
+            let course = Pieces::new(simd, &setup.sampling);
+            run(simd, Products { rule, medium, control, begin, from, course, weight, books }, request);
+        }
+    }
+}
+
+/// `count` free flights by Woodcock tracking.
+#[inline(always)]
+pub fn flight<S: Simd, P, M: Extinction>(
+    simd: S,
+    setup: &Setup<P>,
+    ray: Span,
+    medium: &M,
+    request: Request,
+) {
+    let from = f64x8::splat(simd, setup.sampling.knots()[0]);
+    match setup.sampling.single_value() {
+        Some(value) => {
+            let course = Even::new(simd, &setup.sampling, value);
+            run(simd, Flights { medium, ray, from, course }, request);
+        }
+        None => {
+            let course = Pieces::new(simd, &setup.sampling);
+            run(simd, Flights { medium, ray, from, course }, request);
+        }
+    }
+}
+
+/// The walks of a product estimator.
+struct Products<'a, S: Simd, M, R, C> {
+    rule: &'a R,
+    medium: &'a M,
+    control: &'a Control,
+    begin: f64,
+    from: f64x8<S>,
+    course: C,
+    weight: f64x8<S>,
+    books: Books<f64x8<S>>,
+}
+
+impl<S: Simd, M: Extinction, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, M, R, C> {
+    const WORDS: usize = if R::DECIDES { 2 } else { 1 };
+
+    #[inline(always)]
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(-streams.ln_uniform());
+        // Beyond the end there is no field to look at.
+        let t = Lane::select(inside, self.course.reached(), self.from);
+        let residual = self.medium.extinction(t) - self.control.extinction(t);
+        let ratio = residual * self.course.mean_free_path();
+        let outcome = self.rule.at(ratio);
+        let goes_on = if R::DECIDES {
+            let killed = outcome.survival.at_most(streams.uniform());
+            inside & !killed
+        } else {
+            inside
+        };
+        let (weight, books) = (self.weight, self.books);
+        weight.store_slice(&mut row.0[0]);
+        books.handed_over.store_slice(&mut row.0[1]);
+        books.turnover.store_slice(&mut row.0[2]);
+        let (fresh, mut booked) = (Books::open(books.begin), books);
+        booked.hand_over(weight, ratio, outcome.survival);
+        self.weight = Lane::select(goes_on, weight * outcome.weight, fresh.begin);
+        self.books.handed_over = Lane::select(goes_on, booked.handed_over, fresh.handed_over);
+        self.books.turnover = Lane::select(goes_on, booked.turnover, fresh.turnover);
+        self.course.restart(!goes_on);
+        ends(inside, goes_on)
+    }
+
+    #[inline(always)]
+    fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
+        let [weight, handed_over, turnover] = row.0.map(|numbers| numbers[lane]);
+        let books = Books { begin: self.begin, handed_over, turnover };
+        (if escaped { weight } else { 0.0 }, books.defect(weight))
+    }
+}
+
+/// The walks of free flights.
+struct Flights<'a, S: Simd, M, C> {
+    medium: &'a M,
+    ray: Span,
+    from: f64x8<S>,
+    course: C,
+}
+
+impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
+    const WORDS: usize = 2;
+
+    #[inline(always)]
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(-streams.ln_uniform());
+        let t = Lane::select(inside, self.course.reached(), self.from);
+        let ratio = self.medium.extinction(t) * self.course.mean_free_path();
+        let goes_on = inside & !streams.uniform().below(ratio);
+        t.store_slice(&mut row.0[0]);
+        self.course.restart(!goes_on);
+        ends(inside, goes_on)
+    }
+
+    #[inline(always)]
+    fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
+        (if escaped { self.ray.length() } else { row.0[0][lane] - self.ray.from }, 0.0)
+    }
+}
+
+#[inline(always)]
+fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
+    Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
+}
+
+/// What one lane has to do and has done.
+#[derive(Clone, Copy, Default)]
+struct Quota {
+    /// Where its next draw goes.
+    place: usize,
+    /// How many draws are left.
+    left: usize,
+    /// The number of the step in which its walk began.
+    began: u32,
+}
+
+/// Walks until every lane has made its draws.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation)] // eight bits of a mask
+fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
+    let Request { streams, count, buffer } = request;
+    let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
+    let mut quotas = [Quota::default(); WIDTH];
+    for (lane, quota) in quotas.iter_mut().enumerate() {
+        quota.place = (lane + LANES - streams.turn) % LANES;
+        quota.left = count.saturating_sub(quota.place).div_ceil(LANES);
+    }
+    let mut open = quotas.iter().filter(|quota| quota.left > 0).count();
+    let mut numbers = Xoshiro::side_by_side(simd, &streams.lanes);
+    let mut rows = [Row::default(); STEPS];
+    let mut first = 0_u32;
+    while open > 0 {
+        let before = numbers;
+        let (mut ended, mut escaped) = ([[0_u8; 8]; STEPS / 8], [[0_u8; 8]; STEPS / 8]);
+        for (step, row) in rows.iter_mut().enumerate() {
+            let ends = walks.step(&mut numbers, row);
+            ended[step / 8][step % 8] = ends.ended as u8;
+            escaped[step / 8][step % 8] = ends.escaped as u8;
+        }
+        for (group, (ended, escaped)) in ended.into_iter().zip(escaped).enumerate() {
+            let (mut ended, escaped) = (u64::from_le_bytes(ended), u64::from_le_bytes(escaped));
+            while ended != 0 {
+                let bit = ended.trailing_zeros() & 63;
+                ended &= ended - 1;
+                let (step, lane) = (8 * group + bit as usize / 8, bit as usize % 8);
+                let quota = &mut quotas[lane];
+                if quota.left == 0 {
+                    continue;
+                }
+                let has_escaped = escaped >> bit & 1 == 1;
+                let (value, defect) = walks.draw(&rows[step % STEPS], lane, has_escaped);
+                let now = first.wrapping_add(step as u32);
+                values[quota.place] = value;
+                defects[quota.place] = defect;
+                // The step that leaves looks at nothing.
+                lookups[quota.place] = now.wrapping_sub(quota.began) + u32::from(!has_escaped);
+                quota.began = now.wrapping_add(1);
+                quota.place += LANES;
+                quota.left -= 1;
+                if quota.left == 0 {
+                    open -= 1;
+                    let mut stream = before.apart()[lane];
+                    for _ in 0..(step + 1) * W::WORDS {
+                        stream.word();
+                    }
+                    streams.lanes[lane] = stream;
+                }
+            }
+        }
+        first = first.wrapping_add(STEPS as u32);
+    }
+    streams.turn = (streams.turn + count) % LANES;
+}
