@@ -16,7 +16,7 @@ pub mod transmittance_curve;
 pub mod trial;
 pub mod walk;
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::media::Extinction;
@@ -121,16 +121,15 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     -> Draw<P::Value>;
 
     /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
-    /// turn, bit for bit.
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    /// turn, bit for bit, on the hardware of a level.
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<P>,
         medium: &M,
         request: packet::Request,
     ) {
-        let _ = simd;
+        let _ = level;
         for _ in 0..request.count {
             let draw = self.draw(setup, medium, request.streams.of_next_draw());
             request.buffer.push(&draw);

@@ -10,15 +10,16 @@
 //! has made its draws walks on until the others have; its stream is then set back to where its last
 //! draw left it.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::rules::Collision;
 use super::walk::Books;
 use super::{DrawBuffer, Setup};
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Control, Extinction};
-use crate::numeric::pack::WIDTH;
+use crate::media::{Control, Extinction, Piecewise};
+use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::{Lane, Span};
+use crate::problems::Problem;
 use crate::rng::{LANES, Streams, Xoshiro};
 
 /// Steps between two searches; eight notes of who ended make a word.
@@ -57,48 +58,79 @@ trait Walks<S: Simd> {
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64);
 }
 
-/// `count` draws of a product estimator.
-#[inline(always)]
-pub fn product<S: Simd, P, M: Extinction, R: Collision>(
-    simd: S,
+/// The draws of a product estimator, on the hardware of a level.
+pub fn product<P, M: Extinction, R: Collision>(
+    level: Level,
     setup: &Setup<P>,
     rule: &R,
     medium: &M,
     request: Request,
 ) {
-    let (control, begin) = (&setup.control, setup.control_transmittance);
-    let weight = f64x8::splat(simd, begin);
-    let from = f64x8::splat(simd, setup.sampling.knots()[0]);
-    let books = Books::open(weight);
-    match setup.sampling.single_value() {
-        Some(value) => {
-            let course = Even::new(simd, &setup.sampling, value);
-            run(simd, Products { rule, medium, control, begin, from, course, weight, books }, request);
-        }
-        None => {
-            let course = Pieces::new(simd, &setup.sampling);
-            run(simd, Products { rule, medium, control, begin, from, course, weight, books }, request);
+    let (sampling, control) = (&setup.sampling, &setup.control);
+    let begin = setup.control_transmittance;
+    pack::on(level, Product { sampling, control, begin, rule, medium, request });
+}
+
+/// Free flights by Woodcock tracking, on the hardware of a level.
+pub fn flight<P: Problem, M: Extinction>(
+    level: Level,
+    setup: &Setup<P>,
+    medium: &M,
+    request: Request,
+) {
+    let ray = setup.problem.medium().span();
+    pack::on(level, Flight { sampling: &setup.sampling, ray, medium, request });
+}
+
+struct Product<'a, M, R> {
+    sampling: &'a Piecewise,
+    control: &'a Control,
+    begin: f64,
+    rule: &'a R,
+    medium: &'a M,
+    request: Request<'a>,
+}
+
+impl<M: Extinction, R: Collision> Task for Product<'_, M, R> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampling, control, begin, rule, medium, request } = self;
+        let weight = f64x8::splat(simd, begin);
+        let from = f64x8::splat(simd, sampling.knots()[0]);
+        let books = Books::open(weight);
+        if let Some(value) = sampling.single_value() {
+            let course = Even::new(simd, sampling, value);
+            let walks = Products { rule, medium, control, begin, from, course, weight, books };
+            run(simd, walks, request);
+        } else {
+            let course = Pieces::new(simd, sampling);
+            let walks = Products { rule, medium, control, begin, from, course, weight, books };
+            run(simd, walks, request);
         }
     }
 }
 
-/// `count` free flights by Woodcock tracking.
-#[inline(always)]
-pub fn flight<S: Simd, P, M: Extinction>(
-    simd: S,
-    setup: &Setup<P>,
+struct Flight<'a, M> {
+    sampling: &'a Piecewise,
     ray: Span,
-    medium: &M,
-    request: Request,
-) {
-    let from = f64x8::splat(simd, setup.sampling.knots()[0]);
-    match setup.sampling.single_value() {
-        Some(value) => {
-            let course = Even::new(simd, &setup.sampling, value);
+    medium: &'a M,
+    request: Request<'a>,
+}
+
+impl<M: Extinction> Task for Flight<'_, M> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampling, ray, medium, request } = self;
+        let from = f64x8::splat(simd, sampling.knots()[0]);
+        if let Some(value) = sampling.single_value() {
+            let course = Even::new(simd, sampling, value);
             run(simd, Flights { medium, ray, from, course }, request);
-        }
-        None => {
-            let course = Pieces::new(simd, &setup.sampling);
+        } else {
+            let course = Pieces::new(simd, sampling);
             run(simd, Flights { medium, ray, from, course }, request);
         }
     }

@@ -1,11 +1,11 @@
 //! An estimator on a problem, with its type erased: what the harness drives.
 
-use fearless_simd::{Level, Simd};
+use fearless_simd::Level;
 
 use super::packet::Request;
 use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
 use crate::media::{FreeFlight, Visitor};
-use crate::numeric::pack::{self, Task};
+use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::{Address, Streams};
 use crate::theory::Prediction;
@@ -77,13 +77,7 @@ pub enum Kernel {
 /// An estimator on a problem.
 pub trait Experiment: Send + Sync {
     /// Replaces the buffer's draws by the next `count` of the block: one virtual call a buffer.
-    fn fill_by(
-        &self,
-        kernel: Kernel,
-        streams: &mut Streams,
-        count: usize,
-        buffer: &mut DrawBuffer,
-    );
+    fn fill_by(&self, kernel: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer);
 
     /// The same with the best that the machine has.
     fn fill(&self, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
@@ -192,9 +186,9 @@ impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
         let Self { trial, kernel, request } = self;
         match kernel {
             Kernel::Packets(level) if E::IN_PACKETS => {
-                pack::on(level, InPackets { trial, field, request });
+                trial.estimator.draw_packets(level, &trial.setup, field, request);
             }
-            _ => pack::in_fused_code(
+            _ => in_fused_code(
                 #[inline(always)]
                 || one_by_one(trial, field, request),
             ),
@@ -212,20 +206,5 @@ fn one_by_one<P: Problem, E: Estimator<P>, F: FreeFlight>(
         let stream = request.streams.of_next_draw();
         let draw = trial.estimator.draw(&trial.setup, field, stream);
         request.buffer.push(&draw);
-    }
-}
-
-struct InPackets<'a, P, E, F> {
-    trial: &'a Trial<P, E>,
-    field: &'a F,
-    request: Request<'a>,
-}
-
-impl<P: Problem, E: Estimator<P>, F: FreeFlight> Task for InPackets<'_, P, E, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        self.trial.estimator.draw_packets(simd, &self.trial.setup, self.field, self.request);
     }
 }

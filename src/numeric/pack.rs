@@ -4,7 +4,9 @@
 //! of AVX2, four of SSE2. So the same draws come out of every machine that fuses multiplication and
 //! addition, and what is drawn never depends on the width.
 
-use fearless_simd::{Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, dispatch, f64x8, i64x8, mask64x8, u64x8};
+use fearless_simd::{
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x8, i64x8, mask64x8, u64x8,
+};
 
 use super::Lane;
 use super::single::{ROOT_HALF, ROUNDER};
@@ -38,11 +40,30 @@ pub trait Task {
 }
 
 /// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
+///
+/// SSE4.2 is left out, for few machines have it and not AVX2: they run the code for SSE2.
+#[cfg(target_arch = "x86_64")]
 pub fn on<T: Task>(level: Level, task: T) -> T::Output {
-    dispatch!(level, simd => simd.vectorize(
+    match (level.as_avx512(), level.as_avx2(), level.as_sse2()) {
+        (Some(simd), ..) => vectorized(simd, task),
+        (None, Some(simd), _) => vectorized(simd, task),
+        (None, None, Some(simd)) => vectorized(simd, task),
+        (None, None, None) => unreachable!("SSE2 is part of x86_64"),
+    }
+}
+
+/// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
+#[cfg(not(target_arch = "x86_64"))]
+pub fn on<T: Task>(level: Level, task: T) -> T::Output {
+    fearless_simd::dispatch!(level, simd => vectorized(simd, task))
+}
+
+#[inline(always)]
+fn vectorized<S: Simd, T: Task>(simd: S, task: T) -> T::Output {
+    simd.vectorize(
         #[inline(always)]
-        || task.run(simd)
-    ))
+        || task.run(simd),
+    )
 }
 
 /// Runs scalar code in which a fused multiply-add is one instruction, where the machine has it.

@@ -10,11 +10,11 @@
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::Settings;
-use crate::estimators::rules::Null;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::problems::{FreeFlight, Problem};
@@ -65,14 +65,13 @@ impl Estimator<FreeFlight> for Woodcock {
         Draw::free([ray.length()], lookups)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<FreeFlight>,
         medium: &M,
         request: Request,
     ) {
-        packet::flight(simd, setup, setup.problem.medium().span(), medium, request);
+        packet::flight(level, setup, medium, request);
     }
 }

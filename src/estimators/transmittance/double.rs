@@ -17,11 +17,11 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::Settings;
-use crate::estimators::rules::Weight;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -97,14 +97,13 @@ impl Estimator<Transmittance> for DoubleParticle {
         walk::product(setup, &Weight, medium, rng)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
         request: Request,
     ) {
-        packet::product(simd, setup, &Weight, medium, request);
+        packet::product(level, setup, &Weight, medium, request);
     }
 }

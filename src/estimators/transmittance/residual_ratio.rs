@@ -16,12 +16,12 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
-use crate::estimators::rules::Weight;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls, walk};
 use crate::media::{Control, Extinction};
 use crate::problems::Transmittance;
@@ -72,14 +72,13 @@ impl Estimator<Transmittance> for ResidualRatio {
         walk::product(setup, &Weight, medium, rng)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
         request: Request,
     ) {
-        packet::product(simd, setup, &Weight, medium, request);
+        packet::product(level, setup, &Weight, medium, request);
     }
 }

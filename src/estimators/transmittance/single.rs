@@ -27,11 +27,11 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::{Domain, Settings};
-use crate::estimators::rules::Single;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Single;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -116,14 +116,13 @@ impl Estimator<Transmittance> for SingleParticle {
         walk::product(setup, &self.rule, medium, rng)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
         request: Request,
     ) {
-        packet::product(simd, setup, &self.rule, medium, request);
+        packet::product(level, setup, &self.rule, medium, request);
     }
 }

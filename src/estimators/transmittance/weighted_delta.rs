@@ -14,11 +14,11 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::Settings;
-use crate::estimators::rules::Single;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Single;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -58,14 +58,13 @@ impl Estimator<Transmittance> for WeightedDelta {
         walk::product(setup, &RULE, medium, rng)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
         request: Request,
     ) {
-        packet::product(simd, setup, &RULE, medium, request);
+        packet::product(level, setup, &RULE, medium, request);
     }
 }

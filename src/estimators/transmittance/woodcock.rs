@@ -16,11 +16,11 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
-use fearless_simd::Simd;
+use fearless_simd::Level;
 
 use crate::catalogue::Settings;
-use crate::estimators::rules::Null;
 use crate::estimators::packet::{self, Request};
+use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -70,14 +70,13 @@ impl Estimator<Transmittance> for Woodcock {
         walk::product(setup, &Null, medium, rng)
     }
 
-    #[inline(always)]
-    fn draw_packets<S: Simd, M: Extinction>(
+    fn draw_packets<M: Extinction>(
         &self,
-        simd: S,
+        level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
         request: Request,
     ) {
-        packet::product(simd, setup, &Null, medium, request);
+        packet::product(level, setup, &Null, medium, request);
     }
 }
