@@ -45,8 +45,8 @@ fn baseline(seed: u64) -> Baseline {
 struct Biased(Box<dyn Experiment>, f64);
 
 impl Experiment for Biased {
-    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
-        self.0.fill(rng, count, buffer);
+    fn fill_by(&self, kernel: Kernel, rng: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
+        self.0.fill_by(kernel, rng, count, buffer);
         buffer.values.iter_mut().flatten().for_each(|x| *x += self.1);
     }
 }

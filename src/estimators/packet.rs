@@ -100,15 +100,46 @@ impl<M: Extinction, R: Collision> Task for Product<'_, M, R> {
         let weight = f64x8::splat(simd, begin);
         let from = f64x8::splat(simd, sampling.knots()[0]);
         let books = Books::open(weight);
-        if let Some(value) = sampling.single_value() {
-            let course = Even::new(simd, sampling, value);
-            let walks = Products { rule, medium, control, begin, from, course, weight, books };
-            run(simd, walks, request);
-        } else {
-            let course = Pieces::new(simd, sampling);
-            let walks = Products { rule, medium, control, begin, from, course, weight, books };
-            run(simd, walks, request);
+        // What does not change is found here, not in every step.
+        match (sampling.single_value(), control.single_value()) {
+            (Some(value), Some(constant)) => {
+                let course = Even::new(simd, sampling, value);
+                let control = Constant(f64x8::splat(simd, constant));
+                let walks = Products { rule, medium, control, begin, from, course, weight, books };
+                run(simd, walks, request);
+            }
+            (Some(value), None) => {
+                let course = Even::new(simd, sampling, value);
+                let walks = Products { rule, medium, control, begin, from, course, weight, books };
+                run(simd, walks, request);
+            }
+            (None, _) => {
+                let course = Pieces::new(simd, sampling);
+                let walks = Products { rule, medium, control, begin, from, course, weight, books };
+                run(simd, walks, request);
+            }
         }
+    }
+}
+
+/// σ_c as the walks ask for it.
+trait Subtracted<S: Simd> {
+    fn at(&self, t: f64x8<S>) -> f64x8<S>;
+}
+
+struct Constant<S: Simd>(f64x8<S>);
+
+impl<S: Simd> Subtracted<S> for Constant<S> {
+    #[inline(always)]
+    fn at(&self, _: f64x8<S>) -> f64x8<S> {
+        self.0
+    }
+}
+
+impl<S: Simd> Subtracted<S> for &Control {
+    #[inline(always)]
+    fn at(&self, t: f64x8<S>) -> f64x8<S> {
+        self.extinction(t)
     }
 }
 
@@ -137,10 +168,10 @@ impl<M: Extinction> Task for Flight<'_, M> {
 }
 
 /// The walks of a product estimator.
-struct Products<'a, S: Simd, M, R, C> {
+struct Products<'a, S: Simd, M, R, C, K> {
     rule: &'a R,
     medium: &'a M,
-    control: &'a Control,
+    control: K,
     begin: f64,
     from: f64x8<S>,
     course: C,
@@ -148,7 +179,14 @@ struct Products<'a, S: Simd, M, R, C> {
     books: Books<f64x8<S>>,
 }
 
-impl<S: Simd, M: Extinction, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, M, R, C> {
+impl<S, M, R, C, K> Walks<S> for Products<'_, S, M, R, C, K>
+where
+    S: Simd,
+    M: Extinction,
+    R: Collision,
+    C: Course<S>,
+    K: Subtracted<S>,
+{
     const WORDS: usize = if R::DECIDES { 2 } else { 1 };
 
     #[inline(always)]
@@ -156,7 +194,7 @@ impl<S: Simd, M: Extinction, R: Collision, C: Course<S>> Walks<S> for Products<'
         let inside = self.course.fly(-streams.ln_uniform());
         // Beyond the end there is no field to look at.
         let t = Lane::select(inside, self.course.reached(), self.from);
-        let residual = self.medium.extinction(t) - self.control.extinction(t);
+        let residual = self.medium.extinction(t) - self.control.at(t);
         let ratio = residual * self.course.mean_free_path();
         let outcome = self.rule.at(ratio);
         let goes_on = if R::DECIDES {

@@ -32,6 +32,16 @@ impl Control {
         }
     }
 
+    /// The value, where there is only one.
+    #[must_use]
+    pub fn single_value(&self) -> Option<f64> {
+        match self {
+            Self::None => Some(0.0),
+            Self::Pieces(pieces) => pieces.single_value(),
+            Self::Field(_) => None,
+        }
+    }
+
     /// `∫σ_c` over a span inside the medium's support.
     #[must_use]
     pub fn optical_depth(&self, span: Span) -> Known {

@@ -47,6 +47,9 @@ const V: Point = Point([0.0, 0.0, 0.5]);
 pub struct Eq21Ray {
     u: (f64, f64),
     v: (f64, f64),
+    /// `u/2π` and `v/2π − 1/4`, the half angles in half turns.
+    half_u: (f64, f64),
+    turned_v: (f64, f64),
 }
 
 /// `σ_t` from `u/2π` and `v/2π − 1/4`, in half turns.
@@ -65,10 +68,8 @@ const HALF_TURNS: f64 = 0.5 * FRAC_1_PI;
 impl Extinction for Eq21Ray {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        let (u, v) = (self.u, self.v);
-        let half_u = t.times_plus(t.each(u.1 * HALF_TURNS), t.each(u.0 * HALF_TURNS));
-        let turned_v = t.times_plus(t.each(v.1 * HALF_TURNS), t.each(v.0 * HALF_TURNS - 0.25));
-        shape(half_u, turned_v)
+        let (u, v) = (self.half_u, self.turned_v);
+        shape(t.times_plus(t.each(u.1), t.each(u.0)), t.times_plus(t.each(v.1), t.each(v.0)))
     }
 }
 
@@ -132,10 +133,11 @@ impl Field for Eq21 {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Eq21Ray {
-        Eq21Ray {
-            u: (ray.origin.dot(U), ray.direction.dot(U)),
-            v: (ray.origin.dot(V), ray.direction.dot(V)),
-        }
+        let (u, v) =
+            ((ray.origin.dot(U), ray.direction.dot(U)), (ray.origin.dot(V), ray.direction.dot(V)));
+        let half_u = (u.0 * HALF_TURNS, u.1 * HALF_TURNS);
+        let turned_v = (v.0 * HALF_TURNS - 0.25, v.1 * HALF_TURNS);
+        Eq21Ray { u, v, half_u, turned_v }
     }
 }
 

@@ -185,14 +185,20 @@ impl Piecewise {
     /// ```text
     /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
     /// ```
-    #[inline]
-    pub fn fly(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+    #[inline(always)]
+    pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
         if let [value] = self.left[..]
             && self.slope[0] == 0.0
         {
             cursor.t = Lane::times_plus(depth, 1.0 / value, cursor.t);
             return (cursor.t < self.knots[1]).then_some(value);
         }
+        self.fly_over(cursor, depth)
+    }
+
+    /// The same over several pieces.
+    #[inline]
+    fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
         while cursor.piece < self.left.len() {
             let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
             let here = self.line(cursor.piece, cursor.t);
