@@ -46,6 +46,7 @@ fn uniform(rng: &mut Pcg64) -> f64 {
 }
 
 /// Eq. 21 at a point, as it is printed.
+#[allow(clippy::manual_midpoint)] // as it is printed
 fn eq21(x: f64, y: f64, z: f64) -> f64 {
     (((1.5 * (x + y + z)).cos() + 1.0) / 2.0).powi(5) * ((z / 2.0).sin() + 2.0) / 3.0
 }

@@ -7,6 +7,7 @@
 pub mod controls;
 pub mod domain;
 pub mod free_flight;
+pub mod ledger;
 pub mod packet;
 pub mod rules;
 pub mod sampling;

@@ -12,6 +12,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
+use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use super::rules::Collision;
 use super::walk::Books;
 use super::{DrawBuffer, Setup};
@@ -22,9 +23,6 @@ use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 use crate::rng::{LANES, Streams, Xoshiro};
 
-/// Steps between two searches; eight notes of who ended make a word.
-const STEPS: usize = 32;
-
 /// What is to be drawn.
 pub struct Request<'a> {
     /// The streams of the block, where the draws before left them.
@@ -34,11 +32,6 @@ pub struct Request<'a> {
     /// Where they go.
     pub buffer: &'a mut DrawBuffer,
 }
-
-/// What is noted of a step: three numbers of each lane, before the step's outcome.
-#[derive(Clone, Copy, Default)]
-#[repr(align(64))]
-struct Row([[f64; WIDTH]; 3]);
 
 /// Which walks ended in a step, as bits, and which of them because they reached the end.
 struct Ends {
@@ -51,11 +44,14 @@ trait Walks<S: Simd> {
     /// How many words of its stream a step takes.
     const WORDS: usize;
 
+    /// What reads their rows.
+    type Reader: Reader;
+
+    /// What reads their rows.
+    fn reader(&self) -> Self::Reader;
+
     /// One step of each; walks that end begin anew.
     fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
-
-    /// The value and the defect of a walk that ended in the step of a row.
-    fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64);
 }
 
 /// The draws of a product estimator, on the hardware of a level.
@@ -188,6 +184,12 @@ where
     K: Subtracted<S>,
 {
     const WORDS: usize = if R::DECIDES { 2 } else { 1 };
+    type Reader = Weights;
+
+    #[inline(always)]
+    fn reader(&self) -> Weights {
+        Weights { begin: self.begin }
+    }
 
     #[inline(always)]
     fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
@@ -215,12 +217,20 @@ where
         self.course.restart(!goes_on);
         ends(inside, goes_on)
     }
+}
 
+/// Reads weights and books.
+struct Weights {
+    begin: f64,
+}
+
+impl Reader for Weights {
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
-        let [weight, handed_over, turnover] = row.0.map(|numbers| numbers[lane]);
+        let [weights, handed_over, turnover] = &row.0;
+        let (handed_over, turnover) = (handed_over[lane], turnover[lane]);
         let books = Books { begin: self.begin, handed_over, turnover };
-        (if escaped { weight } else { 0.0 }, books.defect(weight))
+        (if escaped { weights[lane] } else { 0.0 }, books.defect(weights[lane]))
     }
 }
 
@@ -234,6 +244,12 @@ struct Flights<'a, S: Simd, M, C> {
 
 impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
     const WORDS: usize = 2;
+    type Reader = Distances;
+
+    #[inline(always)]
+    fn reader(&self) -> Distances {
+        Distances { ray: self.ray }
+    }
 
     #[inline(always)]
     fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
@@ -245,7 +261,14 @@ impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
         self.course.restart(!goes_on);
         ends(inside, goes_on)
     }
+}
 
+/// Reads distances.
+struct Distances {
+    ray: Span,
+}
+
+impl Reader for Distances {
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
         (if escaped { self.ray.length() } else { row.0[0][lane] - self.ray.from }, 0.0)
@@ -257,71 +280,35 @@ fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
     Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
 }
 
-/// What one lane has to do and has done.
-#[derive(Clone, Copy, Default)]
-struct Quota {
-    /// Where its next draw goes.
-    place: usize,
-    /// How many draws are left.
-    left: usize,
-    /// The number of the step in which its walk began.
-    began: u32,
-}
-
 /// Walks until every lane has made its draws.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
 fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
     let Request { streams, count, buffer } = request;
-    let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
-    let mut quotas = [Quota::default(); WIDTH];
-    for (lane, quota) in quotas.iter_mut().enumerate() {
-        quota.place = (lane + LANES - streams.turn) % LANES;
-        quota.left = count.saturating_sub(quota.place).div_ceil(LANES);
-    }
-    let mut open = quotas.iter().filter(|quota| quota.left > 0).count();
+    let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return };
+    let reader = walks.reader();
     let mut numbers = Xoshiro::side_by_side(simd, &streams.lanes);
     let mut rows = [Row::default(); STEPS];
-    let mut first = 0_u32;
-    while open > 0 {
+    while ledger.is_open() {
         let before = numbers;
-        let (mut ended, mut escaped) = ([[0_u8; 8]; STEPS / 8], [[0_u8; 8]; STEPS / 8]);
+        let mut notes = Notes::default();
         for (step, row) in rows.iter_mut().enumerate() {
             let ends = walks.step(&mut numbers, row);
-            ended[step / 8][step % 8] = ends.ended as u8;
-            escaped[step / 8][step % 8] = ends.escaped as u8;
+            notes.ended[step / 8][step % 8] = ends.ended as u8;
+            notes.escaped[step / 8][step % 8] = ends.escaped as u8;
         }
-        for (group, (ended, escaped)) in ended.into_iter().zip(escaped).enumerate() {
-            let (mut ended, escaped) = (u64::from_le_bytes(ended), u64::from_le_bytes(escaped));
-            while ended != 0 {
-                let bit = ended.trailing_zeros() & 63;
-                ended &= ended - 1;
-                let (step, lane) = (8 * group + bit as usize / 8, bit as usize % 8);
-                let quota = &mut quotas[lane];
-                if quota.left == 0 {
-                    continue;
-                }
-                let has_escaped = escaped >> bit & 1 == 1;
-                let (value, defect) = walks.draw(&rows[step % STEPS], lane, has_escaped);
-                let now = first.wrapping_add(step as u32);
-                values[quota.place] = value;
-                defects[quota.place] = defect;
-                // The step that leaves looks at nothing.
-                lookups[quota.place] = now.wrapping_sub(quota.began) + u32::from(!has_escaped);
-                quota.began = now.wrapping_add(1);
-                quota.place += LANES;
-                quota.left -= 1;
-                if quota.left == 0 {
-                    open -= 1;
-                    let mut stream = before.apart()[lane];
-                    for _ in 0..(step + 1) * W::WORDS {
+        let over = ledger.collect(&reader, &rows, &notes);
+        if over != [0; WIDTH] {
+            let before = before.apart();
+            for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {
+                if steps > 0 {
+                    *stream = before;
+                    for _ in 0..steps * W::WORDS {
                         stream.word();
                     }
-                    streams.lanes[lane] = stream;
                 }
             }
         }
-        first = first.wrapping_add(STEPS as u32);
     }
     streams.turn = (streams.turn + count) % LANES;
 }

@@ -183,14 +183,14 @@ impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
     type Output = ();
 
     fn visit<F: FreeFlight>(self, field: &F) {
-        let Self { trial, kernel, request } = self;
+        let Self { trial, kernel, mut request } = self;
         match kernel {
             Kernel::Packets(level) if E::IN_PACKETS => {
                 trial.estimator.draw_packets(level, &trial.setup, field, request);
             }
             _ => in_fused_code(
                 #[inline(always)]
-                || one_by_one(trial, field, request),
+                || one_by_one(trial, field, &mut request),
             ),
         }
     }
@@ -200,7 +200,7 @@ impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
 fn one_by_one<P: Problem, E: Estimator<P>, F: FreeFlight>(
     trial: &Trial<P, E>,
     field: &F,
-    request: Request,
+    request: &mut Request,
 ) {
     for _ in 0..request.count {
         let stream = request.streams.of_next_draw();

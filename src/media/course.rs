@@ -102,7 +102,8 @@ impl<'a, S: Simd> Pieces<'a, S> {
     /// Takes the pieces of some walks to hand.
     #[inline(always)]
     fn look_up(&mut self, which: u64) {
-        let packs = [&mut self.knot, &mut self.end, &mut self.left, &mut self.right, &mut self.slope];
+        let packs =
+            [&mut self.knot, &mut self.end, &mut self.left, &mut self.right, &mut self.slope];
         let mut rows = [[0.0; WIDTH]; 5];
         for (row, pack) in rows.iter_mut().zip(&packs) {
             pack.store_slice(row);
@@ -138,8 +139,8 @@ impl<S: Simd> Course<S> for Pieces<'_, S> {
             let root = (here * here + self.slope * 2.0 * depth).or_more(zero).root();
             let landed = self.t + depth * 2.0 / (here + root);
             self.t = Lane::select(arrives, landed, self.t);
-            arrived = arrived | arrives;
-            flying = flying & !arrives;
+            arrived |= arrives;
+            flying &= !arrives;
             if !flying.any_true() {
                 return arrived;
             }

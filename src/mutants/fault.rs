@@ -35,7 +35,7 @@ impl Memory {
             from: support.from,
             lookups: 0,
             before: weight,
-            beginning: rng.clone(),
+            beginning: *rng,
             number: None,
             older: None,
         }
