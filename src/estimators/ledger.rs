@@ -9,7 +9,7 @@ use crate::numeric::pack::WIDTH;
 use crate::rng::LANES;
 
 /// Steps between two searches; eight notes of who ended make a word.
-pub const STEPS: usize = 32;
+pub const STEPS: usize = 64;
 
 /// What is noted of a step: three numbers of each lane, before the step's outcome.
 #[derive(Clone, Copy, Default)]

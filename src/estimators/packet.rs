@@ -210,7 +210,7 @@ where
         books.handed_over.store_slice(&mut row.0[1]);
         books.turnover.store_slice(&mut row.0[2]);
         let (fresh, mut booked) = (Books::open(books.begin), books);
-        booked.hand_over(weight, ratio, outcome.survival);
+        booked.hand_over(weight, self.rule.due(ratio, outcome.survival));
         self.weight = Lane::select(goes_on, weight * outcome.weight, fresh.begin);
         self.books.handed_over = Lane::select(goes_on, booked.handed_over, fresh.handed_over);
         self.books.turnover = Lane::select(goes_on, booked.turnover, fresh.turnover);

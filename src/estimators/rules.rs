@@ -19,6 +19,13 @@ pub trait Collision: Rule + Copy + 'static {
     /// What happens at a collision with ratio r.
     #[must_use]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
+
+    /// `(1 − r)/q`: the factor that a survivor ought to have.
+    #[inline(always)]
+    #[must_use]
+    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+        (ratio.each(1.0) - ratio) / survival
+    }
 }
 
 /// Always go on, with weight `1 − r`: the double particle model (Eq. 8), ratio tracking.
@@ -32,6 +39,11 @@ impl Collision for Weight {
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let one = ratio.each(1.0);
         Outcome { survival: one, weight: one - ratio, loss: ratio }
+    }
+
+    #[inline(always)]
+    fn due<L: Lane>(&self, ratio: L, _: L) -> L {
+        ratio.each(1.0) - ratio
     }
 }
 
@@ -62,6 +74,13 @@ impl Collision for Null {
         // What is no number stays none.
         let survival = zero.or_more(one.or_less(one - ratio));
         Outcome { survival, weight: one, loss: zero }
+    }
+
+    /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
+    #[inline(always)]
+    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+        let one = ratio.each(1.0);
+        one + ((one - ratio) - survival)
     }
 }
 
@@ -193,7 +212,19 @@ mod tests {
                 assert!((0.0..=1.0).contains(&o.survival), "{rule:?} at {r}");
                 assert!((o.survival * o.weight - (1.0 - r)).abs() < 1e-14, "{rule:?} at {r}");
                 assert!((o.loss - (1.0 - o.weight)).abs() < 1e-14, "{rule:?} at {r}");
+                let due = (1.0 - r) / o.survival;
+                assert!(o.survival == 0.0 || (rule.due(r, o.survival) - due).abs() < 1e-14);
             }
+        }
+    }
+
+    #[test]
+    fn what_is_due_is_the_share_over_the_chance() {
+        for step in -40..20 {
+            let r = 0.05 * f64::from(step);
+            let (null, weight) = (Null.at(r), Weight.at(r));
+            assert!((Null.due(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14);
+            assert_eq!(Weight.due(r, weight.survival), (1.0 - r) / weight.survival);
         }
     }
 

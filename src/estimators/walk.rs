@@ -46,7 +46,7 @@ pub fn product<P, M: Extinction, R: Collision>(
         if R::DECIDES && number >= outcome.survival {
             return Draw { value: [0.0], lookups, defect: books.defect(weight) };
         }
-        books.hand_over(weight, ratio, outcome.survival);
+        books.hand_over(weight, rule.due(ratio, outcome.survival));
         weight *= outcome.weight;
     }
     Draw { value: [weight], lookups, defect: books.defect(weight) }
@@ -71,11 +71,11 @@ impl<L: Lane> Books<L> {
         Self { begin: weight, handed_over: weight.each(0.0), turnover: weight.size() }
     }
 
-    /// Books the share that a collision takes from a particle that survives it.
+    /// Books the share that a collision takes from a particle that survives it: all but what is
+    /// due to it, `(1 − r)/q`.
     #[inline(always)]
-    pub fn hand_over(&mut self, weight: L, ratio: L, survival: L) {
-        let one = weight.each(1.0);
-        let share = weight * (one - (one - ratio) / survival);
+    pub fn hand_over(&mut self, weight: L, due: L) {
+        let share = weight * (weight.each(1.0) - due);
         self.handed_over = self.handed_over + share;
         self.turnover = self.turnover + share.size();
     }

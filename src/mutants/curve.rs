@@ -110,7 +110,7 @@ impl Draws<TransmittanceCurve> for Curve {
             let at = if slip == Slip::Reversed { reversed } else { cursor.t };
             let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
             let ratio = residual / sampling;
-            books.hand_over(weight, ratio, 1.0);
+            books.hand_over(weight, 1.0 - ratio);
             weight *= 1.0 - ratio;
             lookups += 1;
             if slip == Slip::TooEarly {

@@ -64,7 +64,7 @@ impl<R: Collision, F: Fault> Draws<Transmittance> for Product<R, F> {
                     return Draw { value: [0.0], lookups: memory.lookups, defect };
                 }
             }
-            books.hand_over(weight, residual * (1.0 / sampling), outcome.survival);
+            books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
             memory.before = weight;
             weight = fault.weigh(&memory, weight, outcome.weight);
             if let Some(value) = fault.stop(&memory, weight, rng) {

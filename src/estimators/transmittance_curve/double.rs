@@ -93,7 +93,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
             pass(cursor.t, weight);
             let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
             let ratio = residual / sampling;
-            books.hand_over(weight, ratio, 1.0);
+            books.hand_over(weight, 1.0 - ratio);
             weight *= 1.0 - ratio;
             lookups += 1;
         }
