@@ -131,6 +131,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         request: packet::Request,
     ) {
         let _ = level;
+        request.buffer.clear();
         for _ in 0..request.count {
             let draw = self.draw(setup, medium, request.streams.of_next_draw());
             request.buffer.push(&draw);

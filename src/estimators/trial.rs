@@ -54,8 +54,8 @@ impl DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// Makes room for so many draws of one channel, and hands out values, lookups and defects;
-    /// `None` where a draw has no channel.
+    /// Makes room for exactly so many draws of one channel, and hands out values, lookups and
+    /// defects to be written anew; `None` where a draw has no channel.
     pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {
         let values = self.values.first_mut()?;
         values.resize(count, 0.0);
@@ -161,7 +161,6 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         count: usize,
         buffer: &mut DrawBuffer,
     ) {
-        buffer.clear();
         let request = Request { streams, count, buffer };
         self.setup.problem.medium().profile().visit(Fill { trial: self, kernel, request });
     }
@@ -202,6 +201,7 @@ fn one_by_one<P: Problem, E: Estimator<P>, F: FreeFlight>(
     field: &F,
     request: &mut Request,
 ) {
+    request.buffer.clear();
     for _ in 0..request.count {
         let stream = request.streams.of_next_draw();
         let draw = trial.estimator.draw(&trial.setup, field, stream);
