@@ -115,9 +115,9 @@ fn kernels(plan: &Plan) {
         let Ok(ready) = &planned.outcome else { continue };
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
         for block in 0..planned.draws / BLOCK {
-            let mut stream = planned.stream(block);
+            let mut streams = planned.streams(block);
             for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {
-                ready.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+                ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
                 std::hint::black_box(&buffer);
             }
         }

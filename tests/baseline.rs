@@ -6,11 +6,12 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
+use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::baseline::{Baseline, BaselineError, Entry};
 use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, judge, run};
-use trueflight::rng::Stream;
+use trueflight::rng::Streams;
 
 const CASE: &str = "title = \"a case\"
 [problem.transmittance]
@@ -44,8 +45,8 @@ fn baseline(seed: u64) -> Baseline {
 struct Biased(Box<dyn Experiment>, f64);
 
 impl Experiment for Biased {
-    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
-        self.0.fill(rng, count, buffer);
+    fn fill_by(&self, kernel: Kernel, rng: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
+        self.0.fill_by(kernel, rng, count, buffer);
         buffer.values.iter_mut().flatten().for_each(|x| *x += self.1);
     }
 }
@@ -202,7 +203,7 @@ fn a_small_bias_adds_up_over_runs() {
 struct Nothing;
 
 impl Experiment for Nothing {
-    fn fill(&self, _: &mut Stream, _: usize, _: &mut DrawBuffer) {}
+    fn fill_by(&self, _: Kernel, _: &mut Streams, _: usize, _: &mut DrawBuffer) {}
 }
 
 #[test]

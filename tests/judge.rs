@@ -303,9 +303,9 @@ fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
     let ready = planned.outcome.as_ref().expect("it is drawn");
     let (mut values, mut buffer) = (Vec::new(), DrawBuffer::new(1));
     for block in 0..draws.div_ceil(BLOCK) {
-        let mut stream = planned.stream(block);
+        let mut streams = planned.streams(block);
         for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {
-            ready.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+            ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
             values.extend_from_slice(&buffer.values[0]);
         }
     }

@@ -108,7 +108,7 @@ fn drawn() -> String {
     for (planned_case, planned) in plan.experiments() {
         let ready = planned.outcome.as_ref().expect("it is not refused");
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-        ready.experiment.fill(&mut planned.address.stream(), DRAWS, &mut buffer);
+        ready.experiment.fill(&mut planned.streams(0), DRAWS, &mut buffer);
         let names = &planned.names;
         for draw in 0..DRAWS {
             let values: Vec<f64> = buffer.values.iter().map(|channel| channel[draw]).collect();

@@ -7,6 +7,8 @@
 pub mod controls;
 pub mod domain;
 pub mod free_flight;
+pub mod ledger;
+pub mod packet;
 pub mod rules;
 pub mod sampling;
 pub mod setup;
@@ -14,6 +16,8 @@ pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
 pub mod walk;
+
+use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::media::Extinction;
@@ -24,7 +28,7 @@ use crate::theory::Prediction;
 pub use domain::Refusal;
 pub use setup::{Setup, Site};
 pub use transmittance_curve::Portrait;
-pub use trial::{DrawBuffer, Experiment};
+pub use trial::{DrawBuffer, Experiment, Kernel};
 
 /// One realisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,6 +75,8 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const INPUTS: Inputs;
     /// Whether its draws know their [`Draw::defect`].
     const KEEPS_BOOKS: bool = false;
+    /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
+    const IN_PACKETS: bool = false;
 
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
     /// it.
@@ -114,6 +120,23 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// Makes one draw.
     fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
     -> Draw<P::Value>;
+
+    /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
+    /// turn, bit for bit, on the hardware of a level.
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<P>,
+        medium: &M,
+        request: packet::Request,
+    ) {
+        let _ = level;
+        request.buffer.clear();
+        for _ in 0..request.count {
+            let draw = self.draw(setup, medium, request.streams.of_next_draw());
+            request.buffer.push(&draw);
+        }
+    }
 }
 
 /// A problem with a catalogue of estimators.

@@ -8,16 +8,49 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.1–3.3, Eqs. 7–12 and `SimulateParticle`.
 
+use crate::numeric::Lane;
 use crate::theory::{Outcome, Rule};
+
+/// A rule as one formula for every lane type: theory and kernels ask the same.
+pub trait Collision: Rule + Copy + 'static {
+    /// Whether chance decides: then every step of a walk takes a number for it.
+    const DECIDES: bool;
+
+    /// What happens at a collision with ratio r.
+    #[must_use]
+    fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
+
+    /// `(1 − r)/q`: the factor that a survivor ought to have.
+    #[inline(always)]
+    #[must_use]
+    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+        (ratio.each(1.0) - ratio) / survival
+    }
+}
 
 /// Always go on, with weight `1 − r`: the double particle model (Eq. 8), ratio tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weight;
 
+impl Collision for Weight {
+    const DECIDES: bool = false;
+
+    #[inline(always)]
+    fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
+        let one = ratio.each(1.0);
+        Outcome { survival: one, weight: one - ratio, loss: ratio }
+    }
+
+    #[inline(always)]
+    fn due<L: Lane>(&self, ratio: L, _: L) -> L {
+        ratio.each(1.0) - ratio
+    }
+}
+
 impl Rule for Weight {
     #[inline(always)]
     fn outcome(&self, ratio: f64) -> Outcome {
-        Outcome { survival: 1.0, weight: 1.0 - ratio, loss: ratio }
+        self.at(ratio)
     }
 
     fn kinks(&self) -> Vec<f64> {
@@ -32,10 +65,29 @@ impl Rule for Weight {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Null;
 
+impl Collision for Null {
+    const DECIDES: bool = true;
+
+    #[inline(always)]
+    fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
+        let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
+        // What is no number stays none.
+        let survival = zero.or_more(one.or_less(one - ratio));
+        Outcome { survival, weight: one, loss: zero }
+    }
+
+    /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
+    #[inline(always)]
+    fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
+        let one = ratio.each(1.0);
+        one + ((one - ratio) - survival)
+    }
+}
+
 impl Rule for Null {
     #[inline(always)]
     fn outcome(&self, ratio: f64) -> Outcome {
-        Outcome { survival: (1.0 - ratio).clamp(0.0, 1.0), weight: 1.0, loss: 0.0 }
+        self.at(ratio)
     }
 
     fn kinks(&self) -> Vec<f64> {
@@ -63,29 +115,63 @@ pub enum Single {
     },
 }
 
+/// Each element of an outcome where the mask says so, else of another.
+#[inline(always)]
+fn select<L: Lane>(mask: L::Mask, yes: Outcome<L>, no: Outcome<L>) -> Outcome<L> {
+    Outcome {
+        survival: L::select(mask, yes.survival, no.survival),
+        weight: L::select(mask, yes.weight, no.weight),
+        loss: L::select(mask, yes.loss, no.loss),
+    }
+}
+
 impl Single {
     #[inline(always)]
-    fn terminating(ratio: f64) -> Outcome {
-        // |1 − r| > 1 is no probability: such a case is refused, and a forced run shows the bias.
-        let survival = (1.0 - ratio).abs().min(1.0);
-        if ratio <= 1.0 {
-            Outcome { survival, weight: 1.0, loss: 0.0 }
-        } else {
-            Outcome { survival, weight: -1.0, loss: 2.0 }
+    fn terminating<L: Lane>(ratio: L) -> Outcome<L> {
+        let (zero, one, two) = (ratio.each(0.0), ratio.each(1.0), ratio.each(2.0));
+        let below = ratio.at_most(one);
+        Outcome {
+            // |1 − r| > 1 is no probability: such a case is refused, and a forced run shows the bias.
+            survival: (one - ratio).size().or_less(one),
+            weight: L::select(below, one, -one),
+            loss: L::select(below, zero, two),
         }
     }
 
     #[inline(always)]
-    fn non_terminating(ratio: f64, albedo: f64) -> Outcome {
-        let transmitted = (1.0 - ratio).abs();
-        let scattered = albedo * ratio.abs();
+    fn non_terminating<L: Lane>(ratio: L, albedo: f64) -> Outcome<L> {
+        let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
+        let transmitted = (one - ratio).size();
+        let scattered = ratio.size() * albedo;
         let sum = scattered + transmitted;
-        // At r = 1 and a = 0 nothing is left of the particle, whatever q.
-        let survival = if sum == 0.0 { 0.0 } else { transmitted / sum };
-        if ratio <= 1.0 {
-            Outcome { survival, weight: sum, loss: ratio - scattered }
-        } else {
-            Outcome { survival, weight: -sum, loss: 1.0 + sum }
+        let below = ratio.at_most(one);
+        Outcome {
+            // At r = 1 and a = 0 nothing is left of the particle, whatever q.
+            survival: L::select(sum.at_most(zero), zero, transmitted / sum),
+            weight: L::select(below, sum, -sum),
+            loss: L::select(below, ratio - scattered, one + sum),
+        }
+    }
+}
+
+impl Collision for Single {
+    const DECIDES: bool = true;
+
+    #[inline(always)]
+    fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
+        let one = ratio.each(1.0);
+        match *self {
+            Self::Terminating => Self::terminating(ratio),
+            Self::Clamped => {
+                let terminates = (one - ratio).size().at_most(one);
+                select(terminates, Self::terminating(ratio), Weight.at(ratio))
+            }
+            Self::NonTerminating { albedo } => Self::non_terminating(ratio, albedo),
+            Self::Adaptive { albedo } => {
+                let sum = ratio * albedo + (one - ratio).size();
+                let terminates = one.at_most(ratio) & sum.at_most(one);
+                select(terminates, Self::terminating(ratio), Self::non_terminating(ratio, albedo))
+            }
         }
     }
 }
@@ -93,19 +179,7 @@ impl Single {
 impl Rule for Single {
     #[inline(always)]
     fn outcome(&self, ratio: f64) -> Outcome {
-        match *self {
-            Self::Terminating => Self::terminating(ratio),
-            Self::Clamped if (1.0 - ratio).abs() <= 1.0 => Self::terminating(ratio),
-            Self::Clamped => Weight.outcome(ratio),
-            Self::NonTerminating { albedo } => Self::non_terminating(ratio, albedo),
-            Self::Adaptive { albedo } => {
-                if ratio >= 1.0 && albedo * ratio + (1.0 - ratio).abs() <= 1.0 {
-                    Self::terminating(ratio)
-                } else {
-                    Self::non_terminating(ratio, albedo)
-                }
-            }
-        }
+        self.at(ratio)
     }
 
     fn kinks(&self) -> Vec<f64> {
@@ -138,7 +212,19 @@ mod tests {
                 assert!((0.0..=1.0).contains(&o.survival), "{rule:?} at {r}");
                 assert!((o.survival * o.weight - (1.0 - r)).abs() < 1e-14, "{rule:?} at {r}");
                 assert!((o.loss - (1.0 - o.weight)).abs() < 1e-14, "{rule:?} at {r}");
+                let due = (1.0 - r) / o.survival;
+                assert!(o.survival == 0.0 || (rule.due(r, o.survival) - due).abs() < 1e-14);
             }
+        }
+    }
+
+    #[test]
+    fn what_is_due_is_the_share_over_the_chance() {
+        for step in -40..20 {
+            let r = 0.05 * f64::from(step);
+            let (null, weight) = (Null.at(r), Weight.at(r));
+            assert!((Null.due(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14);
+            assert_eq!(Weight.due(r, weight.survival), (1.0 - r) / weight.survival);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use crate::media::{Body, Control, Piecewise};
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Problem;
 use crate::rng::Address;
 use crate::theory::{Mesh, Rule, product::Product};
@@ -54,8 +54,8 @@ impl<P: Problem> Setup<P> {
         let depth = mesh.optical_depth().value;
         let log_unit = problem.log_unit(depth);
         let control_depth = control.optical_depth(support).value;
-        let control_transmittance = elementary::exp(log_unit - control_depth);
-        let transmittance = elementary::exp(log_unit - depth);
+        let control_transmittance = Lane::exp(log_unit - control_depth);
+        let transmittance = Lane::exp(log_unit - depth);
         Self {
             problem,
             mesh,

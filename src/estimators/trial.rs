@@ -1,9 +1,13 @@
 //! An estimator on a problem, with its type erased: what the harness drives.
 
+use fearless_simd::Level;
+
+use super::packet::Request;
 use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
 use crate::media::{FreeFlight, Visitor};
+use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
-use crate::rng::{Address, Stream};
+use crate::rng::{Address, Streams};
 use crate::theory::Prediction;
 
 /// A buffer of draws: one array per channel, one for the lookups, one for the defects.
@@ -18,8 +22,9 @@ pub struct DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// How many draws a buffer holds: small enough for the first-level cache.
-    pub const LENGTH: usize = 1024;
+    /// How many draws a buffer holds: small enough for the second-level cache, and so many that
+    /// the lanes of a packet seldom wait for the slowest.
+    pub const LENGTH: usize = 4096;
 
     /// An empty buffer for draws of the given number of channels.
     #[must_use]
@@ -48,10 +53,36 @@ impl DrawBuffer {
     }
 }
 
+impl DrawBuffer {
+    /// Makes room for exactly so many draws of one channel, and hands out values, lookups and
+    /// defects to be written anew; `None` where a draw has no channel.
+    pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {
+        let values = self.values.first_mut()?;
+        values.resize(count, 0.0);
+        self.lookups.resize(count, 0);
+        self.defects.resize(count, 0.0);
+        Some((values, &mut self.lookups, &mut self.defects))
+    }
+}
+
+/// How draws are made: the same draws either way.
+#[derive(Debug, Clone, Copy)]
+pub enum Kernel {
+    /// One after the other, whatever the estimator offers.
+    Single,
+    /// Eight at a time on the hardware of this level, by estimators that can.
+    Packets(Level),
+}
+
 /// An estimator on a problem.
 pub trait Experiment: Send + Sync {
-    /// Replaces the buffer's draws by the next `count` of the stream: one virtual call a buffer.
-    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer);
+    /// Replaces the buffer's draws by the next `count` of the block: one virtual call a buffer.
+    fn fill_by(&self, kernel: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer);
+
+    /// The same with the best that the machine has.
+    fn fill(&self, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
+        self.fill_by(Kernel::Packets(Level::new()), streams, count, buffer);
+    }
 
     /// See [`Estimator::KEEPS_BOOKS`].
     fn keeps_books(&self) -> bool {
@@ -123,9 +154,15 @@ struct Trial<P, E> {
 }
 
 impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
-    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
-        buffer.clear();
-        self.setup.problem.medium().profile().visit(Fill { trial: self, rng, count, buffer });
+    fn fill_by(
+        &self,
+        kernel: Kernel,
+        streams: &mut Streams,
+        count: usize,
+        buffer: &mut DrawBuffer,
+    ) {
+        let request = Request { streams, count, buffer };
+        self.setup.problem.medium().profile().visit(Fill { trial: self, kernel, request });
     }
 
     fn keeps_books(&self) -> bool {
@@ -133,21 +170,41 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
     }
 }
 
-/// The loop over draws, compiled once per estimator and field type.
+/// The loop over draws, compiled once per estimator and field type, and for packets once per level
+/// of hardware.
 struct Fill<'a, P, E> {
     trial: &'a Trial<P, E>,
-    rng: &'a mut Stream,
-    count: usize,
-    buffer: &'a mut DrawBuffer,
+    kernel: Kernel,
+    request: Request<'a>,
 }
 
 impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
     type Output = ();
 
     fn visit<F: FreeFlight>(self, field: &F) {
-        for _ in 0..self.count {
-            let draw = self.trial.estimator.draw(&self.trial.setup, field, self.rng);
-            self.buffer.push(&draw);
+        let Self { trial, kernel, mut request } = self;
+        match kernel {
+            Kernel::Packets(level) if E::IN_PACKETS => {
+                trial.estimator.draw_packets(level, &trial.setup, field, request);
+            }
+            _ => in_fused_code(
+                #[inline(always)]
+                || one_by_one(trial, field, &mut request),
+            ),
         }
+    }
+}
+
+#[inline(always)]
+fn one_by_one<P: Problem, E: Estimator<P>, F: FreeFlight>(
+    trial: &Trial<P, E>,
+    field: &F,
+    request: &mut Request,
+) {
+    request.buffer.clear();
+    for _ in 0..request.count {
+        let stream = request.streams.of_next_draw();
+        let draw = trial.estimator.draw(&trial.setup, field, stream);
+        request.buffer.push(&draw);
     }
 }

@@ -5,7 +5,9 @@
 //! ```
 //!
 //! It is the algorithm *Transmittance* of Szirmay-Kalos et al. 2017, section 4.2, with the rule at
-//! a collision left open. The free flight to the next collision inverts `∫σ̂` exactly.
+//! a collision left open. The free flight to the next collision inverts `∫σ̂` exactly. A step takes
+//! its random numbers at once: one for the flight and, where the rule decides by chance, one for the
+//! decision, used or not, so that a stream's numbers do not depend on where the walk has come.
 //!
 //! Every draw also keeps its books: at a collision the particle hands over the share that the rule
 //! takes from it, and at any time what it still carries and what it handed over is what it began
@@ -15,14 +17,15 @@
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
 //! ```
 
+use super::rules::Collision;
 use super::{Draw, Setup};
 use crate::media::Extinction;
-use crate::rng::{Stream, exponential, unit};
-use crate::theory::Rule;
+use crate::numeric::Lane;
+use crate::rng::Stream;
 
 /// Walks to the end of the support or of the particle.
 #[inline(always)]
-pub fn product<P, M: Extinction, R: Rule>(
+pub fn product<P, M: Extinction, R: Collision>(
     setup: &Setup<P>,
     rule: &R,
     medium: &M,
@@ -32,15 +35,18 @@ pub fn product<P, M: Extinction, R: Rule>(
     let mut weight = setup.control_transmittance;
     let mut books = Books::open(weight);
     let mut lookups = 0;
-    while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+    loop {
+        let depth = -rng.ln_uniform();
+        let number = if R::DECIDES { rng.uniform() } else { 0.0 };
+        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
         let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
         lookups += 1;
-        let ratio = residual / sampling;
-        let outcome = rule.outcome(ratio);
-        if outcome.survival < 1.0 && unit(rng) >= outcome.survival {
+        let ratio = residual * (1.0 / sampling);
+        let outcome = rule.at(ratio);
+        if R::DECIDES && number >= outcome.survival {
             return Draw { value: [0.0], lookups, defect: books.defect(weight) };
         }
-        books.hand_over(weight, ratio, outcome.survival);
+        books.hand_over(weight, rule.due(ratio, outcome.survival));
         weight *= outcome.weight;
     }
     Draw { value: [weight], lookups, defect: books.defect(weight) }
@@ -48,28 +54,34 @@ pub fn product<P, M: Extinction, R: Rule>(
 
 /// What a particle began with, and what it handed over at its collisions.
 #[derive(Debug, Clone, Copy)]
-pub struct Books {
-    begin: f64,
-    handed_over: f64,
-    turnover: f64,
+pub struct Books<L = f64> {
+    /// The weight at the beginning.
+    pub begin: L,
+    /// What was handed over.
+    pub handed_over: L,
+    /// The sizes of all that was booked.
+    pub turnover: L,
 }
 
-impl Books {
+impl<L: Lane> Books<L> {
     /// The books of a particle that begins with a weight.
     #[inline(always)]
     #[must_use]
-    pub fn open(weight: f64) -> Self {
-        Self { begin: weight, handed_over: 0.0, turnover: weight.abs() }
+    pub fn open(weight: L) -> Self {
+        Self { begin: weight, handed_over: weight.each(0.0), turnover: weight.size() }
     }
 
-    /// Books the share that a collision takes from a particle that survives it.
+    /// Books the share that a collision takes from a particle that survives it: all but what is
+    /// due to it, `(1 − r)/q`.
     #[inline(always)]
-    pub fn hand_over(&mut self, weight: f64, ratio: f64, survival: f64) {
-        let share = weight * (1.0 - (1.0 - ratio) / survival);
-        self.handed_over += share;
-        self.turnover += share.abs();
+    pub fn hand_over(&mut self, weight: L, due: L) {
+        let share = weight * (weight.each(1.0) - due);
+        self.handed_over = self.handed_over + share;
+        self.turnover = self.turnover + share.size();
     }
+}
 
+impl Books {
     /// What is missing at the end, relative to all that was booked; rounding in a correct walk.
     #[inline(always)]
     #[must_use]

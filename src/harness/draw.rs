@@ -1,7 +1,7 @@
 //! One block of one experiment, drawn and absorbed by its questions.
 //!
 //! A block is 2¹⁴ draws, found by its address. Its draws are made buffer by buffer; every question
-//! absorbs each buffer while it is in the first-level cache. P-values and z-scores see only the
+//! absorbs each buffer while it is in the second-level cache. P-values and z-scores see only the
 //! draws below the plan's fixed number.
 
 use cpu_time::ThreadTime;
@@ -60,7 +60,7 @@ pub fn block(planned: &Planned, block: u64) -> Option<Block> {
     let begin = ThreadTime::now();
     let ready = planned.outcome.as_ref().ok()?;
     let prediction = &ready.prediction;
-    let mut stream = planned.stream(block);
+    let mut streams = planned.streams(block);
     let mut buffer = DrawBuffer::new(prediction.channels.len());
     let mut absorbers: Vec<Absorber> =
         planned.questions.iter().map(|question| Absorber::new(&question.kind)).collect();
@@ -75,7 +75,7 @@ pub fn block(planned: &Planned, block: u64) -> Option<Block> {
         let until = if is_fixed { end.min(planned.fixed) } else { end };
         #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
         let count = (until - at).min(DrawBuffer::LENGTH as u64) as usize;
-        ready.experiment.fill(&mut stream, count, &mut buffer);
+        ready.experiment.fill(&mut streams, count, &mut buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (at - start) as usize;
         for (question, absorber) in planned.questions.iter().zip(&mut absorbers) {

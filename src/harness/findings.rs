@@ -120,7 +120,7 @@ fn of_question(
             let inspected = Inspected {
                 experiment: ready.experiment.as_ref(),
                 channels: channels.len(),
-                stream: &|block| planned.stream(block),
+                streams: &|block| planned.streams(block),
                 blocks: planned.fixed.div_ceil(BLOCK),
             };
             Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }

@@ -130,7 +130,10 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         seed: plan.options.seed,
         alpha: plan.options.alpha,
-        streams: "PCG XSL RR 128/64 by address (seed, experiment, block, lane)".to_owned(),
+        streams:
+            "xoshiro256++ by address (seed, experiment, block, lane), seeded by PCG XSL RR 128/64; \
+                  draw j of a block from lane j mod 8"
+                .to_owned(),
         gate,
         cut_by_time: false,
         cut_by_budget: false,

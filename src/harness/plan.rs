@@ -15,7 +15,7 @@ use super::checks::{self, Kind, Question, Scalar, Subject};
 use super::options::Options;
 use super::scenario::{Names, Prepared, Ready, Variation};
 use crate::estimators::{DrawBuffer, Refusal};
-use crate::rng::{Address, PILOT, Stream, name_hash};
+use crate::rng::{Address, PILOT, Streams, name_hash};
 use crate::stats::{gate, normal};
 
 /// Draws per block, always.
@@ -104,8 +104,8 @@ pub struct Planned {
     pub outcome: Result<Ready, Refusal>,
     /// What is asked of the draws.
     pub questions: Vec<Question>,
-    /// Where an address finds its stream.
-    pub streams: fn(Address) -> Stream,
+    /// Where a block's address finds its streams.
+    pub find_streams: fn(Address) -> Streams,
 }
 
 impl Planned {
@@ -117,10 +117,10 @@ impl Planned {
         })
     }
 
-    /// The stream of a block.
+    /// The streams of a block.
     #[must_use]
-    pub fn stream(&self, block: u64) -> Stream {
-        (self.streams)(Address { block, ..self.address })
+    pub fn streams(&self, block: u64) -> Streams {
+        (self.find_streams)(Address { block, ..self.address })
     }
 }
 
@@ -249,7 +249,7 @@ fn plan_experiment(
         expect_biased,
         outcome,
         questions: Vec::new(),
-        streams: Address::stream,
+        find_streams: Address::streams,
     }
 }
 
@@ -296,13 +296,13 @@ impl Planned {
         self.questions = questions;
     }
 
-    /// The variance of a few draws from a stream of their own.
+    /// The variance of a few draws from streams of their own.
     fn pilot_variance(&self, ready: &Ready) -> f64 {
-        let mut stream = Address { lane: PILOT, ..self.address }.stream();
+        let mut streams = Address { block: PILOT, ..self.address }.streams();
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
         let mut values = Vec::with_capacity(PILOT_DRAWS);
         while values.len() < PILOT_DRAWS {
-            ready.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+            ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
             values.extend_from_slice(&buffer.values[0]);
         }
         let n = values.len() as f64;

@@ -30,8 +30,8 @@ pub struct Homogeneous {
 
 impl Extinction for Homogeneous {
     #[inline(always)]
-    fn extinction<L: Lane>(&self, _: L) -> L {
-        L::splat(self.extinction)
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        t.each(self.extinction)
     }
 }
 

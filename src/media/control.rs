@@ -1,7 +1,7 @@
 //! The part of a medium that is integrated exactly.
 
-use super::{Medium, Piecewise};
-use crate::numeric::{Known, Span};
+use super::{Extinction, Medium, Piecewise};
+use crate::numeric::{Known, Lane, Span};
 
 /// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
 ///
@@ -20,12 +20,25 @@ pub enum Control {
 impl Control {
     /// `σ_c(t)` in 1/length.
     #[must_use]
-    #[inline]
-    pub fn extinction(&self, t: f64) -> f64 {
+    #[inline(always)]
+    pub fn extinction<L: Lane>(&self, t: L) -> L {
         match self {
-            Self::None => 0.0,
-            Self::Pieces(pieces) => pieces.value(t),
-            Self::Field(field) => field.extinction(t),
+            Self::None => t.each(0.0),
+            Self::Pieces(pieces) => match pieces.single_value() {
+                Some(value) => t.each(value),
+                None => pieces.extinction(t),
+            },
+            Self::Field(field) => t.map(|t| field.extinction(t)),
+        }
+    }
+
+    /// The value, where there is only one.
+    #[must_use]
+    pub fn single_value(&self) -> Option<f64> {
+        match self {
+            Self::None => Some(0.0),
+            Self::Pieces(pieces) => pieces.single_value(),
+            Self::Field(_) => None,
         }
     }
 

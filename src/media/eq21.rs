@@ -8,7 +8,7 @@
 //! without settings, `volume.eq21 = {}`. Its largest extinction is 1 per length.
 //!
 //! Lookups use `((1 + cos u)/2)⁵ = cos¹⁰(u/2)` and `(2 + sin v)/3 = (1 + 2 cos²(v/2 − π/4))/3`,
-//! products of squares that cost two cosines. The optical depth is a Fourier sum of 17 terms,
+//! products of squares that cost two cosines without their signs, of angles in half turns. The optical depth is a Fourier sum of 17 terms,
 //! with u = 1.5(x + y + z), v = z/2 and c = (252, 420, 240, 90, 20, 2)/1024,
 //!
 //! ```text
@@ -23,7 +23,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36(2),
 //! 2017, Eq. 21.
 
-use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f64::consts::{FRAC_1_PI, FRAC_PI_2};
 
 use super::sines::{highest_sine, sinc};
 use super::{Extinction, Field, FreeFlight, OpticalDepth};
@@ -47,23 +47,29 @@ const V: Point = Point([0.0, 0.0, 0.5]);
 pub struct Eq21Ray {
     u: (f64, f64),
     v: (f64, f64),
+    /// `u/2π` and `v/2π − 1/4`, the half angles in half turns.
+    half_u: (f64, f64),
+    turned_v: (f64, f64),
 }
 
-/// `σ_t` from `u/2` and `v/2 − π/4`.
+/// `σ_t` from `u/2π` and `v/2π − 1/4`, in half turns.
 #[inline(always)]
 fn shape<L: Lane>(half_u: L, turned_v: L) -> L {
-    let (a, b) = (half_u.cos(), turned_v.cos());
+    let (a, b) = (half_u.cos_pi_size(), turned_v.cos_pi_size());
     let squared = a * a;
     let fourth = squared * squared;
-    fourth * fourth * squared * (b * b * (2.0 / 3.0) + 1.0 / 3.0)
+    let slow = (b * b).times_plus(b.each(2.0 / 3.0), b.each(1.0 / 3.0));
+    fourth * fourth * squared * slow
 }
+
+/// Half an angle in half turns.
+const HALF_TURNS: f64 = 0.5 * FRAC_1_PI;
 
 impl Extinction for Eq21Ray {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        let half_u = t * (0.5 * self.u.1) + 0.5 * self.u.0;
-        let turned_v = t * (0.5 * self.v.1) + (0.5 * self.v.0 - FRAC_PI_4);
-        shape(half_u, turned_v)
+        let (u, v) = (self.half_u, self.turned_v);
+        shape(t.times_plus(t.each(u.1), t.each(u.0)), t.times_plus(t.each(v.1), t.each(v.0)))
     }
 }
 
@@ -115,7 +121,7 @@ impl Field for Eq21 {
     }
 
     fn extinction_at(&self, p: Point) -> f64 {
-        shape(0.5 * p.dot(U), 0.5 * p.dot(V) - FRAC_PI_4)
+        shape(p.dot(U) * HALF_TURNS, p.dot(V) * HALF_TURNS - 0.25)
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
@@ -127,10 +133,11 @@ impl Field for Eq21 {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Eq21Ray {
-        Eq21Ray {
-            u: (ray.origin.dot(U), ray.direction.dot(U)),
-            v: (ray.origin.dot(V), ray.direction.dot(V)),
-        }
+        let (u, v) =
+            ((ray.origin.dot(U), ray.direction.dot(U)), (ray.origin.dot(V), ray.direction.dot(V)));
+        let half_u = (u.0 * HALF_TURNS, u.1 * HALF_TURNS);
+        let turned_v = (v.0 * HALF_TURNS - 0.25, v.1 * HALF_TURNS);
+        Eq21Ray { u, v, half_u, turned_v }
     }
 }
 

@@ -27,7 +27,7 @@
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::{Known, Lane, Span, elementary};
+use crate::numeric::{Known, Lane, Span};
 
 /// An exponential atmosphere as a volume.
 pub struct Exponential {
@@ -127,7 +127,7 @@ impl Field for Exponential {
     }
 
     fn extinction_at(&self, p: Point) -> f64 {
-        self.extinction * elementary::exp(-self.rate * p.dot(self.axis))
+        self.extinction * Lane::exp(-self.rate * p.dot(self.axis))
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

@@ -29,7 +29,7 @@ use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::{Known, Lane, Span, elementary};
+use crate::numeric::{Known, Lane, Span};
 
 /// A Gaussian blob as a volume.
 pub struct Gaussian {
@@ -110,7 +110,7 @@ impl Field for Gaussian {
 
     fn extinction_at(&self, p: Point) -> f64 {
         let u = (p - self.centre) * (1.0 / self.width);
-        self.peak * elementary::exp(-0.5 * u.dot(u))
+        self.peak * Lane::exp(-0.5 * u.dot(u))
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

@@ -10,6 +10,7 @@
 pub mod body;
 pub mod cells;
 pub mod control;
+pub mod course;
 pub mod grid_file;
 pub mod lattice;
 pub mod medium;
@@ -22,6 +23,7 @@ use crate::numeric::{Known, Lane, Span, roots};
 
 pub use body::Body;
 pub use control::Control;
+pub use course::Course;
 pub use medium::Medium;
 pub use piecewise::{Cursor, Piecewise};
 

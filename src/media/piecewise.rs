@@ -12,9 +12,9 @@ use crate::numeric::{Known, Lane, Span, sum::Sum};
 /// Outside the knots the first and the last value go on. Integral and inverse are closed forms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Piecewise {
-    knots: Vec<f64>,
-    left: Vec<f64>,
-    slope: Vec<f64>,
+    pub(super) knots: Vec<f64>,
+    pub(super) left: Vec<f64>,
+    pub(super) slope: Vec<f64>,
     depth: Vec<f64>,
 }
 
@@ -156,7 +156,7 @@ impl Piecewise {
     }
 
     #[inline]
-    fn line(&self, piece: usize, t: f64) -> f64 {
+    pub(super) fn line(&self, piece: usize, t: f64) -> f64 {
         self.left[piece] + self.slope[piece] * (t - self.knots[piece])
     }
 
@@ -185,20 +185,26 @@ impl Piecewise {
     /// ```text
     /// y₀ s + k s²/2 = u   ⇒   s = 2u / (y₀ + √(y₀² + 2ku))
     /// ```
-    #[inline]
-    pub fn fly(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+    #[inline(always)]
+    pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
         if let [value] = self.left[..]
             && self.slope[0] == 0.0
         {
-            cursor.t += depth / value;
+            cursor.t = Lane::times_plus(depth, 1.0 / value, cursor.t);
             return (cursor.t < self.knots[1]).then_some(value);
         }
+        self.fly_over(cursor, depth)
+    }
+
+    /// The same over several pieces.
+    #[inline]
+    fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
         while cursor.piece < self.left.len() {
             let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
             let here = self.line(cursor.piece, cursor.t);
             let left = (end - cursor.t) * 0.5 * (here + self.line(cursor.piece, end));
             if depth < left {
-                let root = (here * here + 2.0 * slope * depth).max(0.0).sqrt();
+                let root = Lane::or_more(here * here + 2.0 * slope * depth, 0.0).sqrt();
                 cursor.t += 2.0 * depth / (here + root);
                 return Some(self.line(cursor.piece, cursor.t));
             }

@@ -72,7 +72,7 @@ impl Waves {
 impl Extinction for Waves {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        self.parts.iter().fold(L::splat(self.trough), |sum, wave| sum + wave.raised(t))
+        self.parts.iter().fold(t.each(self.trough), |sum, wave| sum + wave.raised(t))
     }
 }
 

@@ -14,7 +14,7 @@ use super::{Mutant, Target};
 use crate::estimators::Setup;
 use crate::estimators::rules::Weight;
 use crate::media::{Control, Piecewise};
-use crate::numeric::{Span, elementary};
+use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, Transmittance};
 
 /// The family.
@@ -63,7 +63,7 @@ struct ToLastCollision;
 impl Fault for ToLastCollision {
     fn end(&self, memory: &mut Memory, control: &Control, weight: f64) -> f64 {
         let rest = control.optical_depth(Span::new(memory.from, memory.support.to));
-        weight * elementary::exp(rest.value)
+        weight * Lane::exp(rest.value)
     }
 }
 
@@ -77,7 +77,7 @@ impl Fault for Riemann {
         let step = support.length() / 8.0;
         let left = |j: u32| setup.control.extinction(support.from + f64::from(j) * step);
         let depth = step * (0..8).map(left).sum::<f64>();
-        Setup { control_transmittance: elementary::exp(-depth), ..setup }
+        Setup { control_transmittance: Lane::exp(-depth), ..setup }
     }
 }
 
@@ -107,7 +107,7 @@ struct Twice;
 
 impl Fault for Twice {
     fn end(&self, memory: &mut Memory, control: &Control, weight: f64) -> f64 {
-        weight * elementary::exp(-control.optical_depth(memory.support).value)
+        weight * Lane::exp(-control.optical_depth(memory.support).value)
     }
 }
 

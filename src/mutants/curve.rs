@@ -13,7 +13,7 @@ use super::{About, Draws, Mutant, Target};
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
-use crate::numeric::{Span, elementary};
+use crate::numeric::{Lane, Span};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Stream, exponential};
@@ -87,7 +87,7 @@ impl Draws<TransmittanceCurve> for Curve {
                 };
                 let upto = Span::new(support.from, to).intersect(support);
                 let depth = setup.control.optical_depth(upto).value;
-                values.at[next] = weight * elementary::exp(-depth);
+                values.at[next] = weight * Lane::exp(-depth);
                 next += 1;
             }
         };
@@ -110,7 +110,7 @@ impl Draws<TransmittanceCurve> for Curve {
             let at = if slip == Slip::Reversed { reversed } else { cursor.t };
             let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
             let ratio = residual / sampling;
-            books.hand_over(weight, ratio, 1.0);
+            books.hand_over(weight, 1.0 - ratio);
             weight *= 1.0 - ratio;
             lookups += 1;
             if slip == Slip::TooEarly {

@@ -12,7 +12,7 @@ use super::fault::{Fault, Memory};
 use super::target::{TERMINATING, WOODCOCK};
 use super::walk::product;
 use crate::estimators::rules::{Null, Single};
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
 
@@ -31,7 +31,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
 fn remembered_flight(memory: &mut Memory, rng: &mut Stream) -> f64 {
     let number = unit(rng);
     memory.older = memory.number.replace(number);
-    -elementary::ln(1.0 - number)
+    -Lane::ln(1.0 - number)
 }
 
 /// `vᵢ = uᵢ`.

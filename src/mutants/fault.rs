@@ -35,7 +35,7 @@ impl Memory {
             from: support.from,
             lookups: 0,
             before: weight,
-            beginning: rng.clone(),
+            beginning: *rng,
             number: None,
             older: None,
         }
@@ -83,7 +83,7 @@ pub trait Fault: Copy + Send + Sync + 'static {
     #[inline(always)]
     fn ratio(&self, sampling: &Piecewise, residual: f64, here: f64) -> f64 {
         let _ = sampling;
-        residual / here
+        residual * (1.0 / here)
     }
 
     /// `q` and the weight of a survivor, with `q · weight = 1 − r`.

@@ -13,7 +13,7 @@ use super::fault::{Fault, Memory};
 use super::target::{DENSE, FLIGHT};
 use super::walk::{flight, product};
 use crate::estimators::rules::Weight;
-use crate::numeric::{Span, elementary};
+use crate::numeric::{Lane, Span};
 use crate::problems::{FreeFlight, Transmittance};
 use crate::rng::{Stream, exponential, unit};
 
@@ -88,7 +88,7 @@ impl Uniform {
 impl Fault for Uniform {
     #[inline(always)]
     fn flight(&self, _: &mut Memory, rng: &mut Stream) -> f64 {
-        -elementary::ln(1.0 - self.unit(rng))
+        -Lane::ln(1.0 - self.unit(rng))
     }
 
     #[inline(always)]

@@ -14,7 +14,7 @@ use super::{About, Draws, Honest, Mutant};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential, unit};
 
@@ -75,12 +75,12 @@ impl Draws<Transmittance> for NextFlight {
         let mut cursor = setup.sampling.begin();
         let mut weight = 1.0;
         let mut lookups = 0;
-        let first = elementary::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
+        let first = Lane::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
         let mut score = if *self == Self::WithoutFirst { 0.0 } else { first };
         while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
             weight *= 1.0 - medium.extinction(cursor.t) / sampling;
             lookups += 1;
-            score += weight * elementary::exp(-sampling * (end - cursor.t));
+            score += weight * Lane::exp(-sampling * (end - cursor.t));
         }
         if *self == Self::CountedTwice {
             score += weight;
@@ -110,7 +110,7 @@ impl Draws<Transmittance> for Mis {
         let mut lookups = 0;
         let mut score = 0.0;
         let share = |sampling: f64, t: f64| {
-            let v = elementary::exp(-sampling * (end - t));
+            let v = Lane::exp(-sampling * (end - t));
             if *self == Self::Unweighted { v } else { v / (1.0 + v) }
         };
         let mut here = share(setup.sampling.value(cursor.t), cursor.t);
@@ -141,7 +141,7 @@ impl Draws<Transmittance> for RayMarching {
         let offset = unit(rng);
         let at = |j: u32| support.from + (f64::from(j) + offset) * step;
         let depth = step * (0..3).map(|j| medium.extinction(at(j))).sum::<f64>();
-        Draw::free([elementary::exp(-depth)], 3)
+        Draw::free([Lane::exp(-depth)], 3)
     }
 }
 

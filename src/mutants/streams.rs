@@ -1,14 +1,14 @@
 //! Wrong streams: right estimators on random numbers that are used twice.
 //!
 //! ```text
-//! (seed, experiment, block, lane) → stream;  no two addresses share a number
+//! (seed, experiment, block, lane) → stream;  no two addresses share a number;  8 lanes to a block
 //! ```
 //!
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'
 //! means among each other, and so every standard error.
 
 use super::target::{self, Target};
-use crate::rng::{Address, Stream};
+use crate::rng::{Address, LANES, Streams};
 
 /// The experiment on which they are shown.
 pub const TARGET: Target = target::LINEAR;
@@ -22,60 +22,80 @@ pub struct StreamMutant {
     pub bug: &'static str,
     /// The check that must catch it.
     pub check: &'static str,
-    /// The stream at an address; [`Address::stream`] is right.
-    pub stream: fn(Address) -> Stream,
+    /// The streams of a block; [`Address::streams`] is right.
+    pub streams: fn(Address) -> Streams,
 }
 
 /// The family.
 pub const MUTANTS: &[StreamMutant] = &[
     StreamMutant {
         name: "stream-one-seed",
-        bug: "every block has the same stream",
+        bug: "every block has the same streams",
         check: "streams",
-        stream: |address| block(address, 0),
+        streams: |address| block(address, 0),
     },
     StreamMutant {
         name: "stream-pairs",
-        bug: "two neighbouring blocks share a stream",
+        bug: "two neighbouring blocks share their streams",
         check: "streams",
-        stream: |address| block(address, address.block / 2),
+        streams: |address| block(address, address.block / 2),
     },
     StreamMutant {
         name: "stream-recycled",
         bug: "after four blocks the streams begin anew",
         check: "streams",
-        stream: |address| block(address, address.block % 4),
+        streams: |address| block(address, address.block % 4),
     },
     StreamMutant {
         name: "stream-few-seeds",
-        bug: "the block is hashed to four bits: sixteen streams in no order",
+        bug: "the block is hashed to four bits: sixteen sets of streams in no order",
         check: "streams",
-        stream: |address| block(address, hashed(address.block) >> 60),
+        streams: |address| block(address, hashed(address.block) >> 60),
     },
     StreamMutant {
         name: "stream-overlap",
-        bug: "blocks are parts of one long stream, 4096 numbers apart, and use more than that",
+        bug: "a lane's blocks are parts of one long stream, 512 numbers apart, and use more than that",
         check: "generator",
-        stream: |address| advanced(address, 1 << 12),
+        streams: |address| advanced(address, 512),
     },
     StreamMutant {
         name: "stream-creeping",
         bug: "each block's stream is the one before it without its first number",
         check: "generator",
-        stream: |address| advanced(address, 1),
+        streams: |address| advanced(address, 1),
+    },
+    StreamMutant {
+        name: "stream-one-lane",
+        bug: "all lanes of a block have the same stream",
+        check: "generator",
+        streams: |address| Streams::new([address.stream(); LANES]),
+    },
+    StreamMutant {
+        name: "stream-lanes-shift",
+        bug: "each lane has the stream of its neighbour in the block before",
+        check: "generator",
+        streams: |address| {
+            let lane =
+                |lane: usize| Address { block: 0, lane: address.block + lane as u64, ..address };
+            Streams::new(std::array::from_fn(|l| lane(l).stream()))
+        },
     },
 ];
 
-/// The stream of another block.
-fn block(address: Address, block: u64) -> Stream {
-    Address { block, ..address }.stream()
+/// The streams of another block.
+fn block(address: Address, block: u64) -> Streams {
+    Address { block, ..address }.streams()
 }
 
-/// Block b is the first block's stream, `b · stride` numbers on.
-fn advanced(address: Address, stride: u64) -> Stream {
-    let mut stream = block(address, 0);
-    stream.advance(u128::from(address.block) * u128::from(stride));
-    stream
+/// Block b has the first block's streams, `b · stride` numbers on.
+fn advanced(address: Address, stride: u64) -> Streams {
+    let mut streams = block(address, 0);
+    for stream in &mut streams.lanes {
+        for _ in 0..address.block * stride {
+            stream.word();
+        }
+    }
+    streams
 }
 
 /// Fibonacci hashing (D. E. Knuth, *The Art of Computer Programming* 3, section 6.4), scrambled once

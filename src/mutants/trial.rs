@@ -1,9 +1,10 @@
 //! The loop over a mutant's draws; the estimators' own is in `estimators/trial.rs`.
 
-use crate::estimators::{Draw, DrawBuffer, Experiment, Setup};
+use crate::estimators::{Draw, DrawBuffer, Experiment, Kernel, Setup};
 use crate::media::{Extinction, FreeFlight, Visitor};
+use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
-use crate::rng::Stream;
+use crate::rng::{Stream, Streams};
 
 /// A way to make draws, right or wrong.
 pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
@@ -34,17 +35,17 @@ struct Trial<P, D> {
 }
 
 impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
-    fn fill(&self, rng: &mut Stream, count: usize, buffer: &mut DrawBuffer) {
+    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
-        let mut copy = rng.clone();
-        let rng = if D::REPLAYS { &mut copy } else { rng };
-        self.setup.problem.medium().profile().visit(Fill { trial: self, rng, count, buffer });
+        let mut copy = streams.clone();
+        let streams = if D::REPLAYS { &mut copy } else { streams };
+        self.setup.problem.medium().profile().visit(Fill { trial: self, streams, count, buffer });
     }
 }
 
 struct Fill<'a, P, D> {
     trial: &'a Trial<P, D>,
-    rng: &'a mut Stream,
+    streams: &'a mut Streams,
     count: usize,
     buffer: &'a mut DrawBuffer,
 }
@@ -53,9 +54,15 @@ impl<P: Problem, D: Draws<P>> Visitor for Fill<'_, P, D> {
     type Output = ();
 
     fn visit<F: FreeFlight>(self, field: &F) {
-        for _ in 0..self.count {
-            let draw = self.trial.draws.draw(&self.trial.setup, field, self.rng);
-            self.buffer.push(&draw);
-        }
+        let Self { trial, streams, count, buffer } = self;
+        in_fused_code(
+            #[inline(always)]
+            || {
+                for _ in 0..count {
+                    let draw = trial.draws.draw(&trial.setup, field, streams.of_next_draw());
+                    buffer.push(&draw);
+                }
+            },
+        );
     }
 }

@@ -11,12 +11,12 @@
 
 use super::fault::{Fault, Honest, Memory};
 use super::{About, Draws, Mutant, Target};
+use crate::estimators::rules::Collision;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
 use crate::problems::{FreeFlight, Problem, Transmittance};
 use crate::rng::Stream;
-use crate::theory::Rule;
 
 /// A product estimator with a fault.
 #[derive(Clone, Copy)]
@@ -27,7 +27,7 @@ pub struct Product<R, F> {
     pub fault: F,
 }
 
-impl<R: Rule + Copy + 'static, F: Fault> Draws<Transmittance> for Product<R, F> {
+impl<R: Collision, F: Fault> Draws<Transmittance> for Product<R, F> {
     const REPLAYS: bool = F::REPLAYS;
 
     fn prepare(&self, setup: Setup<Transmittance>) -> Setup<Transmittance> {
@@ -49,6 +49,7 @@ impl<R: Rule + Copy + 'static, F: Fault> Draws<Transmittance> for Product<R, F> 
         loop {
             memory.from = cursor.t;
             let depth = fault.flight(&mut memory, rng);
+            let number = R::DECIDES.then(|| fault.number(&mut memory, rng));
             let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
             let extinction = fault.look(&memory, medium, cursor.t);
             let residual = extinction - fault.control(&memory, &setup.control, cursor.t);
@@ -56,13 +57,14 @@ impl<R: Rule + Copy + 'static, F: Fault> Draws<Transmittance> for Product<R, F> 
             let ratio = fault.ratio(&setup.sampling, residual, sampling);
             let outcome = fault.outcome(rule, ratio);
             if outcome.survival < 1.0 {
-                let killed = fault.number(&mut memory, rng) >= outcome.survival;
+                let number = number.unwrap_or_else(|| fault.number(&mut memory, rng));
+                let killed = number >= outcome.survival;
                 if fault.real(&memory, killed) {
                     let defect = books.defect(weight);
                     return Draw { value: [0.0], lookups: memory.lookups, defect };
                 }
             }
-            books.hand_over(weight, residual / sampling, outcome.survival);
+            books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
             memory.before = weight;
             weight = fault.weigh(&memory, weight, outcome.weight);
             if let Some(value) = fault.stop(&memory, weight, rng) {
@@ -101,10 +103,10 @@ impl<F: Fault> Draws<FreeFlight> for Flight<F> {
         loop {
             memory.from = cursor.t;
             let depth = fault.flight(&mut memory, rng);
+            let number = fault.number(&mut memory, rng);
             let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
             memory.lookups += 1;
-            let number = fault.number(&mut memory, rng);
-            let real = number * sampling < fault.look(&memory, medium, cursor.t);
+            let real = number < fault.look(&memory, medium, cursor.t) * (1.0 / sampling);
             if fault.real(&memory, real) || fault.stop(&memory, 1.0, rng).is_some() {
                 return Draw::free([fault.distance(ray, cursor.t)], memory.lookups);
             }
@@ -115,7 +117,7 @@ impl<F: Fault> Draws<FreeFlight> for Flight<F> {
 }
 
 /// A product estimator's mutant.
-pub fn product<R: Rule + Copy + 'static, F: Fault>(
+pub fn product<R: Collision, F: Fault>(
     name: &'static str,
     bug: &'static str,
     target: Target,

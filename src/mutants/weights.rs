@@ -13,7 +13,7 @@ use super::target::{BELOW, DENSE, NEGATIVE, STEPS};
 use super::walk::product;
 use crate::estimators::rules::Weight;
 use crate::media::{Control, Piecewise};
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
 use crate::theory::{Outcome, Rule};
@@ -25,7 +25,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
     vec![
         product("weight-absolute", "|1 − r| for 1 − r", BELOW, "mean", Weight, Replaced(f64::abs)),
         product("weight-clamped", "max(0, 1 − r) for 1 − r", BELOW, "mean", Weight, Replaced(|w| w.max(0.0))),
-        product("weight-exponential", "exp(−r) for 1 − r", BELOW, "mean", Weight, Replaced(|w| elementary::exp(w - 1.0))),
+        product("weight-exponential", "exp(−r) for 1 − r", BELOW, "mean", Weight, Replaced(|w| Lane::exp(w - 1.0))),
         product("weight-albedo", "the transmitted weight is multiplied by the albedo 0.9 at every collision", BELOW, "mean", Weight, Replaced(|w| 0.9 * w)),
         product("weight-logarithm", "ln(1 − r) is summed up, which is not a number for r > 1", BELOW, "numeric", Weight, Replaced(|w| w.ln().exp())),
         product("draw-clamped", "max(0, X) for X", BELOW, "mean", Weight, DrawClamped),

@@ -1,17 +1,25 @@
 //! The number type that formulas are written in.
 //!
-//! A field of a medium is one formula, generic over a lane type. Today the only lane is `f64`;
-//! packs of several doubles implement the same trait and reuse every formula unchanged. Control
-//! flow (loops, early exits) stays scalar and is never written in lanes.
+//! A field of a medium is one formula, generic over a lane type: `f64`, or a pack of eight doubles
+//! ([`super::pack`]) that is treated element by element. Control flow (loops, early exits) stays
+//! outside; within a formula a choice is a [`Lane::select`].
+//!
+//! Where the machine multiplies and adds in one rounding, lanes do, and `f64` rounds as packs do:
+//! an element of a pack has the bits that `f64` has. A machine without that instruction rounds
+//! twice, in both.
 
-use std::ops::{Add, Div, Mul, Neg, Sub};
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::sync::LazyLock;
+
+use fearless_simd::Level;
 
 use super::elementary;
+use super::pack::fuses;
+use super::single::{Fused, Plain};
 
 /// A double, or a pack of doubles that is treated element by element.
 ///
-/// `ln`, `exp`, `cos` and `sin` are this crate's own polynomials ([`elementary`]): the same bits
-/// in every lane type and on every platform.
+/// `ln`, `exp`, `cos` and `sin` are this crate's own polynomials ([`elementary`]).
 pub trait Lane:
     Copy
     + Add<Output = Self>
@@ -23,30 +31,125 @@ pub trait Lane:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// The same value in every element.
+    /// What a comparison says of each element.
+    type Mask: Copy
+        + BitAnd<Output = Self::Mask>
+        + BitOr<Output = Self::Mask>
+        + Not<Output = Self::Mask>;
+
+    /// The same value in every element of another such lane.
     #[must_use]
-    fn splat(value: f64) -> Self;
+    fn each(self, value: f64) -> Self;
 
     /// Applies a scalar function to each element, for fields that gather or hash.
     #[must_use]
     fn map(self, f: impl FnMut(f64) -> f64) -> Self;
 
-    /// `e^x`.
+    /// `self · factor + term`, rounded once where the machine can.
     #[must_use]
-    fn exp(self) -> Self;
+    fn times_plus(self, factor: Self, term: Self) -> Self;
 
-    /// `cos x`, `x` in radians, `|x| < 1e9`.
+    /// `√self`.
     #[must_use]
-    fn cos(self) -> Self;
+    fn root(self) -> Self;
 
-    /// `sin x`, `x` in radians, `|x| < 1e9`.
+    /// `|self|`.
     #[must_use]
-    fn sin(self) -> Self;
+    fn size(self) -> Self;
+
+    /// `self < other`.
+    #[must_use]
+    fn below(self, other: Self) -> Self::Mask;
+
+    /// `self ≤ other`.
+    #[must_use]
+    fn at_most(self, other: Self) -> Self::Mask;
+
+    /// `yes` where the mask says so, else `no`.
+    #[must_use]
+    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The nearest integer, for `|self| < 2^51`; of two, the even one.
+    #[must_use]
+    fn nearest(self) -> Self;
+
+    /// `(m, k)` with `self = m·2^k` and `√½ ≤ m < √2`, for positive normal numbers.
+    #[must_use]
+    fn split(self) -> (Self, Self);
+
+    /// `2^self`, for integers from −1022 to 1023.
+    #[must_use]
+    fn power_of_two(self) -> Self;
+
+    /// `self · (−1)^k`, for integers `|k| < 2^51`.
+    #[must_use]
+    fn alternate(self, k: Self) -> Self;
+
+    /// The larger; `other` where one is no number.
+    #[inline(always)]
+    #[must_use]
+    fn or_more(self, other: Self) -> Self {
+        Self::select(other.below(self), self, other)
+    }
+
+    /// The smaller; `other` where one is no number.
+    #[inline(always)]
+    #[must_use]
+    fn or_less(self, other: Self) -> Self {
+        Self::select(self.below(other), self, other)
+    }
+
+    /// Natural logarithm of a positive, normal number.
+    #[inline(always)]
+    #[must_use]
+    fn ln(self) -> Self {
+        elementary::ln(self)
+    }
+
+    /// `e^self`; zero below −708, infinite above 709.
+    #[inline(always)]
+    #[must_use]
+    fn exp(self) -> Self {
+        elementary::exp(self)
+    }
+
+    /// `cos self`, in radians, `|self| < 1e9`.
+    #[inline(always)]
+    #[must_use]
+    fn cos(self) -> Self {
+        elementary::cos(self)
+    }
+
+    /// `sin self`, in radians, `|self| < 1e9`.
+    #[inline(always)]
+    #[must_use]
+    fn sin(self) -> Self {
+        elementary::sin(self)
+    }
+
+    /// `|cos(π self)|`, in half turns, `|self| < 2^51`.
+    #[inline(always)]
+    #[must_use]
+    fn cos_pi_size(self) -> Self {
+        elementary::cos_pi_size(self)
+    }
+}
+
+/// Whether this machine's packs multiply and add in one rounding.
+static FUSED: LazyLock<bool> = LazyLock::new(|| fuses(Level::new()));
+
+/// Calls an elementary function in the machine's own rounding.
+macro_rules! rounded {
+    ($function:ident, $x:expr) => {
+        if *FUSED { elementary::$function(Fused($x)).0 } else { elementary::$function(Plain($x)).0 }
+    };
 }
 
 impl Lane for f64 {
+    type Mask = bool;
+
     #[inline(always)]
-    fn splat(value: f64) -> Self {
+    fn each(self, value: f64) -> Self {
         value
     }
 
@@ -56,17 +159,78 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        if *FUSED { self.mul_add(factor, term) } else { self * factor + term }
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> bool {
+        self < other
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> bool {
+        self <= other
+    }
+
+    #[inline(always)]
+    fn select(mask: bool, yes: Self, no: Self) -> Self {
+        if mask { yes } else { no }
+    }
+
+    #[inline(always)]
+    fn nearest(self) -> Self {
+        Plain(self).nearest().0
+    }
+
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let (m, k) = Plain(self).split();
+        (m.0, k.0)
+    }
+
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        Plain(self).power_of_two().0
+    }
+
+    #[inline(always)]
+    fn alternate(self, k: Self) -> Self {
+        Plain(self).alternate(Plain(k)).0
+    }
+
+    #[inline(always)]
+    fn ln(self) -> Self {
+        rounded!(ln, self)
+    }
+
+    #[inline(always)]
     fn exp(self) -> Self {
-        elementary::exp(self)
+        rounded!(exp, self)
     }
 
     #[inline(always)]
     fn cos(self) -> Self {
-        elementary::cos(self)
+        rounded!(cos, self)
     }
 
     #[inline(always)]
     fn sin(self) -> Self {
-        elementary::sin(self)
+        rounded!(sin, self)
+    }
+
+    #[inline(always)]
+    fn cos_pi_size(self) -> Self {
+        rounded!(cos_pi_size, self)
     }
 }

@@ -5,8 +5,10 @@
 pub mod elementary;
 pub mod known;
 pub mod lane;
+pub mod pack;
 pub mod quadrature;
 pub mod roots;
+pub mod single;
 pub mod sum;
 
 pub use known::{Known, Span};

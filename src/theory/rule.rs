@@ -5,13 +5,13 @@
 ///
 /// Unbiased where `survival · weight = 1 − r`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct Outcome<L = f64> {
     /// `q_tran`, in `[0, 1]`.
-    pub survival: f64,
+    pub survival: L,
     /// The factor of a survivor, `(1 − r)/q_tran`.
-    pub weight: f64,
+    pub weight: L,
     /// `1 − weight`, formed without cancellation.
-    pub loss: f64,
+    pub loss: L,
 }
 
 impl Outcome {

@@ -5,10 +5,13 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
+use fearless_simd::Level;
 use trueflight::catalogue::Settings;
+use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
 use trueflight::harness::record::{Finding, Row, Verdict};
 use trueflight::harness::{Amount, Case, CaseError, Options, Plan, Record, Source, judge, run};
 use trueflight::media::{Body, Medium};
+use trueflight::rng::Streams;
 
 /// The level of every run in the tests: a false alarm does not happen.
 pub const ALPHA: f64 = 1e-6;
@@ -100,4 +103,29 @@ pub fn differs(what: &str, found: f64, expected: f64, tolerance: f64) -> Option<
 /// Panics with all messages if there are any.
 pub fn none(messages: &[String]) {
     assert!(messages.is_empty(), "{} differ:\n{}", messages.len(), messages.join("\n"));
+}
+
+/// An experiment at a level of vector hardware that is not the machine's best.
+pub struct At {
+    /// The experiment.
+    pub experiment: Box<dyn Experiment>,
+    /// The level.
+    pub level: Level,
+}
+
+impl Experiment for At {
+    fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
+        self.experiment.fill_by(Kernel::Packets(self.level), streams, count, buffer);
+    }
+
+    fn keeps_books(&self) -> bool {
+        self.experiment.keeps_books()
+    }
+}
+
+/// An experiment that draws nothing, to stand in another's place for a moment.
+pub struct Nothing;
+
+impl Experiment for Nothing {
+    fn fill_by(&self, _: Kernel, _: &mut Streams, _: usize, _: &mut DrawBuffer) {}
 }

@@ -10,12 +10,15 @@
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code
 //! for Monte Carlo neutronics calculations*, ANL-7050 (1965).
 
+use fearless_simd::Level;
+
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::problems::{FreeFlight, Problem};
-use crate::rng::{Stream, exponential, unit};
+use crate::rng::Stream;
 use crate::theory::{Prediction, flight};
 
 /// Woodcock tracking; σ̂ is its only input.
@@ -24,6 +27,7 @@ pub struct Woodcock;
 
 impl Estimator<FreeFlight> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -41,6 +45,7 @@ impl Estimator<FreeFlight> for Woodcock {
         flight::predict(&setup.mesh, product.lookups(&mesh, &all))
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<FreeFlight>,
@@ -50,12 +55,24 @@ impl Estimator<FreeFlight> for Woodcock {
         let ray = setup.problem.medium().span();
         let mut cursor = setup.sampling.begin();
         let mut lookups = 0;
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+        loop {
+            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
             lookups += 1;
-            if unit(rng) * sampling < medium.extinction(cursor.t) {
+            if number < medium.extinction(cursor.t) * (1.0 / sampling) {
                 return Draw::free([cursor.t - ray.from], lookups);
             }
         }
         Draw::free([ray.length()], lookups)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<FreeFlight>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::flight(level, setup, medium, request);
     }
 }

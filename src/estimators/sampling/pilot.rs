@@ -17,7 +17,7 @@ use super::Recipe;
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
-use crate::rng::{Address, PILOT, exponential};
+use crate::rng::{Address, exponential};
 
 /// A pilot ray with more collisions than this is a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e6;
@@ -58,7 +58,7 @@ impl Recipe for Pilot {
         let mut sampling = self.start.unwrap_or(10.0 / support.length());
         let mut largest = 0.0f64;
         for ray in 0..self.rays {
-            let mut rng = Address { block: ray, lane: PILOT, ..site.address }.stream();
+            let mut rng = Address { block: ray, ..site.address }.pilot();
             let collisions = sampling * support.length();
             if collisions.is_nan() || collisions > MOST_COLLISIONS {
                 let needs = "at most a million collisions of a pilot ray";

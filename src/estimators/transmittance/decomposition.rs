@@ -21,7 +21,7 @@ use crate::catalogue::Settings;
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
 use crate::media::{Control, Extinction};
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential, unit};
 use crate::theory::Prediction;
@@ -91,6 +91,6 @@ impl Estimator<Transmittance> for Decomposition {
             }
         }
         let passed = support.from + flight >= support.to;
-        Draw::free([if passed { elementary::exp(setup.log_unit) } else { 0.0 }], lookups)
+        Draw::free([if passed { Lane::exp(setup.log_unit) } else { 0.0 }], lookups)
     }
 }

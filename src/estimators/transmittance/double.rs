@@ -17,7 +17,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
+use fearless_simd::Level;
+
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
@@ -70,6 +73,7 @@ fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
 impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -83,6 +87,7 @@ impl Estimator<Transmittance> for DoubleParticle {
         predict_weighted(setup)
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -90,5 +95,15 @@ impl Estimator<Transmittance> for DoubleParticle {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Weight, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &Weight, medium, request);
     }
 }

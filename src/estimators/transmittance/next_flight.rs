@@ -20,7 +20,7 @@
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
@@ -63,11 +63,11 @@ impl Estimator<Transmittance> for NextFlight {
         let mut cursor = setup.sampling.begin();
         let mut weight = 1.0;
         let mut lookups = 0;
-        let mut score = elementary::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
+        let mut score = Lane::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
         while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
             weight *= 1.0 - medium.extinction(cursor.t) / sampling;
             lookups += 1;
-            score += weight * elementary::exp(-sampling * (end - cursor.t));
+            score += weight * Lane::exp(-sampling * (end - cursor.t));
         }
         Draw::free([score * setup.control_transmittance], lookups)
     }

@@ -15,8 +15,11 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
 
+use fearless_simd::Level;
+
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
@@ -31,6 +34,7 @@ pub struct Ratio;
 impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -44,6 +48,7 @@ impl Estimator<Transmittance> for Ratio {
         predict_weighted(setup)
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -51,5 +56,15 @@ impl Estimator<Transmittance> for Ratio {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Weight, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &Weight, medium, request);
     }
 }

@@ -23,7 +23,7 @@ use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Known, elementary};
+use crate::numeric::{Known, Lane};
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
@@ -108,6 +108,6 @@ impl Estimator<Transmittance> for RayMarching {
     ) -> Draw<[f64; 1]> {
         let u = if self.jitter { unit(rng) } else { 0.5 };
         let depth = self.depth(setup, u, |t| medium.extinction(t));
-        Draw::free([elementary::exp(setup.log_unit - depth)], self.steps)
+        Draw::free([Lane::exp(setup.log_unit - depth)], self.steps)
     }
 }

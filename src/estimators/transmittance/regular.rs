@@ -15,7 +15,7 @@ use super::closed_form::exact;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -63,12 +63,12 @@ impl Estimator<Transmittance> for Regular {
             let extinction = medium.extinction(panel.span.middle());
             lookups += 1;
             if setup.log_unit == 0.0 {
-                weight *= elementary::exp(-extinction * panel.span.length());
+                weight *= Lane::exp(-extinction * panel.span.length());
             } else {
                 // The product would underflow: its logarithm is taken from that of the unit.
                 left -= extinction * panel.span.length();
             }
         }
-        Draw::free([weight * elementary::exp(left)], lookups)
+        Draw::free([weight * Lane::exp(left)], lookups)
     }
 }

@@ -16,8 +16,11 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
 
+use fearless_simd::Level;
+
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls, walk};
 use crate::media::{Control, Extinction};
@@ -32,6 +35,7 @@ pub struct ResidualRatio;
 impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -58,6 +62,7 @@ impl Estimator<Transmittance> for ResidualRatio {
         predict_weighted(setup)
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -65,5 +70,15 @@ impl Estimator<Transmittance> for ResidualRatio {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Weight, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &Weight, medium, request);
     }
 }

@@ -27,7 +27,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
 
+use fearless_simd::Level;
+
 use crate::catalogue::{Domain, Settings};
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
@@ -52,6 +55,7 @@ fn terminating_exists(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
 impl Estimator<Transmittance> for SingleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let rule = settings.word("rule", &RULES);
@@ -102,6 +106,7 @@ impl Estimator<Transmittance> for SingleParticle {
         setup.product(&self.rule).predict()
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -109,5 +114,15 @@ impl Estimator<Transmittance> for SingleParticle {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &self.rule, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &self.rule, medium, request);
     }
 }

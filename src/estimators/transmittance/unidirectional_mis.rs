@@ -18,7 +18,7 @@
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
-use crate::numeric::elementary;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
@@ -64,7 +64,7 @@ impl Estimator<Transmittance> for UnidirectionalMis {
         let mut lookups = 0;
         let mut score = 0.0;
         let share = |sampling: f64, t: f64| {
-            let v = elementary::exp(-sampling * (end - t));
+            let v = Lane::exp(-sampling * (end - t));
             v / (1.0 + v)
         };
         let mut here = share(setup.sampling.value(cursor.t), cursor.t);

@@ -14,7 +14,10 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
+use fearless_simd::Level;
+
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
@@ -31,6 +34,7 @@ pub struct WeightedDelta;
 impl Estimator<Transmittance> for WeightedDelta {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -44,6 +48,7 @@ impl Estimator<Transmittance> for WeightedDelta {
         setup.product(&RULE).predict()
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -51,5 +56,15 @@ impl Estimator<Transmittance> for WeightedDelta {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &RULE, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &RULE, medium, request);
     }
 }

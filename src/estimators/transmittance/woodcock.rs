@@ -16,7 +16,10 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
+use fearless_simd::Level;
+
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
@@ -42,6 +45,7 @@ pub fn zero_or_one(prediction: Prediction) -> Prediction {
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -56,6 +60,7 @@ impl Estimator<Transmittance> for Woodcock {
         zero_or_one(setup.product(&Null).predict())
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -63,5 +68,15 @@ impl Estimator<Transmittance> for Woodcock {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Null, medium, rng)
+    }
+
+    fn draw_packets<M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request,
+    ) {
+        packet::product(level, setup, &Null, medium, request);
     }
 }

@@ -23,7 +23,7 @@ use crate::estimators::rules::Weight;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Medium};
-use crate::numeric::{Span, elementary};
+use crate::numeric::{Lane, Span};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Address, Stream, exponential};
@@ -81,7 +81,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
             while next < distances.len() && distances[next] <= until {
                 let upto = Span::new(support.from, distances[next]).intersect(support);
                 let depth = setup.control.optical_depth(upto).value;
-                values.at[next] = weight * elementary::exp(-depth);
+                values.at[next] = weight * Lane::exp(-depth);
                 next += 1;
             }
         };
@@ -93,7 +93,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
             pass(cursor.t, weight);
             let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
             let ratio = residual / sampling;
-            books.hand_over(weight, ratio, 1.0);
+            books.hand_over(weight, 1.0 - ratio);
             weight *= 1.0 - ratio;
             lookups += 1;
         }

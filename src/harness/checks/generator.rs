@@ -1,24 +1,22 @@
 //! The streams of random numbers themselves: no overlap, all bits, no correlation.
 //!
 //! ```text
-//! overlap      no 64-bit word occurs twice among the marked words of all streams
+//! overlap      no 64-bit word occurs twice among the marked words of all streams of 16 blocks
 //! resolution   each of the 53 bits of a uniform number is set somewhere in 256 words
 //! correlation  |z| of Σ (u_{b,i} − ½)(u_{b+1,i+l} − ½) over lags |l| ≤ 16, all neighbours b
 //! ```
 //!
 //! A word is marked when its upper eight bits are zero: two streams that overlap by any shift share
 //! all marked words of the overlap, and few words need to be compared. The first two are certain;
-//! the third gives the p-value.
-
-use rand::Rng;
+//! the third gives the p-value. The words of a block are those of its lanes in turn, so that lanes
+//! are compared with each other as blocks are.
 
 use super::{Ask, Check, Inspected, Kind, Subject};
-use crate::rng::unit;
 use crate::stats::{correlation, ties};
 
-/// How many streams are compared.
-const STREAMS: u64 = 16;
-/// How many words of each are searched for overlaps.
+/// The streams of how many blocks are compared.
+const BLOCKS: u64 = 16;
+/// How many words of each block are searched for overlaps.
 const WORDS: usize = 1 << 14;
 /// How many numbers of each enter the correlations.
 const NUMBERS: usize = 1024;
@@ -51,11 +49,10 @@ impl Check for Generator {
 
 fn p_value(inspected: &Inspected) -> f64 {
     // Neighbouring blocks follow each other, and so do blocks far apart.
-    let blocks = inspected.blocks.clamp(2, STREAMS);
+    let blocks = inspected.blocks.clamp(2, BLOCKS);
     let mut marked = Vec::new();
     for block in 0..blocks {
-        let mut stream = (inspected.stream)(block);
-        let words: Vec<u64> = (0..WORDS).map(|_| stream.next_u64()).collect();
+        let words: Vec<u64> = (inspected.streams)(block).words().take(WORDS).collect();
         let bits = ties::or_of_words(words[..SHORT].iter().map(|word| word >> 11));
         if bits != (1 << 53) - 1 {
             return 0.0;
@@ -67,8 +64,8 @@ fn p_value(inspected: &Inspected) -> f64 {
         return 0.0;
     }
     let numbers = |block| -> Vec<f64> {
-        let mut stream = (inspected.stream)(block);
-        (0..NUMBERS).map(|_| 12f64.sqrt() * (unit(&mut stream) - 0.5)).collect()
+        let words = (inspected.streams)(block).words();
+        words.map(|word| 12f64.sqrt() * (word as f64 / 2f64.powi(64) - 0.5)).take(NUMBERS).collect()
     };
     let mut least: f64 = 1.0;
     let mut before = numbers(0);

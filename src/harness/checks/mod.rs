@@ -9,7 +9,7 @@
 use super::case::Tolerance;
 use crate::catalogue::Catalogue;
 use crate::estimators::{DrawBuffer, Experiment};
-use crate::rng::Stream;
+use crate::rng::Streams;
 use crate::stats::gate::{self, Design};
 use crate::theory::Prediction;
 
@@ -147,8 +147,8 @@ pub struct Inspected<'a> {
     pub experiment: &'a dyn Experiment,
     /// The channels of a draw.
     pub channels: usize,
-    /// The stream of each block.
-    pub stream: &'a dyn Fn(u64) -> Stream,
+    /// The streams of each block.
+    pub streams: &'a dyn Fn(u64) -> Streams,
     /// How many blocks there are.
     pub blocks: u64,
 }
@@ -157,11 +157,11 @@ impl Inspected<'_> {
     /// The first `count` values of the first block's draws, last channel.
     #[must_use]
     pub fn first_draws(&self, count: u64) -> Vec<f64> {
-        let mut stream = (self.stream)(0);
+        let mut streams = (self.streams)(0);
         let mut buffer = DrawBuffer::new(self.channels);
         let mut values = Vec::new();
         while (values.len() as u64) < count {
-            self.experiment.fill(&mut stream, DrawBuffer::LENGTH, &mut buffer);
+            self.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
             values.extend(buffer.values.iter().last().into_iter().flatten());
         }
         values

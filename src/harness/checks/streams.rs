@@ -17,7 +17,7 @@ use crate::harness::plan::BLOCK;
 use crate::stats::correlation;
 
 /// L.
-const FIRST: usize = DrawBuffer::LENGTH;
+const FIRST: usize = 1024;
 /// The fewest blocks that make a test.
 const FEWEST: u64 = 4;
 /// The largest `(κ − 3)/B` for which the sums are near normal.

@@ -138,7 +138,7 @@ impl<'a> Bench<'a> {
         let plan = self.plan(&streams::TARGET, Some(mutant.check));
         let judged = plan.map(|mut plan| {
             for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
-                planned.streams = mutant.stream;
+                planned.find_streams = mutant.streams;
             }
             Self::judged(&plan)
         });
@@ -185,7 +185,7 @@ fn same(planned: &Planned, twin: &dyn Experiment) -> bool {
     let Ok(ready) = &planned.outcome else { return false };
     let fill = |experiment: &dyn Experiment| {
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-        experiment.fill(&mut planned.stream(0), DrawBuffer::LENGTH, &mut buffer);
+        experiment.fill(&mut planned.streams(0), DrawBuffer::LENGTH, &mut buffer);
         let bits = |values: &Vec<f64>| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         (buffer.values.iter().map(bits).collect::<Vec<_>>(), buffer.lookups)
     };

@@ -3,17 +3,25 @@
 //! Every random number of a run has an address: (seed, experiment, block, lane) names a stream,
 //! and the position in the stream is fixed by the draw. Threads, shards and machines are no part
 //! of it, so that any number of them makes the same draws.
+//!
+//! A block has [`LANES`] streams, and draw j of the block comes from stream j mod [`LANES`]: for
+//! every estimator, whether it draws one by one or in packs.
+
+pub mod xoshiro;
 
 use rand::Rng;
 use rand_pcg::Pcg64;
 
-use crate::numeric::elementary;
+use crate::numeric::{Lane, pack::WIDTH};
 
-/// The generator of one stream: PCG XSL RR 128/64.
-///
-/// Source: M. E. O'Neill, *PCG: A family of simple fast space-efficient statistically good
-/// algorithms for random number generation*, Harvey Mudd College HMC-CS-2014-0905 (2014).
-pub type Stream = Pcg64;
+pub use xoshiro::Xoshiro;
+
+/// The generator of one stream of draws: xoshiro256++.
+pub type Stream = Xoshiro<u64>;
+
+/// The streams of a block. Eight doubles fill a register of AVX-512, and two such packs side by
+/// side were no faster than one.
+pub const LANES: usize = WIDTH;
 
 /// Where a stream is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,22 +30,25 @@ pub struct Address {
     pub seed: u64,
     /// The experiment's name, hashed by [`name_hash`].
     pub experiment: u64,
-    /// The block of draws within the experiment.
+    /// The block of draws within the experiment; [`PILOT`] for draws before the first.
     pub block: u64,
-    /// The lane within the block: 0 for scalar kernels, [`PILOT`] for pilot rays.
+    /// The lane within the block: below [`LANES`] for draws, [`PILOT`] for pilot rays.
     pub lane: u64,
 }
 
-/// The lane of the pilot rays that learn a sampling extinction before the first draw.
+/// No block and no lane of draws: what is drawn before the first draw is found here.
 pub const PILOT: u64 = u64::MAX;
 
 impl Address {
-    /// The generator at the stream's beginning.
+    /// The generator that seeds a stream, and that pilot rays use: PCG XSL RR 128/64.
     ///
     /// The whole address is hashed into both the state and the increment: PCG streams that differ
     /// in the stream word only may be correlated.
+    ///
+    /// Source: M. E. O'Neill, *PCG: A family of simple fast space-efficient statistically good
+    /// algorithms for random number generation*, Harvey Mudd College HMC-CS-2014-0905 (2014).
     #[must_use]
-    pub fn stream(self) -> Stream {
+    fn seeder(self) -> Pcg64 {
         let mut hash = 0x7472_7565_666c_6967; // "trueflig": keeps seed 0 away from state 0
         for word in [self.seed, self.experiment, self.block, self.lane] {
             hash = mix(hash ^ word);
@@ -49,6 +60,56 @@ impl Address {
         let state = word() << 64 | word();
         let increment = word() << 64 | word();
         Pcg64::new(state, increment)
+    }
+
+    /// The generator of a pilot ray, which learns a sampling extinction before the first draw.
+    #[must_use]
+    pub fn pilot(self) -> Pcg64 {
+        Self { lane: PILOT, ..self }.seeder()
+    }
+
+    /// The stream at its beginning.
+    #[must_use]
+    pub fn stream(self) -> Stream {
+        let mut seeder = self.seeder();
+        let mut word = || seeder.next_u64();
+        Stream::at([word(), word(), word(), word()])
+    }
+
+    /// The streams of the block, at their beginnings.
+    #[must_use]
+    pub fn streams(self) -> Streams {
+        Streams::new(std::array::from_fn(|lane| Self { lane: lane as u64, ..self }.stream()))
+    }
+}
+
+/// The streams of a block and whose turn it is.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Streams {
+    /// The streams, each where its last draw left it.
+    pub lanes: [Stream; LANES],
+    /// The lane of the next draw.
+    pub turn: usize,
+}
+
+impl Streams {
+    /// Streams of which the first makes the first draw.
+    #[must_use]
+    pub fn new(lanes: [Stream; LANES]) -> Self {
+        Self { lanes, turn: 0 }
+    }
+
+    /// The stream of the next draw.
+    #[inline(always)]
+    pub fn of_next_draw(&mut self) -> &mut Stream {
+        let lane = self.turn;
+        self.turn = (lane + 1) % LANES;
+        &mut self.lanes[lane]
+    }
+
+    /// The next word of each lane in turn, for those who look at the streams themselves.
+    pub fn words(mut self) -> impl Iterator<Item = u64> {
+        std::iter::from_fn(move || Some(self.of_next_draw().word()))
     }
 }
 
@@ -78,7 +139,7 @@ pub fn unit<R: Rng>(rng: &mut R) -> f64 {
 /// Exponential with mean 1: `−ln u` with `u` uniform in `(0, 1]`, so that it is never infinite.
 #[inline]
 pub fn exponential<R: Rng>(rng: &mut R) -> f64 {
-    -elementary::ln(1.0 - unit(rng))
+    -Lane::ln(1.0 - unit(rng))
 }
 
 #[cfg(test)]
@@ -99,6 +160,17 @@ mod tests {
         for other in others {
             assert_ne!(first, other.stream().next_u64());
         }
+    }
+
+    #[test]
+    fn no_two_lanes_share_a_stream() {
+        let base = Address { seed: 1, experiment: 2, block: 3, lane: 0 };
+        let mut beginnings: Vec<u64> = (0..4)
+            .flat_map(|block| Address { block, ..base }.streams().words().take(LANES))
+            .collect();
+        beginnings.push(base.pilot().next_u64());
+        beginnings.sort_unstable();
+        assert!(beginnings.windows(2).all(|pair| pair[0] != pair[1]));
     }
 
     #[test]

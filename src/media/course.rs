@@ -1,0 +1,187 @@
+//! Eight walks side by side through straight pieces.
+//!
+//! Specification: walk i of a course stands where a [`super::Cursor`] stands after the same flights
+//! through the same [`Piecewise`] field, to the bit.
+
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use super::Piecewise;
+use crate::numeric::Lane;
+use crate::numeric::pack::WIDTH;
+
+/// Where eight walks stand.
+pub trait Course<S: Simd> {
+    /// Each flies on through an optical depth; answers which are still before the last knot.
+    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S>;
+
+    /// The distances reached.
+    fn reached(&self) -> f64x8<S>;
+
+    /// The mean free paths `1/σ̂` there.
+    fn mean_free_path(&self) -> f64x8<S>;
+
+    /// These begin anew from the first knot.
+    fn restart(&mut self, which: mask64x8<S>);
+}
+
+/// Through one constant value.
+#[derive(Clone, Copy)]
+pub struct Even<S: Simd> {
+    begin: f64x8<S>,
+    end: f64x8<S>,
+    path: f64x8<S>,
+    t: f64x8<S>,
+}
+
+impl<S: Simd> Even<S> {
+    /// At the first knot of a field with a single value.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(simd: S, field: &Piecewise, value: f64) -> Self {
+        let begin = f64x8::splat(simd, field.knots[0]);
+        let end = f64x8::splat(simd, field.knots[1]);
+        Self { begin, end, path: f64x8::splat(simd, 1.0 / value), t: begin }
+    }
+}
+
+impl<S: Simd> Course<S> for Even<S> {
+    #[inline(always)]
+    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S> {
+        self.t = depth.times_plus(self.path, self.t);
+        self.t.below(self.end)
+    }
+
+    #[inline(always)]
+    fn reached(&self) -> f64x8<S> {
+        self.t
+    }
+
+    #[inline(always)]
+    fn mean_free_path(&self) -> f64x8<S> {
+        self.path
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, which: mask64x8<S>) {
+        self.t = Lane::select(which, self.begin, self.t);
+    }
+}
+
+/// Through any pieces: each walk has its own at hand, and looks the next one up when it crosses.
+#[derive(Clone, Copy)]
+pub struct Pieces<'a, S: Simd> {
+    field: &'a Piecewise,
+    piece: [usize; WIDTH],
+    knot: f64x8<S>,
+    end: f64x8<S>,
+    left: f64x8<S>,
+    right: f64x8<S>,
+    slope: f64x8<S>,
+    t: f64x8<S>,
+}
+
+impl<'a, S: Simd> Pieces<'a, S> {
+    /// At the first knot.
+    #[inline(always)]
+    #[must_use]
+    pub fn new(simd: S, field: &'a Piecewise) -> Self {
+        let zero = f64x8::splat(simd, 0.0);
+        let t = f64x8::splat(simd, field.knots[0]);
+        let (knot, end, left, right, slope) = (t, zero, zero, zero, zero);
+        let mut walks = Self { field, piece: [0; WIDTH], knot, end, left, right, slope, t };
+        walks.look_up(u64::MAX);
+        walks
+    }
+
+    /// σ̂ at the distances reached.
+    #[inline(always)]
+    fn here(&self) -> f64x8<S> {
+        self.left + self.slope * (self.t - self.knot)
+    }
+
+    /// Takes the pieces of some walks to hand.
+    #[inline(always)]
+    fn look_up(&mut self, which: u64) {
+        let packs =
+            [&mut self.knot, &mut self.end, &mut self.left, &mut self.right, &mut self.slope];
+        let mut rows = [[0.0; WIDTH]; 5];
+        for (row, pack) in rows.iter_mut().zip(&packs) {
+            pack.store_slice(row);
+        }
+        for (lane, &piece) in self.piece.iter().enumerate() {
+            if which >> lane & 1 == 1 {
+                let (knot, end) = (self.field.knots[piece], self.field.knots[piece + 1]);
+                let (left, slope) = (self.field.left[piece], self.field.slope[piece]);
+                let values = [knot, end, left, self.field.line(piece, end), slope];
+                for (row, value) in rows.iter_mut().zip(values) {
+                    row[lane] = value;
+                }
+            }
+        }
+        let simd = self.t.token();
+        for (pack, row) in packs.into_iter().zip(&rows) {
+            *pack = f64x8::from_slice(simd, row);
+        }
+    }
+}
+
+impl<S: Simd> Course<S> for Pieces<'_, S> {
+    #[inline(always)]
+    fn fly(&mut self, mut depth: f64x8<S>) -> mask64x8<S> {
+        let simd = depth.token();
+        let zero = depth.each(0.0);
+        let mut flying = mask64x8::splat(simd, true);
+        let mut arrived = mask64x8::splat(simd, false);
+        loop {
+            let here = self.here();
+            let left = (self.end - self.t) * 0.5 * (here + self.right);
+            let arrives = depth.below(left) & flying;
+            let root = (here * here + self.slope * 2.0 * depth).or_more(zero).root();
+            let landed = self.t + depth * 2.0 / (here + root);
+            self.t = Lane::select(arrives, landed, self.t);
+            arrived |= arrives;
+            flying &= !arrives;
+            if !flying.any_true() {
+                return arrived;
+            }
+            depth = Lane::select(flying, depth - left, depth);
+            self.t = Lane::select(flying, self.end, self.t);
+            let (mut crossing, last) = (flying.to_bitmask(), self.field.left.len() - 1);
+            for (lane, piece) in self.piece.iter_mut().enumerate() {
+                if crossing >> lane & 1 == 1 {
+                    if *piece == last {
+                        crossing &= !(1 << lane);
+                    } else {
+                        *piece += 1;
+                    }
+                }
+            }
+            flying = mask64x8::from_bitmask(simd, crossing);
+            self.look_up(crossing);
+        }
+    }
+
+    #[inline(always)]
+    fn reached(&self) -> f64x8<S> {
+        self.t
+    }
+
+    #[inline(always)]
+    fn mean_free_path(&self) -> f64x8<S> {
+        self.t.each(1.0) / self.here()
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, which: mask64x8<S>) {
+        let bits = which.to_bitmask();
+        if bits != 0 {
+            for (lane, piece) in self.piece.iter_mut().enumerate() {
+                if bits >> lane & 1 == 1 {
+                    *piece = 0;
+                }
+            }
+            self.look_up(bits);
+            self.t = Lane::select(which, self.t.each(self.field.knots[0]), self.t);
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Eight doubles as a lane, on any vector hardware.
+//!
+//! A pack has eight elements whatever the hardware's registers hold: one register of AVX-512, two
+//! of AVX2, four of SSE2. So the same draws come out of every machine that fuses multiplication and
+//! addition, and what is drawn never depends on the width.
+
+use fearless_simd::{
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x8, i64x8, mask64x8, u64x8,
+};
+
+use super::Lane;
+use super::single::{ROOT_HALF, ROUNDER};
+
+/// The elements of a pack.
+pub const WIDTH: usize = 8;
+
+/// Whether the packs of a level multiply and add in one rounding.
+#[inline(always)]
+#[must_use]
+pub fn fuses(level: Level) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return level.as_avx2().is_some();
+    #[cfg(target_arch = "aarch64")]
+    return level.as_neon().is_some();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64", target_arch = "aarch64")))]
+    {
+        let _ = level;
+        false
+    }
+}
+
+/// A computation that is compiled once for each level of vector hardware.
+pub trait Task {
+    /// What it answers.
+    type Output;
+
+    /// The computation; all that it calls in loops is `#[inline(always)]`, or else it would be
+    /// compiled for the least machine.
+    fn run<S: Simd>(self, simd: S) -> Self::Output;
+}
+
+/// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
+///
+/// SSE4.2 is left out, for few machines have it and not AVX2: they run the code for SSE2.
+#[cfg(target_arch = "x86_64")]
+pub fn on<T: Task>(level: Level, task: T) -> T::Output {
+    match (level.as_avx512(), level.as_avx2(), level.as_sse2()) {
+        (Some(simd), ..) => vectorized(simd, task),
+        (None, Some(simd), _) => vectorized(simd, task),
+        (None, None, Some(simd)) => vectorized(simd, task),
+        (None, None, None) => unreachable!("SSE2 is part of x86_64"),
+    }
+}
+
+/// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
+#[cfg(not(target_arch = "x86_64"))]
+pub fn on<T: Task>(level: Level, task: T) -> T::Output {
+    fearless_simd::dispatch!(level, simd => vectorized(simd, task))
+}
+
+#[inline(always)]
+fn vectorized<S: Simd, T: Task>(simd: S, task: T) -> T::Output {
+    simd.vectorize(
+        #[inline(always)]
+        || task.run(simd),
+    )
+}
+
+/// Runs scalar code in which a fused multiply-add is one instruction, where the machine has it.
+#[inline(always)]
+pub fn in_fused_code<R>(f: impl FnOnce() -> R) -> R {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(simd) = Level::new().as_avx2() {
+        return simd.vectorize(f);
+    }
+    f()
+}
+
+impl<S: Simd> Lane for f64x8<S> {
+    type Mask = mask64x8<S>;
+
+    #[inline(always)]
+    fn each(self, value: f64) -> Self {
+        SimdBase::splat(self.token(), value)
+    }
+
+    #[inline(always)]
+    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+        let mut elements = [0.0; WIDTH];
+        self.store_slice(&mut elements);
+        for element in &mut elements {
+            *element = f(*element);
+        }
+        Self::from_slice(self.token(), &elements)
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        self.mul_add(factor, term)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.sqrt()
+    }
+
+    #[inline(always)]
+    fn size(self) -> Self {
+        self.abs()
+    }
+
+    #[inline(always)]
+    fn below(self, other: Self) -> mask64x8<S> {
+        self.simd_lt(other)
+    }
+
+    #[inline(always)]
+    fn at_most(self, other: Self) -> mask64x8<S> {
+        self.simd_le(other)
+    }
+
+    #[inline(always)]
+    fn select(mask: mask64x8<S>, yes: Self, no: Self) -> Self {
+        mask.select(yes, no)
+    }
+
+    #[inline(always)]
+    fn nearest(self) -> Self {
+        // Machines without the instruction would call a function for each element.
+        if fuses(self.token().level()) {
+            self.round_ties_even()
+        } else {
+            (self + ROUNDER) - ROUNDER
+        }
+    }
+
+    #[inline(always)]
+    fn split(self) -> (Self, Self) {
+        let bits: u64x8<S> = self.bitcast();
+        let shifted: i64x8<S> = (bits - ROOT_HALF).bitcast();
+        let k: u64x8<S> = (shifted >> 52).bitcast();
+        let m: Self = (bits - (k << 52)).bitcast();
+        // A small integer added to the bits of 1.5·2^52 is added to its value.
+        let sum: Self = (k + ROUNDER.to_bits()).bitcast();
+        (m, sum - ROUNDER)
+    }
+
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        let bits: u64x8<S> = (self + ROUNDER).bitcast();
+        ((bits + 1023) << 52).bitcast()
+    }
+
+    #[inline(always)]
+    fn alternate(self, k: Self) -> Self {
+        let (sum, bits): (u64x8<S>, u64x8<S>) = ((k + ROUNDER).bitcast(), self.bitcast());
+        (bits ^ (sum << 63)).bitcast()
+    }
+}

@@ -1,0 +1,132 @@
+//! One double as a lane, in either rounding.
+//!
+//! [`Plain`] rounds a product and its sum apart, as packs do on machines without a fused
+//! multiply-add; [`Fused`] rounds them once. Within code that is compiled for such a machine
+//! ([`super::pack::in_fused_code`]) that is one instruction, elsewhere a call of the mathematical
+//! library: slower, the same bits.
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::Lane;
+
+/// Adding and subtracting `1.5·2^52` rounds a double of size below `2^51` to the nearest integer.
+pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+/// The bits of √½: subtracting them moves the cut between exponents there.
+pub const ROOT_HALF: u64 = 0x3fe6_a09e_667f_3bcd;
+
+/// A double whose products and sums are rounded apart.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Plain(pub f64);
+
+/// A double whose products and sums are rounded once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Fused(pub f64);
+
+macro_rules! single {
+    ($Single:ident, |$x:ident, $factor:ident, $term:ident| $times_plus:expr) => {
+        single!(operators $Single: Add::add, Sub::sub, Mul::mul, Div::div);
+
+        impl Neg for $Single {
+            type Output = Self;
+            #[inline(always)]
+            fn neg(self) -> Self {
+                Self(-self.0)
+            }
+        }
+
+        impl Lane for $Single {
+            type Mask = bool;
+
+            #[inline(always)]
+            fn each(self, value: f64) -> Self {
+                Self(value)
+            }
+
+            #[inline(always)]
+            fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+                Self(f(self.0))
+            }
+
+            #[inline(always)]
+            fn times_plus(self, $factor: Self, $term: Self) -> Self {
+                let $x = self;
+                Self($times_plus)
+            }
+
+            #[inline(always)]
+            fn root(self) -> Self {
+                Self(self.0.sqrt())
+            }
+
+            #[inline(always)]
+            fn size(self) -> Self {
+                Self(self.0.abs())
+            }
+
+            #[inline(always)]
+            fn below(self, other: Self) -> bool {
+                self.0 < other.0
+            }
+
+            #[inline(always)]
+            fn at_most(self, other: Self) -> bool {
+                self.0 <= other.0
+            }
+
+            #[inline(always)]
+            fn select(mask: bool, yes: Self, no: Self) -> Self {
+                if mask { yes } else { no }
+            }
+
+            #[inline(always)]
+            fn nearest(self) -> Self {
+                Self((self.0 + ROUNDER) - ROUNDER)
+            }
+
+            #[inline(always)]
+            #[allow(clippy::cast_possible_wrap, clippy::cast_sign_loss)] // eleven bits
+            fn split(self) -> (Self, Self) {
+                let bits = self.0.to_bits();
+                let k = (bits.wrapping_sub(ROOT_HALF) as i64) >> 52;
+                let m = f64::from_bits(bits.wrapping_sub((k as u64) << 52));
+                (Self(m), Self(k as f64))
+            }
+
+            #[inline(always)]
+            fn power_of_two(self) -> Self {
+                // The integer stands in the last bits of the sum; 1023 more is its exponent.
+                let bits = (self.0 + ROUNDER).to_bits();
+                Self(f64::from_bits(bits.wrapping_add(1023) << 52))
+            }
+
+            #[inline(always)]
+            fn alternate(self, k: Self) -> Self {
+                let odd = (k.0 + ROUNDER).to_bits() << 63;
+                Self(f64::from_bits(self.0.to_bits() ^ odd))
+            }
+        }
+    };
+    (operators $Single:ident: $($Trait:ident::$method:ident),*) => {
+        $(
+            impl $Trait for $Single {
+                type Output = Self;
+                #[inline(always)]
+                fn $method(self, other: Self) -> Self {
+                    Self($Trait::$method(self.0, other.0))
+                }
+            }
+
+            impl $Trait<f64> for $Single {
+                type Output = Self;
+                #[inline(always)]
+                fn $method(self, other: f64) -> Self {
+                    Self($Trait::$method(self.0, other))
+                }
+            }
+        )*
+    };
+}
+
+single!(Plain, |x, factor, term| x.0 * factor.0 + term.0);
+single!(Fused, |x, factor, term| x.0.mul_add(factor.0, term.0));

@@ -1,0 +1,165 @@
+//! Draws made eight at a time are the draws made one by one, to the bit.
+//!
+//! On every level of vector hardware that this machine has and that fuses multiplication and
+//! addition: values, lookups, defects, and where the streams are left. Below those levels the same
+//! kernels round differently and are judged like any estimator.
+
+mod common;
+
+use common::{case, none, options, shipped};
+use fearless_simd::Level;
+use trueflight::estimators::{DrawBuffer, Kernel};
+use trueflight::harness::plan::Planned;
+use trueflight::harness::record::Verdict;
+use trueflight::harness::{Case, Plan};
+use trueflight::numeric::pack::fuses;
+
+/// Draws of several requests in a row, which no number of lanes divides.
+const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
+
+/// The media that the shipped cases do not combine with every estimator, σ̂ and control.
+const MEDIA: [(&str, &str); 9] = [
+    ("constant", "medium.constant.extinction = 0.7\nspan = [1, 4]"),
+    (
+        "steps",
+        "medium.piecewise-constant = { breaks = [0, 1, 2.5, 4], values = [0.2, 1.5, 0.4] }
+        span = [0, 4]",
+    ),
+    (
+        "lines",
+        "medium.piecewise-linear = { knots = [0, 1, 2.5, 4], values = [0.2, 1.4, 0, 1] }
+        span = [0, 4]",
+    ),
+    ("exponential", "medium.exponential = { extinction = 1.4, rate = 0.7 }\nspan = [0, 3]"),
+    ("gaussian", "medium.gaussian = { peak = 1.4, centre = 2, width = 0.7 }\nspan = [0, 4]"),
+    (
+        "sines",
+        "medium.sines = { base = 0.8, amplitudes = [0.4, -0.2], frequencies = [2, 5] }
+        span = [0, 4]",
+    ),
+    (
+        "eq21",
+        "volume.eq21 = {}
+        ray = { origin = [1, 0, -3], direction = [0, 0.1, 1], length = 30 }",
+    ),
+    (
+        "noise",
+        "volume.noise = { extinction = 1.2, octaves = 3, seed = 5 }
+        ray = { origin = [0.3, 0.7, -0.4], direction = [0.6, 0.5, 0.4], length = 5 }",
+    ),
+    (
+        "grid",
+        "volume.grid = { random = { size = [5, 5, 5], seed = 7 },
+                         bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }
+        ray = { origin = [-1, 0.4, 0.9], direction = [4.2, 2.2, 1.9], length = 9 }",
+    ),
+];
+
+/// Every product estimator, with every form of σ̂ and of control.
+const ESTIMATORS: &str = "
+    { woodcock = {} }, { woodcock.sampling.local-majorants.segments = 5 },
+    { ratio = {} }, { ratio.sampling.local-majorants.segments = 5 },
+    { residual-ratio = {} }, { weighted-delta = {} },
+    { single.rule = \"terminating\" }, { single.rule = \"clamped\" },
+    { single = { rule = \"non-terminating\", albedo = 0.7 } },
+    { single = { rule = \"adaptive\", albedo = 0.2 } },
+    { single = { rule = \"clamped\", control.constant.value = 0.9, sampling.constant.value = 0.6 } },
+    { single = { rule = \"adaptive\", albedo = 0.2, control.explorers.points = 5 } },
+    { double.control.explorers.points = 5 }, { double.control.constant.value = 0.9 },
+    { double.sampling.constant.value = 0.4 },";
+
+fn cases() -> Vec<Case> {
+    let mut cases = shipped();
+    for (name, medium) in MEDIA {
+        let transmittance = format!(
+            "title = \"{name}\"\n[problem.transmittance]\n{medium}\nsampling.constant.value = 1.5
+            estimators = [{ESTIMATORS}
+                {{ ratio.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [0.5, 2, 1] }} }}]"
+        );
+        let flight = format!(
+            "title = \"{name}, flight\"\n[problem.free-flight]\n{medium}
+            sampling.constant.value = 1.5
+            estimators = [{{ woodcock = {{}} }}, {{ woodcock.sampling.local-majorants.segments = 5 }}]"
+        );
+        cases.push(case(name, &transmittance));
+        cases.push(case(&format!("{name}-flight"), &flight));
+    }
+    cases
+}
+
+/// All that an experiment draws, as bits, and its streams afterwards.
+fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
+    let ready = planned.outcome.as_ref().expect("it is not refused");
+    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    let mut streams = planned.streams(3);
+    let mut bits = Vec::new();
+    for count in REQUESTS {
+        ready.experiment.fill_by(kernel, &mut streams, count, &mut buffer);
+        assert_eq!(buffer.lookups.len(), count);
+        for channel in &buffer.values {
+            bits.extend(channel.iter().map(|value| value.to_bits()));
+        }
+        bits.extend(buffer.lookups.iter().map(|&lookups| u64::from(lookups)));
+        bits.extend(buffer.defects.iter().map(|defect| defect.to_bits()));
+    }
+    bits.push(streams.turn as u64);
+    bits.extend(streams.words().take(16));
+    bits
+}
+
+/// Every level that fuses, from the best down.
+fn fusing_levels() -> Vec<Level> {
+    let mut levels = vec![Level::new()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    levels.retain(|&level| fuses(level));
+    levels
+}
+
+#[test]
+fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
+    let cases = cases();
+    let plan = Plan::new(&cases, &options(1, 1_000));
+    let (mut wrong, mut compared) = (Vec::new(), 0);
+    for (case, planned) in plan.experiments().filter(|(_, planned)| planned.outcome.is_ok()) {
+        let single = drawn(planned, Kernel::Single);
+        for level in fusing_levels() {
+            compared += 1;
+            let packets = drawn(planned, Kernel::Packets(level));
+            let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
+            if let Some(place) = differing {
+                let name = &planned.names.estimator;
+                let sampling = &planned.names.sampling_kind;
+                wrong.push(format!("{}, {name}, {sampling}, {level:?}: {place}", case.case.name));
+            }
+        }
+    }
+    none(&wrong);
+    assert!(fusing_levels().is_empty() || compared > 200, "only {compared} compared");
+}
+
+/// The least machine's rounding, forced on this one, passes the gate.
+#[test]
+fn kernels_without_fused_instructions_are_judged_like_any_other() {
+    let (_, medium) = MEDIA[6];
+    let text = format!(
+        "title = \"eq21\"\n[problem.transmittance]\n{medium}\nsampling.constant.value = 1.1
+        estimators = [{ESTIMATORS}]"
+    );
+    let cases = [case("eq21", &text)];
+    let mut plan = Plan::new(&cases, &options(1, 50_000));
+    for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
+        if let Ok(ready) = &mut planned.outcome {
+            let experiment = std::mem::replace(&mut ready.experiment, Box::new(common::Nothing));
+            ready.experiment = Box::new(common::At { experiment, level: Level::baseline() });
+        }
+    }
+    let draws = trueflight::harness::run::draw(&plan, &|_| {});
+    let record = trueflight::harness::judge::judged(&plan, &draws, 0.0);
+    let failed = record.results.cases.iter().flat_map(|case| &case.rows);
+    let failed: Vec<String> = failed
+        .filter(|row| row.verdict == Some(Verdict::Fail))
+        .map(|row| format!("{}: {}", row.estimator, row.reason))
+        .collect();
+    none(&failed);
+}
