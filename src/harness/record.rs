@@ -296,7 +296,7 @@ pub struct Sweep {
     pub axis: String,
     /// Whether the axis is logarithmic.
     pub log: bool,
-    /// Beyond this, a z-score fails its check.
+    /// The z-score that is as rare as a false alarm of the gate.
     pub z_limit: Option<f64>,
     /// One curve per estimator.
     pub curves: Vec<Curve>,

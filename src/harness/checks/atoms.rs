@@ -79,4 +79,9 @@ impl Check for Atoms {
         }
         vec![Ask::whole("the shares of the values", Kind::Law(Box::new(values)))]
     }
+
+    /// Two values have their exact binomial law, whose p-values are discrete: never too often small.
+    fn is_uniform(&self) -> bool {
+        false
+    }
 }

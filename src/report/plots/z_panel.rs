@@ -60,7 +60,7 @@ pub fn draw(
 pub fn note(sweep: &Sweep) -> String {
     let band = format!("(d): 95 % of the scores of a correct estimator lie in the band, ±{USUAL}");
     let limit =
-        sweep.z_limit.map(|z| format!("; beyond the dashes, ±{}, a check fails", short(z, 3)));
+        sweep.z_limit.map(|z| format!("; the dashes, ±{}, are the level of the gate", short(z, 3)));
     band + &limit.unwrap_or_default()
 }
 
