@@ -5,11 +5,13 @@
 //! addition, and what is drawn never depends on the width.
 
 use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x8, i64x8, mask64x8, u64x8,
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x4, f64x8, i64x8, mask64x8,
+    u64x8,
 };
 
 use super::Lane;
 use super::single::{ROOT_HALF, ROUNDER};
+use super::words::apart;
 
 /// The elements of a pack.
 pub const WIDTH: usize = 8;
@@ -76,8 +78,28 @@ pub fn in_fused_code<R>(f: impl FnOnce() -> R) -> R {
     f()
 }
 
+/// The places in a list that the elements are the numbers of.
+#[inline(always)]
+fn places<S: Simd>(numbers: f64x8<S>, length: usize) -> [usize; WIDTH] {
+    let bits: u64x8<S> = (numbers + ROUNDER).bitcast();
+    let (mut row, mut places) = ([0; WIDTH], [0; WIDTH]);
+    bits.store_slice(&mut row);
+    for (place, element) in places.iter_mut().zip(row) {
+        *place = (apart(element)[0] as usize).min(length - 1);
+    }
+    places
+}
+
+/// Two rows of a table side by side.
+#[inline(always)]
+fn two_rows<S: Simd>(simd: S, first: usize, second: usize, table: &[[f64; 4]]) -> f64x8<S> {
+    let low = f64x4::from_slice(simd, &table[first]);
+    simd.combine_f64x4(low, f64x4::from_slice(simd, &table[second]))
+}
+
 impl<S: Simd> Lane for f64x8<S> {
     type Mask = mask64x8<S>;
+    type Words = u64x8<S>;
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
@@ -155,5 +177,42 @@ impl<S: Simd> Lane for f64x8<S> {
     fn alternate(self, k: Self) -> Self {
         let (sum, bits): (u64x8<S>, u64x8<S>) = ((k + ROUNDER).bitcast(), self.bitcast());
         (bits ^ (sum << 63)).bitcast()
+    }
+
+    #[inline(always)]
+    fn words(self) -> u64x8<S> {
+        let bits: u64x8<S> = (self + ROUNDER).bitcast();
+        (bits & 0xffff_ffff) | (bits << 32)
+    }
+
+    #[inline(always)]
+    fn where_bits(words: u64x8<S>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+        (words & bits).simd_eq(wanted).select(yes, no)
+    }
+
+    #[inline(always)]
+    fn negated_where(self, words: u64x8<S>, bit: u32) -> Self {
+        let bits: u64x8<S> = self.bitcast();
+        (bits ^ ((words << (63 - bit)) & 1 << 63)).bitcast()
+    }
+
+    #[inline(always)]
+    fn entry(self, list: &[f64]) -> Self {
+        let [a, b, c, d, e, f, g, h] = places(self, list.len());
+        let row = [list[a], list[b], list[c], list[d], list[e], list[f], list[g], list[h]];
+        Self::from_slice(self.token(), &row)
+    }
+
+    #[inline(always)]
+    fn columns(self, table: &[[f64; 4]]) -> [Self; 4] {
+        let (simd, p) = (self.token(), places(self, table.len()));
+        let (a, b) = (two_rows(simd, p[0], p[1], table), two_rows(simd, p[2], p[3], table));
+        let (c, d) = (two_rows(simd, p[4], p[5], table), two_rows(simd, p[6], p[7], table));
+        // Columns 0 and 2 from columns 1 and 3, then each by itself.
+        let (even_low, odd_low) = simd.deinterleave_f64x8(a, b);
+        let (even_high, odd_high) = simd.deinterleave_f64x8(c, d);
+        let (first, third) = simd.deinterleave_f64x8(even_low, even_high);
+        let (second, fourth) = simd.deinterleave_f64x8(odd_low, odd_high);
+        [first, second, third, fourth]
     }
 }
