@@ -11,6 +11,7 @@ pub mod body;
 pub mod cells;
 pub mod control;
 pub mod course;
+pub mod cubics;
 pub mod grid_file;
 pub mod lattice;
 pub mod medium;

@@ -45,7 +45,7 @@ pub trait Lane:
     #[must_use]
     fn each(self, value: f64) -> Self;
 
-    /// Applies a scalar function to each element, for what is not in the inner loops.
+    /// Applies a scalar function to each element, for what has no formula of its own.
     #[must_use]
     fn map(self, f: impl FnMut(f64) -> f64) -> Self;
 

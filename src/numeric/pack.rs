@@ -216,3 +216,53 @@ impl<S: Simd> Lane for f64x8<S> {
         [first, second, third, fourth]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::words::Words32;
+    use super::*;
+
+    /// Entries, columns and choices by the bits of a hash.
+    #[inline(always)]
+    fn looked_up<L: Lane>(numbers: L, list: &[f64], table: &[[f64; 4]]) -> [L; 7] {
+        let [a, b, c, d] = numbers.columns(table);
+        let words = numbers.words();
+        let words = words.plus(words.each([7, 0xffff_fff0])).times(0x85eb_ca6b).folded(13);
+        let chosen = L::where_bits(words, 5 << 32, 4 << 32, a, b);
+        [numbers.entry(list), a, b, c, d, chosen, c.negated_where(words.xor(words.folded(3)), 40)]
+    }
+
+    struct LookedUp<'a>([f64; WIDTH], &'a [f64], &'a [[f64; 4]]);
+    impl Task for LookedUp<'_> {
+        type Output = [[f64; WIDTH]; 7];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let mut rows = [[0.0; WIDTH]; 7];
+            let values = looked_up(f64x8::from_slice(simd, &self.0), self.1, self.2);
+            for (row, value) in rows.iter_mut().zip(values) {
+                value.store_slice(row);
+            }
+            rows
+        }
+    }
+
+    #[test]
+    fn tables_and_words_are_those_of_scalars() {
+        let list: Vec<f64> = (0..100).map(|n| 0.5 + f64::from(n)).collect();
+        let table: Vec<[f64; 4]> = list.iter().map(|x| [*x, x + 1e3, x + 2e3, x + 3e3]).collect();
+        let mut levels = vec![Level::new(), Level::baseline()];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        for first in 0..100 {
+            // The last places are beyond the lists.
+            let numbers = std::array::from_fn(|lane| f64::from(first) + 3.0 * lane as f64);
+            for &level in &levels {
+                let packs = on(level, LookedUp(numbers, &list, &table));
+                for (lane, &number) in numbers.iter().enumerate() {
+                    let alone = looked_up(number, &list, &table);
+                    assert_eq!(packs.map(|row| row[lane]), alone, "{number} at {level:?}");
+                }
+            }
+        }
+    }
+}
