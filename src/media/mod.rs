@@ -16,6 +16,7 @@ pub mod grid_file;
 pub mod lattice;
 pub mod medium;
 pub mod piecewise;
+pub mod search;
 pub mod voxels;
 
 use crate::catalogue::{Catalogue, Settings};
