@@ -13,7 +13,7 @@
 //! Products and sums are rounded apart on every machine. A field of non-negative samples is not
 //! negative, whatever the rounding of its cubic: 0 is the least value.
 
-use crate::numeric::{Lane, Span};
+use crate::numeric::{Lane, Row, Span};
 
 /// Cubics along a ray.
 pub struct Cubics {
@@ -22,8 +22,8 @@ pub struct Cubics {
     slope: [f64; 3],
     /// The planes below the beginning.
     below: f64,
-    knots: Vec<f64>,
-    rows: Vec<[f64; 4]>,
+    /// The coefficients of each cell and where it begins.
+    rows: Vec<Row>,
 }
 
 impl Cubics {
@@ -51,9 +51,12 @@ impl Cubics {
         crossings.sort_by(f64::total_cmp);
         let knots: Vec<f64> = std::iter::once(inside.from).chain(crossings).collect();
         let ends = knots[1..].iter().copied().chain(std::iter::once(inside.to));
-        let rows = knots.iter().zip(ends).map(|(&from, to)| cubic(from + 0.5 * (to - from), from));
-        let rows = rows.collect();
-        let mut cubics = Self { start: start.map(|a| a - 0.5), slope, below: 0.0, knots, rows };
+        let row = |(&from, to): (&f64, f64)| {
+            let [a, b, c, d] = cubic(from + 0.5 * (to - from), from);
+            Row([a, b, c, d, from, 0.0, 0.0, 0.0])
+        };
+        let rows = knots.iter().zip(ends).map(row).collect();
+        let mut cubics = Self { start: start.map(|a| a - 0.5), slope, below: 0.0, rows };
         cubics.below = cubics.cell(inside.from);
         cubics
     }
@@ -68,9 +71,8 @@ impl Cubics {
     /// The field at a distance within the stretch.
     #[inline(always)]
     pub fn value<L: Lane>(&self, t: L) -> L {
-        let cell = self.cell(t);
-        let s = t - cell.entry(&self.knots);
-        let [c0, c1, c2, c3] = cell.columns(&self.rows);
+        let [c0, c1, c2, c3, knot] = self.cell(t).columns(&self.rows);
+        let s = t - knot;
         (((c3 * s + c2) * s + c1) * s + c0).or_more(t.each(0.0))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::search::Search;
 use super::{Extinction, FreeFlight, OpticalDepth};
-use crate::numeric::{Known, Lane, Span, sum::Sum};
+use crate::numeric::{Known, Lane, Row, Span, sum::Sum};
 
 /// A field made of straight pieces, which need not meet at the knots.
 ///
@@ -18,8 +18,8 @@ pub struct Piecewise {
     pub(super) slope: Vec<f64>,
     depth: Vec<f64>,
     search: Search,
-    /// Knot, left and slope of each piece, for lookups; the fourth column is empty.
-    rows: Vec<[f64; 4]>,
+    /// Knot, left and slope of each piece, for lookups; the other columns are empty.
+    rows: Vec<Row>,
 }
 
 /// Where a walk through a [`Piecewise`] field stands.
@@ -68,7 +68,8 @@ impl Piecewise {
             sum.add(width * (left[i] + 0.5 * slope[i] * width));
             depth.push(sum.value());
         }
-        let row = |(i, &knot): (usize, &f64)| [knot, left[i], slope[i], 0.0];
+        let row =
+            |(i, &knot): (usize, &f64)| Row([knot, left[i], slope[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
         Self { knots: knots.to_vec(), left, slope, depth, search: Search::new(knots), rows }
     }
@@ -144,7 +145,7 @@ impl Piecewise {
         // Beyond the knots the first and the last value go on.
         let (first, end) = (t.each(self.knots[0]), t.each(self.knots[self.left.len()]));
         let t = t.or_more(first).or_less(end);
-        let [knot, left, slope, _] = self.search.piece(t).columns(&self.rows);
+        let [knot, left, slope, ..] = self.search.piece(t).columns(&self.rows);
         left + slope * (t - knot)
     }
 

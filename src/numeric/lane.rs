@@ -18,6 +18,11 @@ use super::pack::fuses;
 use super::single::{self, Fused, Plain};
 use super::words::Words32;
 
+/// A row of a table: one line of the processor's cache.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Row(pub [f64; 8]);
+
 /// A double, or a pack of doubles that is treated element by element.
 ///
 /// `ln`, `exp`, `cos` and `sin` are this crate's own polynomials ([`elementary`]).
@@ -106,9 +111,9 @@ pub trait Lane:
     #[must_use]
     fn entry(self, list: &[f64]) -> Self;
 
-    /// The four columns of the rows of a table with these numbers, likewise.
+    /// The first five columns of the rows of a table with these numbers, likewise.
     #[must_use]
-    fn columns(self, table: &[[f64; 4]]) -> [Self; 4];
+    fn columns(self, table: &[Row]) -> [Self; 5];
 
     /// The larger; `other` where one is no number.
     #[inline(always)]
@@ -256,8 +261,9 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn columns(self, table: &[[f64; 4]]) -> [Self; 4] {
-        table[single::place(self, table.len())]
+    fn columns(self, table: &[Row]) -> [Self; 5] {
+        let [a, b, c, d, e, ..] = table[single::place(self, table.len())].0;
+        [a, b, c, d, e]
     }
 
     #[inline(always)]

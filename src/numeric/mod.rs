@@ -13,5 +13,5 @@ pub mod sum;
 pub mod words;
 
 pub use known::{Known, Span};
-pub use lane::Lane;
+pub use lane::{Lane, Row};
 pub use words::Words32;

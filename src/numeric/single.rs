@@ -7,8 +7,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Lane;
 use super::words::{apart, joined};
+use super::{Lane, Row};
 
 /// Adding and subtracting `1.5·2^52` rounds a double of size below `2^51` to the nearest integer.
 pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -142,9 +142,9 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn columns(self, table: &[[f64; 4]]) -> [Self; 4] {
-                let [a, b, c, d] = table[place(self.0, table.len())];
-                [Self(a), Self(b), Self(c), Self(d)]
+            fn columns(self, table: &[Row]) -> [Self; 5] {
+                let [a, b, c, d, e, ..] = table[place(self.0, table.len())].0;
+                [Self(a), Self(b), Self(c), Self(d), Self(e)]
             }
         }
     };
