@@ -5,8 +5,8 @@
 //! addition, and what is drawn never depends on the width.
 
 use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, f64x4, f64x8, i64x8,
-    mask64x8, u32x16, u64x8,
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x4, f64x8, i64x8, mask64x8,
+    u32x16, u64x8,
 };
 
 use super::single::{ROOT_HALF, ROUNDER};
