@@ -1,12 +1,18 @@
 //! How much faster packets are than the plainest scalar loop.
 //!
-//! `cargo bench --bench kernels`. The plainest loop is what a textbook shows: one draw after the
+//! `cargo bench --bench kernels`, or with `-- WORD` only the comparisons whose name has the word. The
+//! plainest loop is what a textbook shows: one draw after the
 //! other, the standard library's `ln` and `cos`, one PCG generator. Both sides are drawn in turn in
 //! one process and timed by processor time; a ratio is taken within its round, and the median of the
 //! rounds is reported. On the homogeneous medium the textbook's density is hidden from the compiler,
 //! which would otherwise delete the lookups.
+//!
+//! The textbook's grid is looked up in space: eight voxels, seven linear interpolations. Its noise is
+//! Perlin's own program of 2002 with a table of permutations; the field here chooses its gradients by
+//! a hash, so that the two means differ and the work does not.
 
 use std::hint::black_box;
+use std::sync::LazyLock;
 
 use cpu_time::ThreadTime;
 use fearless_simd::Level;
@@ -15,6 +21,7 @@ use rand_pcg::Pcg64;
 use trueflight::estimators::{DrawBuffer, Kernel};
 use trueflight::harness::plan::{BLOCK, Planned};
 use trueflight::harness::{Amount, Case, Options, Plan, Source};
+use trueflight::media::lattice::hash3;
 
 const ROUNDS: usize = 7;
 /// Draws of the textbook's loop in a round.
@@ -35,9 +42,21 @@ const EQ21: &str = "volume.eq21 = {}
     ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }
     sampling.constant.value = 1";
 
-const CONTESTS: [Contest; 3] = [
+const GRID: &str =
+    "volume.grid = { random = { size = [128, 128, 128], seed = 1 }, extinction = 1.2,
+                    samples = \"vertices\", bounds.box = { low = [0, 0, 0], high = [10, 10, 10] } }
+    ray = { origin = [0, 0.5, 0.3], direction = [1, 0.9, 0.95], length = 30 }
+    sampling.constant.value = 1.2";
+
+const NOISE: &str = "volume.noise = { extinction = 1, octaves = 12, seed = 1 }
+    ray = { origin = [0.3, 0.7, -0.45], direction = [0.6, 0.5, 0.37], length = 10 }
+    sampling.constant.value = 1";
+
+const CONTESTS: [Contest; 5] = [
     Contest { name: "Eq. 21, ratio", target: 15.0, case: "ratio", textbook: eq21_ratio },
     Contest { name: "Eq. 21, woodcock", target: 15.0, case: "woodcock", textbook: eq21_woodcock },
+    Contest { name: "128³ grid, ratio", target: 6.0, case: "grid", textbook: grid_ratio },
+    Contest { name: "12-octave noise, ratio", target: 8.0, case: "noise", textbook: noise_ratio },
     Contest { name: "homogeneous, ratio", target: 7.0, case: "homogeneous", textbook: homogeneous },
 ];
 
@@ -89,10 +108,113 @@ fn homogeneous(rng: &mut Pcg64) -> f64 {
     }
 }
 
+/// 128³ random voxels, x first.
+static VOXELS: LazyLock<Vec<f64>> = LazyLock::new(|| {
+    let value = |n: u32| f64::from(hash3(n % 128, n / 128 % 128, n / 16_384, 1)) / 4_294_967_296.0;
+    (0..1 << 21).map(value).collect()
+});
+
+/// The interpolation of the eight voxels about a point of the box.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // within the box
+fn voxels(values: &[f64], p: [f64; 3]) -> f64 {
+    let u = p.map(|x| x * 12.7);
+    let i = u.map(|u| (u as usize).min(126));
+    let f = [u[0] - i[0] as f64, u[1] - i[1] as f64, u[2] - i[2] as f64];
+    let at = |x: usize, y: usize, z: usize| values[((i[2] + z) * 128 + i[1] + y) * 128 + i[0] + x];
+    let lerp = |f: f64, a: f64, b: f64| a + f * (b - a);
+    let row = |y: usize, z: usize| lerp(f[0], at(0, y, z), at(1, y, z));
+    lerp(f[2], lerp(f[1], row(0, 0), row(1, 0)), lerp(f[1], row(0, 1), row(1, 1)))
+}
+
+fn grid_ratio(rng: &mut Pcg64) -> f64 {
+    let values = &VOXELS[..];
+    let (majorant, size) = (black_box(1.2), (1.0f64 + 0.9 * 0.9 + 0.95 * 0.95).sqrt());
+    let (length, d) = (10.0 * size, [1.0 / size, 0.9 / size, 0.95 / size]);
+    let (mut t, mut weight) = (0.0, 1.0);
+    loop {
+        t -= (1.0 - uniform(rng)).ln() / majorant;
+        if t >= length {
+            return weight;
+        }
+        let p = [t * d[0], 0.5 + t * d[1], 0.3 + t * d[2]];
+        weight *= 1.0 - 1.2 * voxels(values, p) / majorant;
+    }
+}
+
+/// A permutation of 0 to 255, twice.
+static PERMUTATION: LazyLock<Vec<usize>> = LazyLock::new(|| {
+    let mut table: Vec<(u32, usize)> = (0..256).map(|n| hash3(n, 0, 0, 1)).zip(0..).collect();
+    table.sort_unstable();
+    let table: Vec<usize> = table.into_iter().map(|(_, n)| n).collect();
+    table.repeat(2)
+});
+
+fn grad(hash: usize, x: f64, y: f64, z: f64) -> f64 {
+    let h = hash & 15;
+    let u = if h < 8 { x } else { y };
+    let v = if h < 4 {
+        y
+    } else if h == 12 || h == 14 {
+        x
+    } else {
+        z
+    };
+    (if h & 1 == 0 { u } else { -u }) + (if h & 2 == 0 { v } else { -v })
+}
+
+/// Improved noise, as its author wrote it.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the low eight bits
+fn improved_noise(p: &[usize], x: f64, y: f64, z: f64) -> f64 {
+    let fade = |t: f64| t * t * t * (t * (t * 6.0 - 15.0) + 10.0);
+    let lerp = |t: f64, a: f64, b: f64| a + t * (b - a);
+    let cell = |x: f64| (x.floor() as i64 & 255) as usize;
+    let (i, j, k) = (cell(x), cell(y), cell(z));
+    let (x, y, z) = (x - x.floor(), y - y.floor(), z - z.floor());
+    let (u, v, w) = (fade(x), fade(y), fade(z));
+    let (a, b) = (p[i] + j, p[i + 1] + j);
+    let (aa, ab, ba, bb) = (p[a] + k, p[a + 1] + k, p[b] + k, p[b + 1] + k);
+    let near = lerp(
+        v,
+        lerp(u, grad(p[aa], x, y, z), grad(p[ba], x - 1.0, y, z)),
+        lerp(u, grad(p[ab], x, y - 1.0, z), grad(p[bb], x - 1.0, y - 1.0, z)),
+    );
+    let z = z - 1.0;
+    let far = lerp(
+        v,
+        lerp(u, grad(p[aa + 1], x, y, z), grad(p[ba + 1], x - 1.0, y, z)),
+        lerp(u, grad(p[ab + 1], x, y - 1.0, z), grad(p[bb + 1], x - 1.0, y - 1.0, z)),
+    );
+    lerp(w, near, far)
+}
+
+fn noise_ratio(rng: &mut Pcg64) -> f64 {
+    let table = &PERMUTATION[..];
+    let (majorant, length) = (black_box(1.0), black_box(10.0));
+    let size = (0.6f64 * 0.6 + 0.5 * 0.5 + 0.37 * 0.37).sqrt();
+    let d = [0.6 / size, 0.5 / size, 0.37 / size];
+    let bound = 1.036_353_811_211_802_7 * (2.0 - 0.5f64.powi(11));
+    let (mut t, mut weight) = (0.0, 1.0);
+    loop {
+        t -= (1.0 - uniform(rng)).ln() / majorant;
+        if t >= length {
+            return weight;
+        }
+        let p = [0.3 + t * d[0], 0.7 + t * d[1], -0.45 + t * d[2]];
+        let (mut sum, mut amplitude, mut scale) = (0.0, 1.0, 1.0);
+        for _ in 0..12 {
+            sum += amplitude * improved_noise(table, p[0] * scale, p[1] * scale, p[2] * scale);
+            (amplitude, scale) = (0.5 * amplitude, 2.0 * scale);
+        }
+        weight *= 1.0 - (0.5 + 0.5 * sum / bound) / majorant;
+    }
+}
+
 fn case(name: &str) -> Case {
     let body = match name {
         "ratio" => format!("{EQ21}\nestimators = [{{ ratio = {{}} }}]"),
         "woodcock" => format!("{EQ21}\nestimators = [{{ woodcock = {{}} }}]"),
+        "grid" => format!("{GRID}\nestimators = [{{ ratio = {{}} }}]"),
+        "noise" => format!("{NOISE}\nestimators = [{{ ratio = {{}} }}]"),
         _ => "medium.constant.extinction = 0.5\nspan = [0, 8]\nsampling.constant.value = 1
             estimators = [{ ratio = {} }]"
             .to_owned(),
@@ -155,7 +277,8 @@ fn median(values: &mut [f64]) -> f64 {
 
 fn main() {
     println!("{:?}, {ROUNDS} rounds, processor time of one draw", Level::new());
-    for contest in CONTESTS {
+    let word = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
+    for contest in CONTESTS.into_iter().filter(|contest| contest.name.contains(&word)) {
         let cases = [case(contest.case)];
         let options = Options { draws: Amount::Exactly(BLOCK), ..Options::default() };
         let plan = Plan::new(&cases, &options);

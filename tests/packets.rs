@@ -18,7 +18,7 @@ use trueflight::numeric::pack::fuses;
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
 
 /// The media that the shipped cases do not combine with every estimator, σ̂ and control.
-const MEDIA: [(&str, &str); 9] = [
+const MEDIA: [(&str, &str); 12] = [
     ("constant", "medium.constant.extinction = 0.7\nspan = [1, 4]"),
     (
         "steps",
@@ -53,6 +53,25 @@ const MEDIA: [(&str, &str); 9] = [
                          bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }
         ray = { origin = [-1, 0.4, 0.9], direction = [4.2, 2.2, 1.9], length = 9 }",
     ),
+    (
+        "many-steps",
+        "medium.piecewise-constant = {
+            breaks = [0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1, 1.01, 1.02, 1.03, 1.04, 1.05,
+                      2, 2.5, 3, 4],
+            values = [1, 0, 1, 0.5, 1.2, 0, 1, 0.7, 0.4, 1.4, 1, 0.2, 0, 1, 1, 0.4, 1.3, 0.1, 0.9] }
+        span = [0, 4]",
+    ),
+    (
+        "cubic-noise",
+        "volume.noise = { extinction = 1.2, octaves = 7, seed = 4294967294, fade = \"cubic\" }
+        ray = { origin = [3, -0.7, 90.4], direction = [-0.6, 0, 0.4], length = 5 }",
+    ),
+    (
+        "nearest-grid",
+        "volume.grid = { random = { size = [9, 8, 7], seed = 7 }, interpolation = \"nearest\",
+                         bounds.box = { low = [0, 0, 0], high = [4, 4, 4] } }
+        ray = { origin = [5, 5, 5], direction = [-1, -1, -1], length = 9 }",
+    ),
 ];
 
 /// Every product estimator, with every form of σ̂ and of control.
@@ -65,7 +84,7 @@ const ESTIMATORS: &str = "
     { single = { rule = \"adaptive\", albedo = 0.2 } },
     { single = { rule = \"clamped\", control.constant.value = 0.9, sampling.constant.value = 0.6 } },
     { single = { rule = \"adaptive\", albedo = 0.2, control.explorers.points = 5 } },
-    { double.control.explorers.points = 5 }, { double.control.constant.value = 0.9 },
+    { double.control.explorers.points = 5 }, { double.control.explorers.points = 40 }, { double.control.constant.value = 0.9 },
     { double.sampling.constant.value = 0.4 },";
 
 fn cases() -> Vec<Case> {

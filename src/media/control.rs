@@ -28,6 +28,7 @@ impl Control {
                 Some(value) => t.each(value),
                 None => pieces.extinction(t),
             },
+            // One by one: kernels are not compiled for every pair of fields.
             Self::Field(field) => t.map(|t| field.extinction(t)),
         }
     }

@@ -18,13 +18,15 @@
 //! | `border` | with `"centres"`, samples beyond the box: `"clamp"` (Mitsuba) or `"zero"` (pbrt) | | `"clamp"` |
 //!
 //! Here p runs from 0 to 1 across the box. Between two planes of the lattice a ray sees a cubic,
-//! whose coefficients are prepared once a ray; optical depth (Simpson's rule, exact for cubics) and
-//! free flight (prefix sums and a bracketed root in one cell) use those. A lookup interpolates the
-//! samples at its point, as a renderer does.
+//! whose coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for
+//! cubics) and free flight (prefix sums and a bracketed root in one cell) use those. A cubic is the
+//! interpolation of the samples to rounding: 32 units in the last place of the largest sample, and
+//! the rounding of the place; see the test.
 
 use std::sync::Arc;
 
 use super::cells::Cells;
+use super::cubics::Cubics;
 use super::grid_file::{self, MOST_SAMPLES, Samples};
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body, lattice};
@@ -42,6 +44,7 @@ pub struct GridRay {
     slope: [f64; 3],
     cells: Cells,
     cubics: Vec<[f64; 4]>,
+    lookups: Cubics,
 }
 
 /// `∫` over part of a cell with the given cubic.
@@ -68,7 +71,10 @@ impl GridRay {
             })
             .collect();
         let cells = cells.summed(|index, cell, part| simpson(cubics[index], cell, part));
-        Self { voxels, start, slope, cells, cubics }
+        let lookups = Cubics::new(start, slope, inside, |middle, from| {
+            voxels.cubic(at(middle), at(from), slope)
+        });
+        Self { voxels, start, slope, cells, cubics, lookups }
     }
 
     fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
@@ -79,8 +85,7 @@ impl GridRay {
 impl Extinction for GridRay {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        let (a, b) = (self.start, self.slope);
-        t.map(|t| self.voxels.value([a[0] + b[0] * t, a[1] + b[1] * t, a[2] + b[2] * t]))
+        self.lookups.value(t)
     }
 }
 
@@ -150,8 +155,8 @@ impl Field for Grid {
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
-        // An interpolation may exceed its samples by the rounding of its three steps.
-        self.0.highest(within) * (1.0 + 8.0 * f64::EPSILON)
+        // A cubic may exceed the samples about it by its rounding.
+        self.0.highest(within) * (1.0 + 64.0 * f64::EPSILON)
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> GridRay {
@@ -258,6 +263,39 @@ mod tests {
             let depth = depth(&grid(7), origin, direction);
             let off = (depth.value - exact).abs();
             assert!(off <= depth.error && off < 4e-15, "{origin:?}: off by {off:e}");
+        }
+    }
+
+    #[test]
+    fn cubics_are_the_interpolation_to_rounding() {
+        let samples = |seed: u32| {
+            let hash = |n: u32| f64::from(lattice::hash3(n, 0, 0, seed)) / 4_294_967_296.0;
+            Samples { size: [9, 8, 7], values: (0..504).map(hash).collect(), bounds: None }
+        };
+        let cube = Aabb { low: Point([-1.0, 0.0, 2.0]), high: Point([4.0, 3.0, 4.0]) };
+        let places = [Placement::Vertices, Placement::CentresClamped, Placement::CentresZero];
+        for (seed, placement) in (0..).zip(places) {
+            let linear = Interpolation::Trilinear;
+            let field = Arc::new(Voxels::new(&samples(seed), 1.0, cube, linear, placement));
+            let directions =
+                [[1.0, 0.6, 0.4], [-1.0, 0.3, 0.0], [0.0, 0.0, -1.0], [1e-9, -1.0, 1e-3]];
+            for direction in directions {
+                let direction = Point(direction);
+                let ray = Ray::new(Point([1.1, 1.3, 2.9]) - direction * 4.0, direction, 20.0);
+                let ray = ray.expect("a direction");
+                let inside = Bounds::Box(cube).clip(&ray);
+                let seen = GridRay::new(field.clone(), &ray, inside);
+                for n in 0..=20_000 {
+                    let t = inside.from + inside.length() * (f64::from(n) / 20_000.0);
+                    let at: [f64; 3] = std::array::from_fn(|j| seen.start[j] + seen.slope[j] * t);
+                    // The field changes by less than its largest sample in a cell.
+                    let place: f64 =
+                        (0..3).map(|j| seen.start[j].abs() + 2.0 * (seen.slope[j] * t).abs()).sum();
+                    let bound = f64::EPSILON * field.peak() * (32.0 + place);
+                    let off = (seen.extinction(t) - field.value(at)).abs();
+                    assert!(off <= bound, "{direction:?} at {t}: {off:e} above {bound:e}");
+                }
+            }
         }
     }
 

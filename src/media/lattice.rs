@@ -9,34 +9,18 @@
 //! low four bits of an integer hash of `c`, the finaliser of `MurmurHash3`, in place of a table of
 //! permutations. Lattice coordinates wrap at 2³².
 //!
+//! All of it is arithmetic, so that packs need no table either: the hashes of the two ends of an edge
+//! share the halves of a 64-bit element, and a product with a gradient is a choice of two of the
+//! three distances and of their signs. Products and sums are rounded apart on every machine.
+//!
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002 (quintic fade, edge gradients and their
 //! order); K. Perlin, *An Image Synthesizer*, SIGGRAPH 1985 (cubic fade).
 
-/// Adding `1.5·2^52` leaves the nearest integer in the low bits of a double below `2^51`.
-const ROUNDER: f64 = 6_755_399_441_055_744.0;
+use crate::numeric::Lane;
+use crate::numeric::words::{self, Words32};
 
 /// The multipliers of the three lattice coordinates in the hash.
 const STRIDES: [u32; 3] = [0x8da6_b343, 0xd816_3841, 0xcb1a_b31f];
-
-/// Perlin's gradients in his order: rows 12 to 15 repeat rows 0, 9, 2 and 11 with x before y.
-const GRADIENTS: [[f64; 3]; 16] = [
-    [1.0, 1.0, 0.0],
-    [-1.0, 1.0, 0.0],
-    [1.0, -1.0, 0.0],
-    [-1.0, -1.0, 0.0],
-    [1.0, 0.0, 1.0],
-    [-1.0, 0.0, 1.0],
-    [1.0, 0.0, -1.0],
-    [-1.0, 0.0, -1.0],
-    [0.0, 1.0, 1.0],
-    [0.0, -1.0, 1.0],
-    [0.0, 1.0, -1.0],
-    [0.0, -1.0, -1.0],
-    [1.0, 1.0, 0.0],
-    [0.0, -1.0, 1.0],
-    [-1.0, 1.0, 0.0],
-    [0.0, -1.0, -1.0],
-];
 
 /// How the weights of a cell's corners change across it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,10 +35,10 @@ impl Fade {
     /// `w(t)`.
     #[inline(always)]
     #[must_use]
-    pub fn weight(self, t: f64) -> f64 {
+    pub fn weight<L: Lane>(self, t: L) -> L {
         match self {
             Self::Quintic => t * t * t * (t * (t * 6.0 - 15.0) + 10.0),
-            Self::Cubic => t * t * (3.0 - 2.0 * t),
+            Self::Cubic => t * t * (t.each(3.0) - t * 2.0),
         }
     }
 
@@ -68,13 +52,10 @@ impl Fade {
     }
 }
 
+/// The finaliser of `MurmurHash3`.
 #[inline(always)]
-fn mix(mut h: u32) -> u32 {
-    h ^= h >> 16;
-    h = h.wrapping_mul(0x85eb_ca6b);
-    h ^= h >> 13;
-    h = h.wrapping_mul(0xc2b2_ae35);
-    h ^ (h >> 16)
+fn mix<W: Words32>(h: W) -> W {
+    h.folded(16).times(0x85eb_ca6b).folded(13).times(0xc2b2_ae35).folded(16)
 }
 
 /// The hash of a lattice point.
@@ -82,92 +63,110 @@ fn mix(mut h: u32) -> u32 {
 #[must_use]
 pub fn hash3(x: u32, y: u32, z: u32, seed: u32) -> u32 {
     let [a, b, c] = STRIDES;
-    mix(x.wrapping_mul(a) ^ y.wrapping_mul(b) ^ z.wrapping_mul(c) ^ seed)
+    let hash = x.wrapping_mul(a) ^ y.wrapping_mul(b) ^ z.wrapping_mul(c) ^ seed;
+    words::apart(mix(u64::from(hash)))[0]
 }
 
-/// The lattice index below `x`, and how far `x` is beyond it, in `[0, 1]`.
+/// The integer below `x`, and how far `x` is beyond it, in `[0, 1]`.
 #[inline(always)]
-#[allow(clippy::cast_possible_truncation)] // the low 32 bits are the index
-fn floor(x: f64) -> (u32, f64) {
-    let shifted = x + ROUNDER;
-    let (index, rest) = (shifted.to_bits() as u32, x - (shifted - ROUNDER));
-    let below = rest < 0.0;
-    (index.wrapping_sub(u32::from(below)), if below { rest + 1.0 } else { rest })
+fn floor<L: Lane>(x: L) -> (L, L) {
+    let nearest = x.nearest();
+    let below = L::select(x.below(nearest), nearest - 1.0, nearest);
+    (below, x - below)
 }
 
-/// The gradients at the corners of the cell with the lowest corner `index`; bit 0 of a corner's
-/// number is its x, bit 2 its z.
+/// The hashes at the corners of the cell with the lowest corner `index`: of the four edges along z,
+/// from (0, 0), (1, 0), (0, 1) and (1, 1), each with its lower and its upper end.
 #[inline(always)]
-fn corner_gradients(index: [u32; 3], seed: u32) -> [&'static [f64; 3]; 8] {
-    let ends = |axis: usize| {
-        let low = index[axis].wrapping_mul(STRIDES[axis]);
-        [low, low.wrapping_add(STRIDES[axis])]
-    };
-    let (x, y, z) = (ends(0), ends(1), ends(2));
-    let z = [z[0] ^ seed, z[1] ^ seed];
-    let yz = [y[0] ^ z[0], y[1] ^ z[0], y[0] ^ z[1], y[1] ^ z[1]];
-    let hashes = [
-        x[0] ^ yz[0],
-        x[1] ^ yz[0],
-        x[0] ^ yz[1],
-        x[1] ^ yz[1],
-        x[0] ^ yz[2],
-        x[1] ^ yz[2],
-        x[0] ^ yz[3],
-        x[1] ^ yz[3],
-    ];
-    hashes.map(|hash| &GRADIENTS[(mix(hash) & 15) as usize])
+fn corner_hashes<L: Lane>(index: [L; 3], seed: u32) -> [L::Words; 4] {
+    let [a, b, c] = STRIDES;
+    let (x, y) = (index[0].words().times(a), index[1].words().times(b));
+    let z = index[2].words().times(c);
+    let z = z.plus(z.each([0, c])).xor(z.each([seed, seed]));
+    let (near, far) = (y.xor(z), y.plus(y.each([b, b])).xor(z));
+    let beyond = x.plus(x.each([a, a]));
+    [mix(x.xor(near)), mix(beyond.xor(near)), mix(x.xor(far)), mix(beyond.xor(far))]
 }
 
-/// The weighted sum over the corners, at the place `at` in `[0, 1]³` of the cell.
+/// `g·d` at the lower (0) or upper (1) end of an edge: of the twelve sums `±x ± y`, `±x ± z` and
+/// `±y ± z` the one that the last four bits of the hash choose.
 #[inline(always)]
-fn blend(gradients: &[&'static [f64; 3]; 8], at: [f64; 3], fade: Fade) -> f64 {
-    let [x, y, z] = at;
-    let (x1, y1, z1) = (x - 1.0, y - 1.0, z - 1.0);
-    let dot = |g: &[f64; 3], x: f64, y: f64, z: f64| g[0] * x + g[1] * y + g[2] * z;
-    let lerp = |w: f64, a: f64, b: f64| a + w * (b - a);
+fn slope<L: Lane>(hashes: L::Words, end: u32, [x, y, z]: [L; 3]) -> L {
+    let at = 32 * end;
+    let first = L::where_bits(hashes, 8 << at, 0, x, y);
+    let second = L::where_bits(hashes, 13 << at, 12 << at, x, z);
+    let second = L::where_bits(hashes, 12 << at, 0, y, second);
+    first.negated_where(hashes, at) + second.negated_where(hashes, at + 1)
+}
+
+/// The weighted sum of the slopes at the corners; bit 0 of a corner's number is its x, bit 2 its z.
+#[inline(always)]
+fn blend<L: Lane>(slopes: [L; 8], [x, y, z]: [L; 3], fade: Fade) -> L {
     let (u, v, w) = (fade.weight(x), fade.weight(y), fade.weight(z));
-    let [a, b, c, d, e, f, g, h] = *gradients;
-    let near = lerp(
-        v,
-        lerp(u, dot(a, x, y, z), dot(b, x1, y, z)),
-        lerp(u, dot(c, x, y1, z), dot(d, x1, y1, z)),
-    );
-    let far = lerp(
-        v,
-        lerp(u, dot(e, x, y, z1), dot(f, x1, y, z1)),
-        lerp(u, dot(g, x, y1, z1), dot(h, x1, y1, z1)),
-    );
-    lerp(w, near, far)
+    let [a, b, c, d, e, f, g, h] = slopes;
+    let near = between(v, between(u, a, b), between(u, c, d));
+    let far = between(v, between(u, e, f), between(u, g, h));
+    between(w, near, far)
+}
+
+#[inline(always)]
+fn between<L: Lane>(w: L, a: L, b: L) -> L {
+    a + w * (b - a)
 }
 
 /// Gradient noise at a point, in lattice coordinates below `2^51`.
 #[inline(always)]
 #[must_use]
-pub fn noise(p: [f64; 3], seed: u32, fade: Fade) -> f64 {
+pub fn noise<L: Lane>(p: [L; 3], seed: u32, fade: Fade) -> L {
     let ((i, x), (j, y), (k, z)) = (floor(p[0]), floor(p[1]), floor(p[2]));
-    blend(&corner_gradients([i, j, k], seed), [x, y, z], fade)
+    let (x1, y1, z1) = (x - 1.0, y - 1.0, z - 1.0);
+    let [a, b, c, d] = corner_hashes([i, j, k], seed);
+    let slopes = [
+        slope(a, 0, [x, y, z]),
+        slope(b, 0, [x1, y, z]),
+        slope(c, 0, [x, y1, z]),
+        slope(d, 0, [x1, y1, z]),
+        slope(a, 1, [x, y, z1]),
+        slope(b, 1, [x1, y, z1]),
+        slope(c, 1, [x, y1, z1]),
+        slope(d, 1, [x1, y1, z1]),
+    ];
+    blend(slopes, [x, y, z], fade)
 }
 
 /// One cell of the lattice, whose polynomial may be evaluated up to its very faces.
 pub struct Cell {
     corner: [f64; 3],
-    gradients: [&'static [f64; 3]; 8],
+    gradients: [[f64; 3]; 8],
 }
 
 impl Cell {
     /// The cell that holds a point.
     #[must_use]
     pub fn around(p: [f64; 3], seed: u32) -> Self {
-        let index = p.map(|x| floor(x).0);
-        Self { corner: p.map(f64::floor), gradients: corner_gradients(index, seed) }
+        let corner = p.map(|x| floor(x).0);
+        let hashes = corner_hashes(corner, seed);
+        let gradients = std::array::from_fn(|n| gradient(hashes[n % 4], u32::from(n >= 4)));
+        Self { corner, gradients }
     }
 
     /// The cell's polynomial.
     #[must_use]
     pub fn value(&self, p: [f64; 3], fade: Fade) -> f64 {
-        blend(&self.gradients, std::array::from_fn(|j| p[j] - self.corner[j]), fade)
+        let at: [f64; 3] = std::array::from_fn(|j| p[j] - self.corner[j]);
+        let slopes = std::array::from_fn(|n| {
+            let far = |j: usize| (n >> j & 1) as f64;
+            let g = self.gradients[n];
+            g[0] * (at[0] - far(0)) + g[1] * (at[1] - far(1)) + g[2] * (at[2] - far(2))
+        });
+        blend(slopes, at, fade)
     }
+}
+
+/// The vector `g` of which [`slope`] is the product with a distance.
+fn gradient(hashes: u64, end: u32) -> [f64; 3] {
+    let along = |j: usize| std::array::from_fn(|n| f64::from(u8::from(n == j)));
+    std::array::from_fn(|j| slope(hashes, end, along(j)))
 }
 
 #[cfg(test)]
@@ -178,6 +177,36 @@ mod tests {
     fn hashes_are_the_published_ones() {
         assert_eq!(hash3(1, 2, 3, 0), 0xaf79_9881);
         assert_eq!(hash3(u32::MAX, 0, 5, 7), 0x42f7_1464);
+    }
+
+    /// Perlin's gradients in his order: 12 to 15 repeat 0, 9, 2 and 11 with x before y.
+    #[test]
+    fn gradients_are_perlins() {
+        let gradients = [
+            [1, 1, 0],
+            [-1, 1, 0],
+            [1, -1, 0],
+            [-1, -1, 0],
+            [1, 0, 1],
+            [-1, 0, 1],
+            [1, 0, -1],
+            [-1, 0, -1],
+            [0, 1, 1],
+            [0, -1, 1],
+            [0, 1, -1],
+            [0, -1, -1],
+            [1, 1, 0],
+            [0, -1, 1],
+            [-1, 1, 0],
+            [0, -1, -1],
+        ];
+        for (hash, exact) in (0..).zip(gradients) {
+            let others = 0xabcd_1230;
+            let ends = [[others | hash, others], [others, others | hash]];
+            for (end, hashes) in (0..).zip(ends) {
+                assert_eq!(gradient(words::joined(hashes), end), exact.map(f64::from), "{hash}");
+            }
+        }
     }
 
     #[test]
@@ -224,7 +253,7 @@ mod tests {
                         let far: [bool; 3] = std::array::from_fn(|j| corner >> j & 1 == 1);
                         let d: [f64; 3] =
                             std::array::from_fn(|j| if far[j] { 1.0 - p[j] } else { p[j] });
-                        let w = d.map(|d| fade.weight(1.0 - d)).iter().product::<f64>();
+                        let w = d.map(|d: f64| fade.weight(1.0 - d)).iter().product::<f64>();
                         w * (d[0] + d[1] + d[2] - d[0].min(d[1]).min(d[2]))
                     })
                     .sum();

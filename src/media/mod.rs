@@ -11,10 +11,12 @@ pub mod body;
 pub mod cells;
 pub mod control;
 pub mod course;
+pub mod cubics;
 pub mod grid_file;
 pub mod lattice;
 pub mod medium;
 pub mod piecewise;
+pub mod search;
 pub mod voxels;
 
 use crate::catalogue::{Catalogue, Settings};

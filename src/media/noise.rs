@@ -70,11 +70,11 @@ impl Spectrum {
     }
 
     #[inline(always)]
-    fn fbm(self, mut p: [f64; 3], fade: Fade) -> f64 {
-        let mut sum = 0.0;
+    fn fbm<L: Lane>(self, mut p: [L; 3], fade: Fade) -> L {
+        let mut sum = p[0].each(0.0);
         for (amplitude, seed) in self.amplitudes() {
-            sum += amplitude * lattice::noise(p, seed, fade);
-            p = p.map(|x| 2.0 * x);
+            sum = sum + lattice::noise(p, seed, fade) * amplitude;
+            p = [p[0] * 2.0, p[1] * 2.0, p[2] * 2.0];
         }
         sum
     }
@@ -87,13 +87,13 @@ impl Spectrum {
 
     /// `σ_t` at a point in lattice coordinates of the first octave.
     #[inline(always)]
-    fn value(self, p: [f64; 3], unit: f64) -> f64 {
+    fn value<L: Lane>(self, p: [L; 3], unit: f64) -> L {
         // One branch outside the octaves instead of three within each.
         let fbm = match self.fade {
             Fade::Quintic => self.fbm(p, Fade::Quintic),
             Fade::Cubic => self.fbm(p, Fade::Cubic),
         };
-        0.5 * self.extinction + unit * fbm
+        fbm * unit + 0.5 * self.extinction
     }
 }
 
@@ -115,9 +115,9 @@ struct Track {
 
 impl Track {
     #[inline(always)]
-    fn at(&self, t: f64) -> [f64; 3] {
+    fn at<L: Lane>(&self, t: L) -> [L; 3] {
         let (a, b) = (self.start, self.slope);
-        [a[0] + b[0] * t, a[1] + b[1] * t, a[2] + b[2] * t]
+        [t * b[0] + a[0], t * b[1] + a[1], t * b[2] + a[2]]
     }
 
     fn doubled(self) -> Self {
@@ -149,7 +149,7 @@ impl OctaveLine {
 impl Extinction for NoiseRay {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        t.map(|t| self.spectrum.value(self.track.at(t), self.unit))
+        self.spectrum.value(self.track.at(t), self.unit)
     }
 }
 

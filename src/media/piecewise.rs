@@ -1,7 +1,8 @@
 //! Straight pieces: the shape of every sampling extinction and of most controls.
 
+use super::search::Search;
 use super::{Extinction, FreeFlight, OpticalDepth};
-use crate::numeric::{Known, Lane, Span, sum::Sum};
+use crate::numeric::{Known, Lane, Row, Span, sum::Sum};
 
 /// A field made of straight pieces, which need not meet at the knots.
 ///
@@ -16,6 +17,9 @@ pub struct Piecewise {
     pub(super) left: Vec<f64>,
     pub(super) slope: Vec<f64>,
     depth: Vec<f64>,
+    search: Search,
+    /// Knot, left and slope of each piece, for lookups; the other columns are empty.
+    rows: Vec<Row>,
 }
 
 /// Where a walk through a [`Piecewise`] field stands.
@@ -64,7 +68,10 @@ impl Piecewise {
             sum.add(width * (left[i] + 0.5 * slope[i] * width));
             depth.push(sum.value());
         }
-        Self { knots: knots.to_vec(), left, slope, depth }
+        let row =
+            |(i, &knot): (usize, &f64)| Row([knot, left[i], slope[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
+        let rows = knots[..left.len()].iter().enumerate().map(row).collect();
+        Self { knots: knots.to_vec(), left, slope, depth, search: Search::new(knots), rows }
     }
 
     /// The same field restricted to, or continued over, a span.
@@ -128,21 +135,21 @@ impl Piecewise {
 
     /// The field at `t`.
     #[must_use]
-    #[inline]
-    pub fn value(&self, t: f64) -> f64 {
+    #[inline(always)]
+    pub fn value<L: Lane>(&self, t: L) -> L {
         if let [value] = self.left[..]
             && self.slope[0] == 0.0
         {
-            return value;
+            return t.each(value);
         }
-        match self.piece_at(t) {
-            (Some(value), _) => value,
-            (None, piece) => self.line(piece, t),
-        }
+        // Beyond the knots the first and the last value go on.
+        let (first, end) = (t.each(self.knots[0]), t.each(self.knots[self.left.len()]));
+        let t = t.or_more(first).or_less(end);
+        let [knot, left, slope, ..] = self.search.piece(t).columns(&self.rows);
+        left + slope * (t - knot)
     }
 
     /// The piece that holds `t`, and the value where `t` lies outside the knots.
-    #[inline]
     fn piece_at(&self, t: f64) -> (Option<f64>, usize) {
         let last = self.left.len() - 1;
         if t < self.knots[0] {
@@ -219,7 +226,7 @@ impl Piecewise {
 impl Extinction for Piecewise {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
-        t.map(|t| self.value(t))
+        self.value(t)
     }
 }
 

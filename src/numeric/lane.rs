@@ -15,7 +15,13 @@ use fearless_simd::Level;
 
 use super::elementary;
 use super::pack::fuses;
-use super::single::{Fused, Plain};
+use super::single::{self, Fused, Plain};
+use super::words::Words32;
+
+/// A row of a table: one line of the processor's cache.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(64))]
+pub struct Row(pub [f64; 8]);
 
 /// A double, or a pack of doubles that is treated element by element.
 ///
@@ -37,11 +43,14 @@ pub trait Lane:
         + BitOr<Output = Self::Mask>
         + Not<Output = Self::Mask>;
 
+    /// Two 32-bit words in each element.
+    type Words: Words32;
+
     /// The same value in every element of another such lane.
     #[must_use]
     fn each(self, value: f64) -> Self;
 
-    /// Applies a scalar function to each element, for fields that gather or hash.
+    /// Applies a scalar function to each element, for what has no formula of its own.
     #[must_use]
     fn map(self, f: impl FnMut(f64) -> f64) -> Self;
 
@@ -84,6 +93,27 @@ pub trait Lane:
     /// `self · (−1)^k`, for integers `|k| < 2^51`.
     #[must_use]
     fn alternate(self, k: Self) -> Self;
+
+    /// The last 32 bits of an integer, `|self| < 2^51`, in both words.
+    #[must_use]
+    fn words(self) -> Self::Words;
+
+    /// `yes` where those of an element's 64 bits that are in `bits` are as in `wanted`, else `no`.
+    #[must_use]
+    fn where_bits(words: Self::Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self;
+
+    /// `self`, negated where the given one of an element's 64 bits is set.
+    #[must_use]
+    fn negated_where(self, words: Self::Words, bit: u32) -> Self;
+
+    /// The entries of a list whose numbers the elements are: integers from 0 to `2^32`; the last
+    /// entry beyond the last.
+    #[must_use]
+    fn entry(self, list: &[f64]) -> Self;
+
+    /// The first five columns of the rows of a table with these numbers, likewise.
+    #[must_use]
+    fn columns(self, table: &[Row]) -> [Self; 5];
 
     /// The larger; `other` where one is no number.
     #[inline(always)]
@@ -147,6 +177,7 @@ macro_rules! rounded {
 
 impl Lane for f64 {
     type Mask = bool;
+    type Words = u64;
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
@@ -207,6 +238,32 @@ impl Lane for f64 {
     #[inline(always)]
     fn alternate(self, k: Self) -> Self {
         Plain(self).alternate(Plain(k)).0
+    }
+
+    #[inline(always)]
+    fn words(self) -> u64 {
+        Plain(self).words()
+    }
+
+    #[inline(always)]
+    fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+        Plain::where_bits(words, bits, wanted, Plain(yes), Plain(no)).0
+    }
+
+    #[inline(always)]
+    fn negated_where(self, words: u64, bit: u32) -> Self {
+        Plain(self).negated_where(words, bit).0
+    }
+
+    #[inline(always)]
+    fn entry(self, list: &[f64]) -> Self {
+        list[single::place(self, list.len())]
+    }
+
+    #[inline(always)]
+    fn columns(self, table: &[Row]) -> [Self; 5] {
+        let [a, b, c, d, e, ..] = table[single::place(self, table.len())].0;
+        [a, b, c, d, e]
     }
 
     #[inline(always)]

@@ -10,6 +10,8 @@ pub mod quadrature;
 pub mod roots;
 pub mod single;
 pub mod sum;
+pub mod words;
 
 pub use known::{Known, Span};
-pub use lane::Lane;
+pub use lane::{Lane, Row};
+pub use words::Words32;

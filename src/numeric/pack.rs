@@ -5,11 +5,13 @@
 //! addition, and what is drawn never depends on the width.
 
 use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x8, i64x8, mask64x8, u64x8,
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x4, f64x8, i64x8, mask64x8,
+    u32x16, u64x8,
 };
 
-use super::Lane;
 use super::single::{ROOT_HALF, ROUNDER};
+use super::words::apart;
+use super::{Lane, Row};
 
 /// The elements of a pack.
 pub const WIDTH: usize = 8;
@@ -76,8 +78,33 @@ pub fn in_fused_code<R>(f: impl FnOnce() -> R) -> R {
     f()
 }
 
+/// The places in a list that the elements are the numbers of.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation)] // places are 32-bit integers
+fn places<S: Simd>(numbers: f64x8<S>, length: usize) -> [usize; WIDTH] {
+    let words: u32x16<S> = (numbers + ROUNDER).bitcast();
+    let within: u64x8<S> = words.min(length as u32 - 1).bitcast();
+    let mut row = [0; WIDTH];
+    within.store_slice(&mut row);
+    let [a, b, c, d, e, f, g, h] = row;
+    [low(a), low(b), low(c), low(d), low(e), low(f), low(g), low(h)]
+}
+
+#[inline(always)]
+fn low(element: u64) -> usize {
+    apart(element)[0] as usize
+}
+
+/// The first four entries of two rows side by side.
+#[inline(always)]
+fn two_rows<S: Simd>(simd: S, first: &Row, second: &Row) -> f64x8<S> {
+    let low = f64x4::from_slice(simd, &first.0[..4]);
+    simd.combine_f64x4(low, f64x4::from_slice(simd, &second.0[..4]))
+}
+
 impl<S: Simd> Lane for f64x8<S> {
     type Mask = mask64x8<S>;
+    type Words = u64x8<S>;
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
@@ -155,5 +182,97 @@ impl<S: Simd> Lane for f64x8<S> {
     fn alternate(self, k: Self) -> Self {
         let (sum, bits): (u64x8<S>, u64x8<S>) = ((k + ROUNDER).bitcast(), self.bitcast());
         (bits ^ (sum << 63)).bitcast()
+    }
+
+    #[inline(always)]
+    fn words(self) -> u64x8<S> {
+        let bits: u64x8<S> = (self + ROUNDER).bitcast();
+        (bits & 0xffff_ffff) | (bits << 32)
+    }
+
+    #[inline(always)]
+    fn where_bits(words: u64x8<S>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+        (words & bits).simd_eq(wanted).select(yes, no)
+    }
+
+    #[inline(always)]
+    fn negated_where(self, words: u64x8<S>, bit: u32) -> Self {
+        let bits: u64x8<S> = self.bitcast();
+        (bits ^ ((words << (63 - bit)) & 1 << 63)).bitcast()
+    }
+
+    #[inline(always)]
+    fn entry(self, list: &[f64]) -> Self {
+        let [a, b, c, d, e, f, g, h] = places(self, list.len());
+        let row = [list[a], list[b], list[c], list[d], list[e], list[f], list[g], list[h]];
+        Self::from_slice(self.token(), &row)
+    }
+
+    #[inline(always)]
+    fn columns(self, table: &[Row]) -> [Self; 5] {
+        let (simd, [a, b, c, d, e, f, g, h]) = (self.token(), places(self, table.len()));
+        let (a, b, c, d) = (&table[a], &table[b], &table[c], &table[d]);
+        let (e, f, g, h) = (&table[e], &table[f], &table[g], &table[h]);
+        let fifth = [a.0[4], b.0[4], c.0[4], d.0[4], e.0[4], f.0[4], g.0[4], h.0[4]];
+        let (a, b) = (two_rows(simd, a, b), two_rows(simd, c, d));
+        let (c, d) = (two_rows(simd, e, f), two_rows(simd, g, h));
+        // Columns 0 and 2 from columns 1 and 3, then each by itself.
+        let (even_low, odd_low) = simd.deinterleave_f64x8(a, b);
+        let (even_high, odd_high) = simd.deinterleave_f64x8(c, d);
+        let (first, third) = simd.deinterleave_f64x8(even_low, even_high);
+        let (second, fourth) = simd.deinterleave_f64x8(odd_low, odd_high);
+        [first, second, third, fourth, Self::from_slice(simd, &fifth)]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::words::Words32;
+    use super::*;
+
+    /// Entries, columns and choices by the bits of a hash.
+    #[inline(always)]
+    fn looked_up<L: Lane>(numbers: L, list: &[f64], table: &[Row]) -> [L; 8] {
+        let [a, b, c, d, e] = numbers.columns(table);
+        let words = numbers.words();
+        let words = words.plus(words.each([7, 0xffff_fff0])).times(0x85eb_ca6b).folded(13);
+        let chosen = L::where_bits(words, 5 << 32, 4 << 32, a, b);
+        let negated = c.negated_where(words.xor(words.folded(3)), 40);
+        [numbers.entry(list), a, b, c, d, e, chosen, negated]
+    }
+
+    struct LookedUp<'a>([f64; WIDTH], &'a [f64], &'a [Row]);
+    impl Task for LookedUp<'_> {
+        type Output = [[f64; WIDTH]; 8];
+        #[inline(always)]
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
+            let mut rows = [[0.0; WIDTH]; 8];
+            let values = looked_up(f64x8::from_slice(simd, &self.0), self.1, self.2);
+            for (row, value) in rows.iter_mut().zip(values) {
+                value.store_slice(row);
+            }
+            rows
+        }
+    }
+
+    #[test]
+    fn tables_and_words_are_those_of_scalars() {
+        let list: Vec<f64> = (0..100).map(|n| 0.5 + f64::from(n)).collect();
+        let row = |x: &f64| Row(std::array::from_fn(|n| x + 1e3 * n as f64));
+        let table: Vec<Row> = list.iter().map(row).collect();
+        let mut levels = vec![Level::new(), Level::baseline()];
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        for first in 0..100 {
+            // The last places are beyond the lists.
+            let numbers = std::array::from_fn(|lane| f64::from(first) + 3.0 * lane as f64);
+            for &level in &levels {
+                let packs = on(level, LookedUp(numbers, &list, &table));
+                for (lane, &number) in numbers.iter().enumerate() {
+                    let alone = looked_up(number, &list, &table);
+                    assert_eq!(packs.map(|row| row[lane]), alone, "{number} at {level:?}");
+                }
+            }
+        }
     }
 }

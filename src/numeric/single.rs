@@ -7,7 +7,8 @@
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-use super::Lane;
+use super::words::{apart, joined};
+use super::{Lane, Row};
 
 /// Adding and subtracting `1.5·2^52` rounds a double of size below `2^51` to the nearest integer.
 pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
@@ -23,6 +24,14 @@ pub struct Plain(pub f64);
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fused(pub f64);
 
+/// The place of a number, an integer from 0 to `2^32`, in a list: the last place beyond the last.
+#[inline(always)]
+#[must_use]
+pub fn place(number: f64, length: usize) -> usize {
+    let [number, _] = apart((number + ROUNDER).to_bits());
+    (number as usize).min(length - 1)
+}
+
 macro_rules! single {
     ($Single:ident, |$x:ident, $factor:ident, $term:ident| $times_plus:expr) => {
         single!(operators $Single: Add::add, Sub::sub, Mul::mul, Div::div);
@@ -37,6 +46,7 @@ macro_rules! single {
 
         impl Lane for $Single {
             type Mask = bool;
+            type Words = u64;
 
             #[inline(always)]
             fn each(self, value: f64) -> Self {
@@ -104,6 +114,37 @@ macro_rules! single {
             fn alternate(self, k: Self) -> Self {
                 let odd = (k.0 + ROUNDER).to_bits() << 63;
                 Self(f64::from_bits(self.0.to_bits() ^ odd))
+            }
+
+            #[inline(always)]
+            fn words(self) -> u64 {
+                let [low, _] = apart((self.0 + ROUNDER).to_bits());
+                joined([low, low])
+            }
+
+            #[inline(always)]
+            fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+                // Bits, not a branch: what a hash decides cannot be foreseen.
+                let mask = u64::from(words & bits == wanted).wrapping_neg();
+                let (yes, no) = (yes.0.to_bits(), no.0.to_bits());
+                Self(f64::from_bits(no ^ ((no ^ yes) & mask)))
+            }
+
+            #[inline(always)]
+            fn negated_where(self, words: u64, bit: u32) -> Self {
+                let sign = words << (63 - bit) & 1 << 63;
+                Self(f64::from_bits(self.0.to_bits() ^ sign))
+            }
+
+            #[inline(always)]
+            fn entry(self, list: &[f64]) -> Self {
+                Self(list[place(self.0, list.len())])
+            }
+
+            #[inline(always)]
+            fn columns(self, table: &[Row]) -> [Self; 5] {
+                let [a, b, c, d, e, ..] = table[place(self.0, table.len())].0;
+                [Self(a), Self(b), Self(c), Self(d), Self(e)]
             }
         }
     };
