@@ -3,7 +3,7 @@
 
 use super::findings::ASSUMED;
 use super::record::{CaseRecord, Finding, Gate, Results, Row, Suspect, Verdict};
-use crate::stats::gate::{TYPICAL, ln_mean_exp};
+use crate::stats::gate::TYPICAL;
 use crate::stats::multiplicity;
 
 /// Fills in what only the whole run can say.
@@ -20,7 +20,7 @@ pub fn complete(results: &mut Results) {
         .collect();
     let ln_e: Vec<f64> = suspects.iter().map(|suspect| suspect.ln_e).collect();
     if !ln_e.is_empty() {
-        gate.ln_mean_e = Some(ln_mean_exp(&ln_e)).filter(|e| e.is_finite());
+        gate.ln_mean_e = Some(multiplicity::mean_e_value(&ln_e)).filter(|e| e.is_finite());
         let strongest = ln_e.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         gate.smallest_margin = Some(gate.ln_e_limit - strongest).filter(|m| m.is_finite());
     }
