@@ -11,9 +11,9 @@ use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
 use super::Console;
 
-/// Options that all commands on cases share.
+/// Which experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]
-pub struct Selection {
+pub struct Experiments {
     /// Case files, folders of them, or names of built-in cases; without any, the built-in suite
     #[arg(value_name = "CASES")]
     cases: Vec<String>,
@@ -23,6 +23,13 @@ pub struct Selection {
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
+}
+
+/// Options that the commands on cases share.
+#[derive(Debug, Clone, Args)]
+pub struct Selection {
+    #[command(flatten)]
+    experiments: Experiments,
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: at most 4e5]
     #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
@@ -34,7 +41,7 @@ pub struct Selection {
     threads: Option<u16>,
 }
 
-impl Selection {
+impl Experiments {
     /// Reads the cases; mistakes in files are shown in place.
     pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
         let mut cases = Vec::new();
@@ -57,12 +64,11 @@ impl Selection {
         anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
     }
 
-    /// The options of a plan; `usual` is what is drawn where no argument says.
-    pub fn options(&self, usual: Amount) -> anyhow::Result<Options> {
+    /// The options of a plan that draws so much.
+    pub fn options(&self, draws: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        let draws = self.draws.map_or(usual, Amount::Exactly);
-        Ok(Options { seed: self.seed, draws, alpha: self.alpha, filter, ..Options::default() })
+        Ok(Options { seed: self.seed, draws, filter, ..Options::default() })
     }
 
     /// Plans the cases; a selection that keeps nothing is an error.
@@ -77,15 +83,40 @@ impl Selection {
         }
         Ok(plan)
     }
+}
+
+impl Selection {
+    /// Reads the cases; mistakes in files are shown in place.
+    pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
+        self.experiments.read(console)
+    }
+
+    /// The options of a plan; `usual` is what is drawn where no argument says.
+    pub fn options(&self, usual: Amount) -> anyhow::Result<Options> {
+        let options = self.experiments.options(self.draws.map_or(usual, Amount::Exactly))?;
+        Ok(Options { alpha: self.alpha, ..options })
+    }
+
+    /// Plans the cases; a selection that keeps nothing is an error.
+    pub fn plan<'a>(&self, cases: &'a [Case], options: &Options) -> anyhow::Result<Plan<'a>> {
+        self.experiments.plan(cases, options)
+    }
 
     /// Calls `f` on as many threads as wished.
     pub fn on_threads<T: Send>(
         &self,
         f: impl FnOnce() -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
-        let threads = self.threads.map_or(0, usize::from);
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
+        on_threads(self.threads.map_or(0, usize::from), f)
     }
+}
+
+/// Calls `f` on so many threads; 0 is one per processor.
+pub fn on_threads<T: Send>(
+    threads: usize,
+    f: impl FnOnce() -> anyhow::Result<T> + Send,
+) -> anyhow::Result<T> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
 }
 
 /// Reads a case file, a folder of them, or a built-in case.

@@ -9,8 +9,9 @@
 //! temporary name and renamed.
 
 pub mod compare;
+pub(in crate::harness) mod file;
 
-use std::io::{self, Write};
+use std::io;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -106,7 +107,7 @@ pub enum BaselineError {
     },
     /// Another version of the form.
     #[error(
-        "{}: a baseline of form {found}, this program reads {SCHEMA}; \
+        "{}: a baseline of form {found}, this program reads {expected}; \
          make it anew with --save-baseline", path.display()
     )]
     Schema {
@@ -114,6 +115,8 @@ pub enum BaselineError {
         path: PathBuf,
         /// Its form.
         found: u64,
+        /// The form that the program reads.
+        expected: u32,
     },
     /// The file cannot be written.
     #[error("{}: cannot be written: {cause}; give another folder with --baselines", path.display())]
@@ -172,25 +175,7 @@ impl Baseline {
     ///
     /// There is none, or it is not what this program writes.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        let path = path.to_owned();
-        let text = match std::fs::read(&path) {
-            Ok(text) => text,
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
-                return Err(BaselineError::Missing(path));
-            }
-            Err(cause) => return Err(BaselineError::Unreadable { path, cause }),
-        };
-        let tree: serde_json::Value = match serde_json::from_slice(&text) {
-            Ok(tree) => tree,
-            Err(cause) => return Err(BaselineError::Broken { path, cause }),
-        };
-        // The form is asked first: what else is there depends on it.
-        if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
-            && found != u64::from(SCHEMA)
-        {
-            return Err(BaselineError::Schema { path, found });
-        }
-        serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
+        file::read(path, SCHEMA)
     }
 
     /// Whether a file can be written, known before the drawing.
@@ -199,7 +184,7 @@ impl Baseline {
     ///
     /// Its folder cannot be made or written into.
     pub fn writable(path: &Path) -> Result<(), BaselineError> {
-        temporary(path).map(drop).map_err(|cause| unwritable(path, cause))
+        file::writable(path)
     }
 
     /// Writes the file under a temporary name, then renames it.
@@ -208,34 +193,8 @@ impl Baseline {
     ///
     /// The system refuses.
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
-        let write = || -> io::Result<()> {
-            let mut file = temporary(path)?;
-            let text = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-            file.write_all(text.as_bytes())?;
-            file.write_all(b"\n")?;
-            file.persist(path).map(drop).map_err(|error| error.error)
-        };
-        write().map_err(|cause| unwritable(path, cause))
+        file::write(self, path)
     }
-}
-
-fn unwritable(path: &Path, cause: io::Error) -> BaselineError {
-    BaselineError::Unwritable { path: path.to_owned(), cause }
-}
-
-/// A temporary file beside the one that is meant; its folder is made.
-fn temporary(path: &Path) -> io::Result<tempfile::NamedTempFile> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-    let folder = folder.unwrap_or(Path::new("."));
-    std::fs::create_dir_all(folder)?;
-    let mut builder = tempfile::Builder::new();
-    // A temporary file is private to its owner unless told otherwise; baselines are for everyone.
-    #[cfg(unix)]
-    let builder = {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(std::fs::Permissions::from_mode(0o644))
-    };
-    builder.prefix(".trueflight-").tempfile_in(folder)
 }
 
 /// A hash of the program that runs: FNV-1a over words of 8 bytes.

@@ -1,0 +1,185 @@
+//! One round of one experiment, each way of drawing timed in turn.
+//!
+//! Only the filling of buffers is timed. Before the first lap of each way a buffer is filled and
+//! thrown away, so that none pays for what is read or mapped for the first time; every other round
+//! goes through the ways backwards, so that none is always the second.
+
+use std::time::Instant;
+
+use cpu_time::ThreadTime;
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+
+use super::curve::Sample;
+use crate::estimators::{DrawBuffer, Kernel};
+use crate::harness::plan::{BLOCK, Planned};
+use crate::rng::Streams;
+
+/// What time is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Clock {
+    /// The time that the drawing thread had a processor: other processes hardly count.
+    Processor,
+    /// The time on the wall, the only one that tells what several threads gain.
+    Elapsed,
+}
+
+impl Clock {
+    /// The clock for so many threads.
+    #[must_use]
+    pub fn of(threads: usize) -> Self {
+        if threads > 1 { Self::Elapsed } else { Self::Processor }
+    }
+
+    /// The word in tables and files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Processor => "processor",
+            Self::Elapsed => "elapsed",
+        }
+    }
+
+    /// The seconds that something takes.
+    fn time(self, f: impl FnOnce()) -> f64 {
+        match self {
+            Self::Processor => {
+                let begin = ThreadTime::now();
+                f();
+                begin.elapsed().as_secs_f64()
+            }
+            Self::Elapsed => {
+                let begin = Instant::now();
+                f();
+                begin.elapsed().as_secs_f64()
+            }
+        }
+    }
+}
+
+/// What one round says of one experiment, in seconds for a draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lap {
+    /// On one thread, as a run draws.
+    pub single: f64,
+    /// On all threads together, where there are several.
+    pub together: Option<f64>,
+    /// On one thread, one draw after the other.
+    pub plain: f64,
+}
+
+/// What times.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch {
+    /// What time is.
+    pub clock: Clock,
+    /// The vector hardware.
+    pub level: Level,
+    /// How many threads draw at once.
+    pub threads: usize,
+}
+
+impl Stopwatch {
+    /// The vector hardware in a word.
+    #[must_use]
+    pub fn level_name(&self) -> String {
+        let name = format!("{:?}", self.level);
+        name.split('(').next().unwrap_or_default().to_lowercase()
+    }
+
+    /// Times a round of an experiment; `sample` sees its draws. The rounds' draws differ, the ways
+    /// of drawing do not differ in them.
+    pub fn lap(&self, planned: &Planned, round: u32, draws: u64, sample: &mut Sample) -> Lap {
+        let mut lap = Lap { single: 0.0, together: None, plain: 0.0 };
+        let mut ways = [Way::Packets, Way::Together, Way::Plain];
+        if round % 2 == 1 {
+            ways.reverse();
+        }
+        sample.begin();
+        for way in ways {
+            match way {
+                Way::Packets => {
+                    let kernel = Kernel::Packets(self.level);
+                    let look = |buffer: &DrawBuffer| sample.absorb(buffer);
+                    lap.single = self.alone(planned, kernel, (round, draws), look);
+                }
+                Way::Together if self.threads > 1 => {
+                    lap.together = Some(self.together(planned, round, draws));
+                }
+                Way::Together => {}
+                Way::Plain => {
+                    lap.plain = self.alone(planned, Kernel::Single, (round, draws), |_| {})
+                }
+            }
+        }
+        sample.end();
+        lap
+    }
+
+    /// Seconds for a draw on this thread; `look` sees each buffer, untimed.
+    fn alone(
+        &self,
+        planned: &Planned,
+        kernel: Kernel,
+        (round, draws): (u32, u64),
+        mut look: impl FnMut(&DrawBuffer),
+    ) -> f64 {
+        let mut seconds = 0.0;
+        let first = u64::from(round) * draws.div_ceil(BLOCK);
+        each_buffer(planned, kernel, (first, draws), |fill, buffer| {
+            seconds += self.clock.time(|| fill(buffer));
+            look(buffer);
+        });
+        seconds / draws as f64
+    }
+
+    /// Seconds for a draw on all threads of the pool, each of which makes so many.
+    fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
+        let (kernel, blocks) = (Kernel::Packets(self.level), draws.div_ceil(BLOCK));
+        let seconds = self.clock.time(|| {
+            rayon::broadcast(|context| {
+                let turn = u64::from(round) * context.num_threads() as u64 + context.index() as u64;
+                each_buffer(planned, kernel, (turn * blocks, draws), |fill, buffer| fill(buffer));
+            });
+        });
+        seconds / (draws as f64 * self.threads as f64)
+    }
+}
+
+/// A way of drawing.
+#[derive(Clone, Copy)]
+enum Way {
+    Packets,
+    Together,
+    Plain,
+}
+
+/// Calls `f` for each buffer of so many draws from a block on, with what fills it.
+fn each_buffer(
+    planned: &Planned,
+    kernel: Kernel,
+    (first, draws): (u64, u64),
+    mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer), &mut DrawBuffer),
+) {
+    let Ok(ready) = &planned.outcome else { return };
+    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    let fill = |streams: &mut Streams, count: u64, buffer: &mut DrawBuffer| {
+        #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
+        ready.experiment.fill_by(kernel, streams, count as usize, buffer);
+    };
+    let length = DrawBuffer::LENGTH as u64;
+    fill(&mut planned.streams(first), draws.min(length), &mut buffer);
+    let (mut block, mut left) = (first, draws);
+    while left > 0 {
+        let mut streams = planned.streams(block);
+        let mut in_block = left.min(BLOCK);
+        left -= in_block;
+        block += 1;
+        while in_block > 0 {
+            let count = in_block.min(length);
+            in_block -= count;
+            f(&mut |buffer| fill(&mut streams, count, buffer), &mut buffer);
+        }
+    }
+}
