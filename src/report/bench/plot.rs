@@ -164,7 +164,8 @@ fn notes(case: &BenchCase) -> Vec<String> {
                 .to_owned(),
         );
     }
-    let shown = case.rows.iter().filter(|row| row.is_shown && !row.reason.is_empty());
-    notes.extend(shown.map(|row| format!("{}: {}", row.estimator, row.reason)));
+    let lacking = case.rows.iter().filter(|row| !row.is_refused && !row.reason.is_empty());
+    notes.extend(lacking.map(|row| format!("{}: {}", row.estimator, row.reason)));
+    notes.dedup();
     notes
 }
