@@ -4,6 +4,7 @@
 //! thrown away, so that none pays for what is read or mapped for the first time; every other round
 //! goes through the ways backwards, so that none is always the second.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
@@ -13,7 +14,6 @@ use serde::{Deserialize, Serialize};
 use super::curve::Sample;
 use crate::estimators::{DrawBuffer, Kernel};
 use crate::harness::plan::{BLOCK, Planned};
-use crate::rng::Streams;
 
 /// What time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,7 +109,7 @@ impl Stopwatch {
                 }
                 Way::Together => {}
                 Way::Plain => {
-                    lap.plain = self.alone(planned, Kernel::Single, (round, draws), |_| {})
+                    lap.plain = self.alone(planned, Kernel::Single, (round, draws), |_| {});
                 }
             }
         }
@@ -127,9 +127,10 @@ impl Stopwatch {
     ) -> f64 {
         let mut seconds = 0.0;
         let first = u64::from(round) * draws.div_ceil(BLOCK);
-        each_buffer(planned, kernel, (first, draws), |fill, buffer| {
-            seconds += self.clock.time(|| fill(buffer));
-            look(buffer);
+        let mut buffer = warm(planned, kernel, draws);
+        each_buffer(planned, kernel, (first, draws), |fill| {
+            seconds += self.clock.time(|| fill(&mut buffer));
+            look(&buffer);
         });
         seconds / draws as f64
     }
@@ -137,10 +138,14 @@ impl Stopwatch {
     /// Seconds for a draw on all threads of the pool, each of which makes so many.
     fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
         let (kernel, blocks) = (Kernel::Packets(self.level), draws.div_ceil(BLOCK));
+        let buffers = rayon::broadcast(|_| Mutex::new(warm(planned, kernel, draws)));
         let seconds = self.clock.time(|| {
             rayon::broadcast(|context| {
-                let turn = u64::from(round) * context.num_threads() as u64 + context.index() as u64;
-                each_buffer(planned, kernel, (turn * blocks, draws), |fill, buffer| fill(buffer));
+                let (thread, threads) = (context.index(), context.num_threads() as u64);
+                let turn = u64::from(round) * threads + thread as u64;
+                // Each thread has a buffer of its own: none waits.
+                let mut buffer = buffers[thread].lock().unwrap_or_else(PoisonError::into_inner);
+                each_buffer(planned, kernel, (turn * blocks, draws), |fill| fill(&mut buffer));
             });
         });
         seconds / (draws as f64 * self.threads as f64)
@@ -155,31 +160,31 @@ enum Way {
     Plain,
 }
 
+/// A buffer that has been filled once.
+fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
+    let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
+    let mut buffer = DrawBuffer::new(channels);
+    let draws = draws.min(DrawBuffer::LENGTH as u64);
+    each_buffer(planned, kernel, (0, draws), |fill| fill(&mut buffer));
+    buffer
+}
+
 /// Calls `f` for each buffer of so many draws from a block on, with what fills it.
 fn each_buffer(
     planned: &Planned,
     kernel: Kernel,
     (first, draws): (u64, u64),
-    mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer), &mut DrawBuffer),
+    mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer)),
 ) {
     let Ok(ready) = &planned.outcome else { return };
-    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-    let fill = |streams: &mut Streams, count: u64, buffer: &mut DrawBuffer| {
-        #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
-        ready.experiment.fill_by(kernel, streams, count as usize, buffer);
-    };
-    let length = DrawBuffer::LENGTH as u64;
-    fill(&mut planned.streams(first), draws.min(length), &mut buffer);
-    let (mut block, mut left) = (first, draws);
-    while left > 0 {
-        let mut streams = planned.streams(block);
-        let mut in_block = left.min(BLOCK);
-        left -= in_block;
-        block += 1;
-        while in_block > 0 {
-            let count = in_block.min(length);
-            in_block -= count;
-            f(&mut |buffer| fill(&mut streams, count, buffer), &mut buffer);
+    for block in 0..draws.div_ceil(BLOCK) {
+        let mut streams = planned.streams(first + block);
+        let mut left = (draws - block * BLOCK).min(BLOCK);
+        while left > 0 {
+            #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
+            let count = left.min(DrawBuffer::LENGTH as u64) as usize;
+            f(&mut |buffer| ready.experiment.fill_by(kernel, &mut streams, count, buffer));
+            left -= count as u64;
         }
     }
 }

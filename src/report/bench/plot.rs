@@ -54,7 +54,7 @@ fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
         sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
     }
     let time = format!("{} time [s]", bench.conditions.clock.word());
-    in_time(&mut sheet, &series, time);
+    in_time(&mut sheet, &series, &time);
     in_lookups(&mut sheet, &series);
     legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
     for (i, note) in notes.iter().enumerate() {
@@ -124,10 +124,10 @@ fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[S
     Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y }
 }
 
-fn in_time(sheet: &mut Sheet, series: &[Series], title: String) {
+fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
     let seconds =
         series.iter().flat_map(|one| one.times.seconds.iter().chain(&one.times.plain_seconds));
-    let panel = panel(0.0, &title, seconds.copied(), series);
+    let panel = panel(0.0, title, seconds.copied(), series);
     panel.grid(sheet);
     for one in series {
         one.line(sheet, &panel, &one.times.plain_seconds, (DOTS, 1.2));
