@@ -8,10 +8,10 @@
 //! ```
 //!
 //! V is the variance in theory, or the sample's where theory has none. The plain loop makes the same
-//! draws, bit for bit, one after the other, as a textbook would. Both are timed in turn in every
-//! round (`clock`), so that a ratio is taken within its round; the rounds go over all experiments
-//! again and again, so that what drifts on the machine drifts for all of them. Medians are reported,
-//! with the least and the most of the rounds.
+//! draws one after the other, as a textbook would. Both are timed in turn in every round (`clock`), so
+//! that a ratio is taken within its round; the rounds go over all experiments again and again, so that
+//! what drifts on the machine drifts for all of them. Medians are reported, with the least and the
+//! most of the rounds.
 //!
 //! What was drawn is the same for any number of threads on any machine; the times are not, and are
 //! kept apart ([`record::Times`]).

@@ -141,8 +141,11 @@ fn closing(text: &mut String, pen: Pen, bench: &Bench) {
     ];
     if let Some(speedup) = conditions.speedup {
         let [median, least, most] =
-            [speedup.median, speedup.least, speedup.most].map(|x| short(x, 3));
-        facts.insert(0, format!("speedup over the plain loop {median}, from {least} to {most}"));
+            [speedup.median, speedup.least, speedup.most].map(|x| fixed(x, 3));
+        facts.insert(
+            0,
+            format!("median speedup over the plain loop {median}, from {least} to {most}"),
+        );
     }
     for line in wrapped(&facts.join(" · "), pen.width) {
         let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));

@@ -1,9 +1,9 @@
 //! `CASE.svg` and `CASE.png`: the measured error against time and against lookups.
 //!
 //! Points are measured, with bars from the least to the most of the rounds; lines are √(V/n), which
-//! falls with slope −1/2. The thin dotted line of the same colour is that of the plain loop.
+//! falls with slope −1/2. The thin, pale line of the same colour is that of the plain loop.
 
-use plotters::style::Color;
+use plotters::style::{Color, RGBAColor};
 
 use crate::harness::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::report::number::{count, short};
@@ -19,7 +19,9 @@ const LEFT: f64 = 92.0;
 const TOP: f64 = 104.0;
 const PANEL: [f64; 2] = [490.0, 400.0];
 const PITCH: f64 = 600.0;
-const DOTS: &[f64] = &[1.5, 3.5];
+
+/// The dashes, the width and the colour of a line.
+type Look = (&'static [f64], f64, RGBAColor);
 
 /// One line of the plot.
 struct Series<'a> {
@@ -96,7 +98,7 @@ impl Series<'_> {
     /// Draws the points and the line of theory at these prices.
     fn draw(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64]) {
         let Style { colour, dash, marker } = self.style;
-        self.line(sheet, panel, prices, (dash, 1.8));
+        self.line(sheet, panel, prices, (dash, 1.8, colour));
         for (point, &price) in self.points().zip(prices) {
             let Some(spot) = panel.spot(price, point.relative) else { continue };
             panel.bar(sheet, spot[0], (point.least, point.most), (3.5, 1.2, colour.mix(0.6)));
@@ -104,10 +106,11 @@ impl Series<'_> {
         }
     }
 
-    fn line(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64], look: (&[f64], f64)) {
+    /// Draws the line of theory at these prices.
+    fn line(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64], look: Look) {
         let both = prices.iter().zip(self.points());
         let line = both.filter_map(|(&price, point)| Some((price, point.predicted?)));
-        panel.line(sheet, line, (look.0, look.1, self.style.colour));
+        panel.line(sheet, line, look);
     }
 }
 
@@ -130,12 +133,12 @@ fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
     let panel = panel(0.0, title, seconds.copied(), series);
     panel.grid(sheet);
     for one in series {
-        one.line(sheet, &panel, &one.times.plain_seconds, (DOTS, 1.2));
+        one.line(sheet, &panel, &one.times.plain_seconds, (&[], 1.1, one.style.colour.mix(0.5)));
     }
     for one in series {
         one.draw(sheet, &panel, &one.times.seconds);
     }
-    panel.frame(sheet, "(a) Error against time; dotted: the plain loop");
+    panel.frame(sheet, "(a) Error against time; thin lines: the plain loop");
 }
 
 fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
