@@ -15,6 +15,9 @@ use crate::theory::Channel;
 /// A relative variance below this is rounding.
 const CERTAIN: f64 = 1e-20;
 
+/// What is said where a round took no time that the clock could tell.
+const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";
+
 /// The rounds of one experiment.
 #[derive(Debug, Clone, Default)]
 pub struct Laps(Vec<Lap>);
@@ -25,9 +28,11 @@ impl Laps {
         self.0.push(lap);
     }
 
-    /// A figure over the rounds.
+    /// A figure over the rounds; `None` where the clock was too coarse for one of them.
     fn spread(&self, figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
-        Spread::of(self.0.iter().map(figure))
+        let figures: Vec<f64> = self.0.iter().map(figure).collect();
+        let is_told = figures.iter().all(|x| x.is_finite() && *x > 0.0);
+        Spread::of(figures).filter(|_| is_told)
     }
 }
 
@@ -65,8 +70,10 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
         let curve = match channel.moments {
             // What is left of the error is rounding, and does not fall; a bias is more than that.
             Some(m) if m.relative[0] <= CERTAIN && !planned.expect_biased => Vec::new(),
-            _ => curve(sample, drawn, (truth, known), lookups.unwrap_or(0.0)),
+            _ => curve(sample, drawn, (truth, known), lookups),
         };
+        let times = times(laps, &curve, (truth, known), lookups);
+        let reason = if times.is_some() { reason } else { TOO_SHORT.to_owned() };
         BenchRow {
             is_first: index == 0,
             channel: channel.name.clone(),
@@ -79,7 +86,7 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
             predicted_lookups,
             fom: known.zip(lookups).and_then(|(v, n)| efficiency(v, n)),
             reason,
-            times: times(laps, &curve, (truth, known), lookups),
+            times,
             curve,
             ..named(planned)
         }
@@ -115,7 +122,7 @@ fn curve(
     sample: &Sample,
     drawn: &ChannelSample,
     (truth, variance): (f64, Option<f64>),
-    lookups: f64,
+    lookups: Option<f64>,
 ) -> Vec<CurvePoint> {
     let looks = sample.looks.iter().enumerate();
     let point = |(look, &draws): (usize, &u64)| {
@@ -123,7 +130,7 @@ fn curve(
         let n = draws as f64;
         Some(CurvePoint {
             draws,
-            lookups: n * lookups,
+            lookups: n * lookups?,
             error: error.typical * truth,
             relative: error.typical,
             least: error.least,
@@ -243,5 +250,12 @@ mod tests {
         }
         near(times.seconds[1], 2e-6);
         assert_eq!(times.scaling, None);
+    }
+
+    #[test]
+    fn a_clock_that_stands_still_tells_nothing() {
+        let lap = |single| Lap { single, together: None, plain: 6e-8 };
+        let laps = Laps(vec![lap(2e-8), lap(0.0)]);
+        assert_eq!(times(&laps, &[point(64)], (0.5, Some(0.1)), Some(1.0)), None);
     }
 }
