@@ -8,9 +8,9 @@ mod common;
 
 use common::{case, none, options, shipped};
 use fearless_simd::Level;
-use trueflight::estimators::{DrawBuffer, Kernel};
+use trueflight::estimators::{DrawBuffer, Kernel, Order};
 use trueflight::harness::plan::Planned;
-use trueflight::harness::record::Verdict;
+use trueflight::harness::record::{Row, Verdict};
 use trueflight::harness::{Case, Plan};
 use trueflight::numeric::pack::fuses;
 
@@ -181,4 +181,90 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
         .map(|row| format!("{}: {}", row.estimator, row.reason))
         .collect();
     none(&failed);
+}
+
+/// The cases above, drawn order-free where that can be.
+fn order_free() -> Vec<Case> {
+    let mut cases = cases();
+    cases.retain(|case| case.problem == "transmittance");
+    cases.iter_mut().for_each(|case| case.scenario.draw_by(Order::Free));
+    cases
+}
+
+#[test]
+fn order_free_draws_do_not_depend_on_the_level() {
+    let levels = fusing_levels();
+    let cases = order_free();
+    let plan = Plan::new(&cases, &options(1, 1_000));
+    let mut compared = 0;
+    for (case, planned) in plan.experiments() {
+        let Ok(ready) = &planned.outcome else { continue };
+        if let [best, others @ ..] = &levels[..]
+            && ready.experiment.order() == Order::Free
+        {
+            let draws = drawn(planned, Kernel::Packets(*best));
+            for level in others {
+                let same = draws == drawn(planned, Kernel::Packets(*level));
+                assert!(same, "{}, {}, {level:?}", case.case.name, planned.names.estimator);
+            }
+            compared += 1;
+        }
+    }
+    assert!(levels.is_empty() || compared > 150, "only {compared} compared");
+}
+
+/// Means, variances, laws of lookups and of values: the same gate, the same theory.
+#[test]
+fn order_free_draws_have_the_law_of_the_ordered_ones() {
+    let cases = order_free();
+    let record = common::judged(&cases, &options(1, 60_000));
+    let rows: Vec<&Row> = record.results.cases.iter().flat_map(|case| &case.rows).collect();
+    let failed: Vec<String> = rows
+        .iter()
+        // So few draws need not show a bias that a case declares.
+        .filter(|row| row.findings.iter().all(|finding| !finding.expects_bias))
+        .filter(|row| row.verdict == Some(Verdict::Fail))
+        .map(|row| format!("{}, {}: {}", row.command, row.sampling_kind, row.reason))
+        .collect();
+    none(&failed);
+    let passed =
+        |row: &&&Row| row.estimator.contains("order-free") && row.verdict == Some(Verdict::Pass);
+    let passed = rows.iter().filter(passed).count();
+    assert!(passed > 100, "only {passed} passed");
+}
+
+/// Draws of one request come sorted; a sum over them does not care, and nothing else is asked.
+#[test]
+fn order_free_draws_say_so() {
+    let text = "title = \"kernels\"\nkernel = \"order-free\"\n[problem.transmittance]
+        medium.constant.extinction = 1.0\nspan = [0, 2]\nsampling.constant.value = 2.5
+        estimators = [{ ratio = {} }, { ratio.kernel = \"ordered\" },
+                      { single.rule = \"clamped\" }, { next-flight = {} }]";
+    let rows = common::rows(text, 1_000_000);
+    let names: Vec<&str> = rows.iter().map(|row| row.estimator.as_str()).collect();
+    assert_eq!(
+        names,
+        ["ratio (order-free)", "ratio", "single (clamped, order-free)", "next-flight"]
+    );
+    let asked = |row: &Row, check: &str| row.findings.iter().any(|finding| finding.check == check);
+    for check in ["invariant", "streams"] {
+        assert!(!asked(&rows[0], check) && asked(&rows[1], check), "{check}");
+    }
+    assert!(asked(&rows[0], "counts") && asked(&rows[2], "counts"));
+}
+
+#[test]
+fn an_order_free_kernel_that_is_not_there_is_a_mistake() {
+    let text = |kernel: &str| {
+        format!(
+            "title = \"k\"\n[problem.transmittance]\nmedium.constant.extinction = 1.0\nspan = [0, 2]
+            sampling.constant.value = 1.5\nestimators = [{{ next-flight.kernel = \"{kernel}\" }}]"
+        )
+    };
+    let message = |kernel: &str| common::mistakes(&text(kernel)).map(|error| error.render(false));
+    assert!(message("ordered").is_none());
+    let missing = message("order-free").expect("a mistake");
+    assert!(missing.contains("`next-flight` has no order-free kernel"), "{missing}");
+    let unknown = message("free").expect("a mistake");
+    assert!(unknown.contains("one of `ordered`, `order-free`"), "{unknown}");
 }

@@ -88,7 +88,8 @@ impl Baselines {
     }
 }
 
-fn share(text: &str) -> Result<f64, String> {
+/// Reads a share of 0 or more.
+pub fn share(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(share) if share >= 0.0 => Ok(share),
         _ => Err("it takes a share of 0 or more, such as 0.25, or inf".into()),

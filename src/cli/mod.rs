@@ -8,6 +8,7 @@
 //! | 3 | nothing fails, but something is inconclusive; `--inconclusive fail` makes it 1, `pass` 0 |
 
 mod baseline;
+mod bench;
 mod check;
 mod completions;
 mod drawing;
@@ -59,6 +60,8 @@ enum Command {
     Check(check::Arguments),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
     Predict(predict::Arguments),
+    /// Run time against error: ns per draw, time to an error, and how much faster than a plain loop
+    Bench(bench::Arguments),
     /// What would run, what is refused, and why
     Plan(plan::Arguments),
     /// Does the gate keep its promises, and does it catch known bugs?
@@ -81,6 +84,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::main(arguments, console),
         Command::Check(arguments) => check::main(arguments, console),
         Command::Predict(arguments) => predict::main(arguments, console),
+        Command::Bench(arguments) => bench::main(arguments, console),
         Command::Plan(arguments) => plan::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),

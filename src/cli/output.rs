@@ -43,7 +43,7 @@ pub enum Format {
     /// A table for people
     #[default]
     Table,
-    /// The columns of summary.csv
+    /// The columns of the CSV file of all rows
     Csv,
     /// The same as an array of objects
     Json,

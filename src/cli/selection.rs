@@ -5,24 +5,36 @@ use std::path::Path;
 
 use anyhow::Context;
 use clap::Args;
+use trueflight::estimators::Order;
 use trueflight::harness::case::Case;
 use trueflight::harness::source::CaseError;
 use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
 use super::Console;
 
-/// Options that all commands on cases share.
+/// Which experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]
-pub struct Selection {
+pub struct Experiments {
     /// Case files, folders of them, or names of built-in cases; without any, the built-in suite
     #[arg(value_name = "CASES")]
     cases: Vec<String>,
     /// Only what matches: a case, an estimator, or `case:estimator`, with `*` and `?`
     #[arg(long, value_name = "GLOB")]
     filter: Option<String>,
+    /// How product estimators draw, whatever the cases say: `ordered` along the ray, or `order-free`,
+    /// faster, other draws of the same law [default: the case's, or ordered]
+    #[arg(long, value_name = "KERNEL", value_parser = kernel)]
+    kernel: Option<Order>,
     /// Seed of all random numbers
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
+}
+
+/// Options that the commands on cases share.
+#[derive(Debug, Clone, Args)]
+pub struct Selection {
+    #[command(flatten)]
+    experiments: Experiments,
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: 4e5]
     #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
     draws: Option<u64>,
@@ -34,7 +46,7 @@ pub struct Selection {
     threads: Option<u16>,
 }
 
-impl Selection {
+impl Experiments {
     /// Reads the cases; mistakes in files are shown in place.
     pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
         let mut cases = Vec::new();
@@ -45,6 +57,9 @@ impl Selection {
         }
         for name in &self.cases {
             read_case(name).map_or_else(|found| errors.extend(found), |found| cases.extend(found));
+        }
+        if let Some(order) = self.kernel {
+            cases.iter_mut().for_each(|case| case.scenario.draw_by(order));
         }
         if errors.is_empty() {
             return distinct(cases);
@@ -57,12 +72,12 @@ impl Selection {
         anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
     }
 
-    /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.
-    pub fn options(&self, usual: u64) -> anyhow::Result<Options> {
+    /// The options of a plan that draws so much.
+    pub fn options(&self, draws: Amount) -> anyhow::Result<Options> {
         let filter = self.filter.as_deref().map(Filter::new).transpose();
         let filter = filter.context("--filter takes a pattern such as \"*eq21*:single\"")?;
-        let draws = self.draws.map_or(Amount::CaseOr(usual), Amount::Exactly);
-        Ok(Options { seed: self.seed, draws, alpha: self.alpha, filter, ..Options::default() })
+        let (seed, kernel) = (self.seed, self.kernel);
+        Ok(Options { seed, draws, kernel, filter, ..Options::default() })
     }
 
     /// Plans the cases; a selection that keeps nothing is an error.
@@ -77,15 +92,41 @@ impl Selection {
         }
         Ok(plan)
     }
+}
+
+impl Selection {
+    /// Reads the cases; mistakes in files are shown in place.
+    pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
+        self.experiments.read(console)
+    }
+
+    /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.
+    pub fn options(&self, usual: u64) -> anyhow::Result<Options> {
+        let draws = self.draws.map_or(Amount::CaseOr(usual), Amount::Exactly);
+        let options = self.experiments.options(draws)?;
+        Ok(Options { alpha: self.alpha, ..options })
+    }
+
+    /// Plans the cases; a selection that keeps nothing is an error.
+    pub fn plan<'a>(&self, cases: &'a [Case], options: &Options) -> anyhow::Result<Plan<'a>> {
+        self.experiments.plan(cases, options)
+    }
 
     /// Calls `f` on as many threads as wished.
     pub fn on_threads<T: Send>(
         &self,
         f: impl FnOnce() -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
-        let threads = self.threads.map_or(0, usize::from);
-        rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
+        on_threads(self.threads.map_or(0, usize::from), f)
     }
+}
+
+/// Calls `f` on so many threads; 0 is one per processor.
+pub fn on_threads<T: Send>(
+    threads: usize,
+    f: impl FnOnce() -> anyhow::Result<T> + Send,
+) -> anyhow::Result<T> {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build()?.install(f)
 }
 
 /// Leaves out what is given twice. Two cases of one name would share their random numbers and files.
@@ -124,6 +165,11 @@ pub fn draws(text: &str) -> Result<u64, String> {
         Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
         _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),
     }
+}
+
+/// Reads a kernel's name.
+fn kernel(text: &str) -> Result<Order, String> {
+    Order::of(text).ok_or_else(|| "it takes `ordered` or `order-free`".into())
 }
 
 /// Reads a probability.

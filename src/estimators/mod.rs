@@ -7,6 +7,7 @@
 pub mod controls;
 pub mod domain;
 pub mod free_flight;
+pub mod layers;
 pub mod ledger;
 pub mod packet;
 pub mod rules;
@@ -28,7 +29,7 @@ use crate::theory::Prediction;
 pub use domain::Refusal;
 pub use setup::{Setup, Site};
 pub use transmittance_curve::Portrait;
-pub use trial::{DrawBuffer, Experiment, Kernel};
+pub use trial::{DrawBuffer, Experiment, Kernel, Order};
 
 /// One realisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -77,6 +78,9 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const KEEPS_BOOKS: bool = false;
     /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
     const IN_PACKETS: bool = false;
+    /// Whether its draws may be made in any order of their collisions, by
+    /// [`Estimator::draw_packets`] where the request says [`Order::Free`].
+    const ORDER_FREE: bool = false;
 
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
     /// it.
@@ -121,21 +125,18 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
     -> Draw<P::Value>;
 
-    /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
-    /// turn, bit for bit, on the hardware of a level.
-    fn draw_packets<M: Extinction>(
+    /// Makes the draws of a request on the hardware of a level: ordered, as [`Estimator::draw`]
+    /// makes them from the request's streams in turn, bit for bit; order-free, equal in law. What the hardware has no kernel for is
+    /// handed back.
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<P>,
         medium: &M,
-        request: packet::Request,
-    ) {
-        let _ = level;
-        request.buffer.clear();
-        for _ in 0..request.count {
-            let draw = self.draw(setup, medium, request.streams.of_next_draw());
-            request.buffer.push(&draw);
-        }
+        request: packet::Request<'a>,
+    ) -> Option<packet::Request<'a>> {
+        let _ = (level, setup, medium);
+        Some(request)
     }
 }
 

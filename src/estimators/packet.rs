@@ -15,13 +15,13 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use super::rules::Collision;
 use super::walk::Books;
-use super::{DrawBuffer, Setup};
+use super::{DrawBuffer, Order, Setup, layers};
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
-use crate::rng::{LANES, Streams, Xoshiro};
+use crate::rng::{LANES, Lanes, Streams, Xoshiro};
 
 /// What is to be drawn.
 pub struct Request<'a> {
@@ -31,6 +31,8 @@ pub struct Request<'a> {
     pub count: usize,
     /// Where they go.
     pub buffer: &'a mut DrawBuffer,
+    /// In which order their collisions come.
+    pub order: Order,
 }
 
 /// Which walks ended in a step, as bits, and which of them because they reached the end.
@@ -54,40 +56,47 @@ trait Walks<S: Simd> {
     fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
 }
 
-/// The draws of a product estimator, on the hardware of a level.
-pub fn product<P, M: Extinction, R: Collision>(
+/// The draws of a product estimator, on the hardware of a level; a request for ordered ones is handed
+/// back where the hardware is too narrow.
+pub fn product<'a, P: Problem, M: Extinction, R: Collision>(
     level: Level,
     setup: &Setup<P>,
     rule: &R,
     medium: &M,
-    request: Request,
-) {
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    if request.order == Order::Free {
+        layers::product(level, setup, rule, request);
+        return None;
+    }
     let (sampling, control) = (&setup.sampling, &setup.control);
     let begin = setup.control_transmittance;
-    pack::on(level, Product { sampling, control, begin, rule, medium, request });
+    let task = Product { sampling, control, begin, rule, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-/// Free flights by Woodcock tracking, on the hardware of a level.
-pub fn flight<P: Problem, M: Extinction>(
+/// Free flights by Woodcock tracking, on the hardware of a level, or handed back likewise.
+pub fn flight<'a, P: Problem, M: Extinction>(
     level: Level,
     setup: &Setup<P>,
     medium: &M,
-    request: Request,
-) {
+    request: Request<'a>,
+) -> Option<Request<'a>> {
     let ray = setup.problem.medium().span();
-    pack::on(level, Flight { sampling: &setup.sampling, ray, medium, request });
+    let task = Flight { sampling: &setup.sampling, ray, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Product<'a, M, R> {
+struct Product<'a, 'r, M, R> {
     sampling: &'a Piecewise,
     control: &'a Control,
     begin: f64,
     rule: &'a R,
     medium: &'a M,
-    request: Request<'a>,
+    request: Request<'r>,
 }
 
-impl<M: Extinction, R: Collision> Task for Product<'_, M, R> {
+impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
     type Output = ();
 
     #[inline(always)]
@@ -97,56 +106,45 @@ impl<M: Extinction, R: Collision> Task for Product<'_, M, R> {
         let from = f64x8::splat(simd, sampling.knots()[0]);
         let books = Books::open(weight);
         // What does not change is found here, not in every step.
-        match (sampling.single_value(), control.single_value()) {
-            (Some(value), Some(constant)) => {
-                let course = Even::new(simd, sampling, value);
-                let control = Constant(f64x8::splat(simd, constant));
-                let walks = Products { rule, medium, control, begin, from, course, weight, books };
-                run(simd, walks, request);
-            }
-            (Some(value), None) => {
-                let course = Even::new(simd, sampling, value);
-                let walks = Products { rule, medium, control, begin, from, course, weight, books };
-                run(simd, walks, request);
-            }
-            (None, _) => {
-                let course = Pieces::new(simd, sampling);
-                let walks = Products { rule, medium, control, begin, from, course, weight, books };
-                run(simd, walks, request);
-            }
+        let constant = control.single_value().map(|value| f64x8::splat(simd, value));
+        let control = Subtracted { control, constant };
+        if let Some(value) = sampling.single_value() {
+            let course = Even::new(simd, sampling, value);
+            let walks = Products { rule, medium, control, begin, from, course, weight, books };
+            run(simd, walks, request);
+        } else {
+            let course = Pieces::new(simd, sampling);
+            let walks = Products { rule, medium, control, begin, from, course, weight, books };
+            run(simd, walks, request);
         }
     }
 }
 
 /// σ_c as the walks ask for it.
-trait Subtracted<S: Simd> {
-    fn at(&self, t: f64x8<S>) -> f64x8<S>;
+struct Subtracted<'a, S: Simd> {
+    control: &'a Control,
+    /// Its value, where there is only one.
+    constant: Option<f64x8<S>>,
 }
 
-struct Constant<S: Simd>(f64x8<S>);
-
-impl<S: Simd> Subtracted<S> for Constant<S> {
-    #[inline(always)]
-    fn at(&self, _: f64x8<S>) -> f64x8<S> {
-        self.0
-    }
-}
-
-impl<S: Simd> Subtracted<S> for &Control {
+impl<S: Simd> Subtracted<'_, S> {
     #[inline(always)]
     fn at(&self, t: f64x8<S>) -> f64x8<S> {
-        self.extinction(t)
+        match self.constant {
+            Some(constant) => constant,
+            None => self.control.extinction(t),
+        }
     }
 }
 
-struct Flight<'a, M> {
+struct Flight<'a, 'r, M> {
     sampling: &'a Piecewise,
     ray: Span,
     medium: &'a M,
-    request: Request<'a>,
+    request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Flight<'_, M> {
+impl<M: Extinction> Task for Flight<'_, '_, M> {
     type Output = ();
 
     #[inline(always)]
@@ -164,10 +162,10 @@ impl<M: Extinction> Task for Flight<'_, M> {
 }
 
 /// The walks of a product estimator.
-struct Products<'a, S: Simd, M, R, C, K> {
+struct Products<'a, S: Simd, M, R, C> {
     rule: &'a R,
     medium: &'a M,
-    control: K,
+    control: Subtracted<'a, S>,
     begin: f64,
     from: f64x8<S>,
     course: C,
@@ -175,13 +173,12 @@ struct Products<'a, S: Simd, M, R, C, K> {
     books: Books<f64x8<S>>,
 }
 
-impl<S, M, R, C, K> Walks<S> for Products<'_, S, M, R, C, K>
+impl<S, M, R, C> Walks<S> for Products<'_, S, M, R, C>
 where
     S: Simd,
     M: Extinction,
     R: Collision,
     C: Course<S>,
-    K: Subtracted<S>,
 {
     const WORDS: usize = if R::DECIDES { 2 } else { 1 };
     type Reader = Weights;
@@ -284,10 +281,10 @@ fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
 fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
-    let Request { streams, count, buffer } = request;
+    let Request { streams, count, buffer, .. } = request;
     let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return };
     let reader = walks.reader();
-    let mut numbers = Xoshiro::side_by_side(simd, &streams.lanes);
+    let mut numbers = Lanes::of(&streams.lanes).awake(simd);
     let mut rows = [Row::default(); STEPS];
     while ledger.is_open() {
         let before = numbers;
@@ -299,7 +296,7 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
         }
         let over = ledger.collect(&reader, &rows, &notes);
         if over != [0; WIDTH] {
-            let before = before.apart();
+            let before = before.at_rest().apart();
             for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {
                 if steps > 0 {
                     *stream = before;

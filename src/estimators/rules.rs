@@ -16,6 +16,9 @@ pub trait Collision: Rule + Copy + 'static {
     /// Whether chance decides: then every step of a walk takes a number for it.
     const DECIDES: bool;
 
+    /// Whether a survivor's weight changes.
+    const WEIGHS: bool = true;
+
     /// What happens at a collision with ratio r.
     #[must_use]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
@@ -67,6 +70,7 @@ pub struct Null;
 
 impl Collision for Null {
     const DECIDES: bool = true;
+    const WEIGHS: bool = false;
 
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {

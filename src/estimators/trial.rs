@@ -65,10 +65,40 @@ impl DrawBuffer {
     }
 }
 
-/// How draws are made: the same draws either way.
+/// In which order the collisions of a draw come.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub enum Order {
+    /// One after the other along the ray, as any renderer walks.
+    #[default]
+    Along,
+    /// As they like, by estimators that do not care: other draws, equal in law.
+    Free,
+}
+
+impl Order {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Along, Self::Free];
+
+    /// The word in cases and arguments.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Along => "ordered",
+            Self::Free => "order-free",
+        }
+    }
+
+    /// The order of that name.
+    #[must_use]
+    pub fn of(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|order| order.word() == word)
+    }
+}
+
+/// How draws are made: the same draws either way, unless they are order-free.
 #[derive(Debug, Clone, Copy)]
 pub enum Kernel {
-    /// One after the other, whatever the estimator offers.
+    /// One after the other and along the ray, whatever the estimator offers.
     Single,
     /// Eight at a time on the hardware of this level, by estimators that can.
     Packets(Level),
@@ -84,9 +114,14 @@ pub trait Experiment: Send + Sync {
         self.fill_by(Kernel::Packets(Level::new()), streams, count, buffer);
     }
 
-    /// See [`Estimator::KEEPS_BOOKS`].
+    /// See [`Estimator::KEEPS_BOOKS`]; order-free draws have none.
     fn keeps_books(&self) -> bool {
         false
+    }
+
+    /// In which order the collisions of its draws come.
+    fn order(&self) -> Order {
+        Order::Along
     }
 }
 
@@ -110,8 +145,10 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn predict(&self, setup: &Setup<P>) -> Prediction;
     /// See [`Estimator::portrait`].
     fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait>;
-    /// Joins the estimator and its setup.
-    fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment>;
+    /// See [`Estimator::ORDER_FREE`].
+    fn is_order_free(&self) -> bool;
+    /// Joins the estimator and its setup. The order is along the ray where it cannot be free.
+    fn experiment(&self, setup: Setup<P>, order: Order) -> Box<dyn Experiment>;
 }
 
 impl<P: Problem, E: Estimator<P>> Entry<P> for E {
@@ -143,14 +180,20 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
         Estimator::portrait(self, setup, address)
     }
 
-    fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        Box::new(Trial { estimator: self.clone(), setup })
+    fn is_order_free(&self) -> bool {
+        E::ORDER_FREE
+    }
+
+    fn experiment(&self, setup: Setup<P>, order: Order) -> Box<dyn Experiment> {
+        let order = if E::ORDER_FREE { order } else { Order::Along };
+        Box::new(Trial { estimator: self.clone(), setup, order })
     }
 }
 
 struct Trial<P, E> {
     estimator: E,
     setup: Setup<P>,
+    order: Order,
 }
 
 impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
@@ -161,12 +204,16 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         count: usize,
         buffer: &mut DrawBuffer,
     ) {
-        let request = Request { streams, count, buffer };
+        let request = Request { streams, count, buffer, order: self.order };
         self.setup.problem.medium().profile().visit(Fill { trial: self, kernel, request });
     }
 
     fn keeps_books(&self) -> bool {
-        E::KEEPS_BOOKS
+        E::KEEPS_BOOKS && self.order == Order::Along
+    }
+
+    fn order(&self) -> Order {
+        self.order
     }
 }
 
@@ -182,15 +229,18 @@ impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
     type Output = ();
 
     fn visit<F: FreeFlight>(self, field: &F) {
-        let Self { trial, kernel, mut request } = self;
-        match kernel {
+        let Self { trial, kernel, request } = self;
+        let left = match kernel {
             Kernel::Packets(level) if E::IN_PACKETS => {
-                trial.estimator.draw_packets(level, &trial.setup, field, request);
+                trial.estimator.draw_packets(level, &trial.setup, field, request)
             }
-            _ => in_fused_code(
+            _ => Some(request),
+        };
+        if let Some(mut request) = left {
+            in_fused_code(
                 #[inline(always)]
                 || one_by_one(trial, field, &mut request),
-            ),
+            );
         }
     }
 }

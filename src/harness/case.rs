@@ -8,6 +8,7 @@
 //! | `tolerance.variance` | ε of variances, relative | what the draws see, at most 0.2 |
 //! | `tolerance.lookups` | ε of the numbers of lookups, relative | what the draws see, at most 0.02 |
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
+//! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
 //! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve` | required |
 //!
@@ -23,7 +24,7 @@
 //! | `sampling.NAME = { … }` | σ̂, for every estimator that takes one |
 //! | `control.NAME = { … }` | σ_c, for every estimator that takes one |
 //! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
-//! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect` |
+//! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
@@ -32,7 +33,9 @@ use std::path::{Path, PathBuf};
 use super::scenario::{AnyScenario, Scenario};
 use super::source::{CaseError, Source};
 use super::sweep::SweepAxis;
+use super::written::Usual;
 use crate::catalogue::{Domain, Page, Settings};
+use crate::estimators::Order;
 use crate::media::Body;
 use crate::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
 use crate::rng::name_hash;
@@ -107,19 +110,24 @@ impl Case {
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {
         let title = root.text("title");
         let expect_biased = read_expect(root);
+        let order = read_kernel(root);
         let problem = root.table("problem").and_then(|problem| {
             let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
             let (index, settings) = problem.choice(&names)?;
             let body = Body::read(&settings);
             let sweep = read_sweep(&settings);
-            let biased = expect_biased.unwrap_or(false);
+            let usual = Usual {
+                expect_biased: expect_biased.unwrap_or_default(),
+                order: order.unwrap_or_default(),
+                sampling: false,
+            };
             let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
             let read = match names[index].as_str() {
                 "transmittance" => Scenario::<Transmittance>::read,
                 "free-flight" => Scenario::<FreeFlight>::read,
                 _ => Scenario::<TransmittanceCurve>::read,
             };
-            let scenario = read(&settings, body.as_ref(), biased, swept);
+            let scenario = read(&settings, body.as_ref(), usual, swept);
             settings.close();
             Some((names[index].clone(), scenario?, sweep?))
         });
@@ -135,7 +143,7 @@ impl Case {
         let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
         root.close();
         let (problem, scenario, sweep) = problem?;
-        expect_biased?;
+        (expect_biased?, order?);
         Some(Self {
             name: source.name.clone(),
             path: source.path.clone(),
@@ -207,6 +215,12 @@ fn files(path: &Path) -> Result<Vec<std::path::PathBuf>, CaseError> {
 /// Reads `expect = "biased"`; `None` after a mistake.
 pub(super) fn read_expect(settings: &Settings) -> Option<bool> {
     settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
+}
+
+/// Reads `kernel = "order-free"`; `None` after a mistake.
+pub(super) fn read_kernel(settings: &Settings) -> Option<Order> {
+    let words = Order::ALL.map(Order::word);
+    settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
 }
 
 #[allow(clippy::option_option)] // the outer `None` is a recorded mistake

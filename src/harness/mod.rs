@@ -5,6 +5,7 @@
 //! was drawn into a [`Record`], which is all that reports see.
 
 pub mod baseline;
+pub mod bench;
 pub mod case;
 pub mod checks;
 pub mod curves;

@@ -1,6 +1,7 @@
 //! What a run is asked to do, whatever the cases are.
 
 use super::filter::Filter;
+use crate::estimators::Order;
 
 /// Draws per experiment where neither the options nor the case say.
 pub const DRAWS: u64 = 4_000_000;
@@ -12,6 +13,9 @@ pub struct Options {
     pub seed: u64,
     /// How many draws.
     pub draws: Amount,
+    /// The kernel that the cases were told to draw by, whatever they say: part of the command that
+    /// repeats an experiment.
+    pub kernel: Option<Order>,
     /// The chance that a correct run shows any failure.
     pub alpha: f64,
     /// Stop drawing after this many seconds.
@@ -52,6 +56,7 @@ impl Default for Options {
         Self {
             seed: 1,
             draws: Amount::CaseOr(DRAWS),
+            kernel: None,
             alpha: 1e-3,
             seconds: None,
             budget: None,

@@ -14,7 +14,7 @@ use super::case::Case;
 use super::checks::{self, Kind, Question, Scalar, Subject};
 use super::options::Options;
 use super::scenario::{Names, Prepared, Ready, Variation};
-use crate::estimators::{DrawBuffer, Refusal};
+use crate::estimators::{DrawBuffer, Order, Refusal};
 use crate::rng::{Address, PILOT, Streams, name_hash};
 use crate::stats::{gate, normal};
 
@@ -268,6 +268,7 @@ impl Planned {
             tolerance: case.tolerance,
             expect_biased: self.expect_biased,
             keeps_books: ready.experiment.keeps_books(),
+            is_in_turn: ready.experiment.order() == Order::Along,
             pilot_variance: forced.then(|| self.pilot_variance(ready)),
         };
         if case.tolerance.says_something() {

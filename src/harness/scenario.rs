@@ -4,10 +4,10 @@ use std::sync::{Arc, OnceLock};
 
 use super::mutation::Walk;
 use super::sweep::What;
-use super::written::{Written, read_if};
+use super::written::{Usual, Written, predict, read_if};
 use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
-use crate::estimators::{Experiment, Portrait, Refusal, Setup, Site, controls, sampling};
+use crate::estimators::{Experiment, Order, Portrait, Refusal, Setup, Site, controls, sampling};
 use crate::media::{Body, Piecewise};
 use crate::mutants::Mutable;
 use crate::rng::Address;
@@ -29,6 +29,9 @@ pub trait AnyScenario: Send + Sync {
 
     /// How many estimators are written.
     fn estimators(&self) -> usize;
+
+    /// Draws by a kernel, whatever the case says, where an estimator has it.
+    fn draw_by(&mut self, order: Order);
 
     /// Whether an estimator depends on a swept quantity.
     fn depends_on(&self, estimator: usize, what: What) -> bool;
@@ -115,7 +118,7 @@ impl<P: Mutable> Scenario<P> {
     pub fn read(
         settings: &Settings,
         body: Option<&Body>,
-        expect_biased: bool,
+        usual: Usual,
         swept: Option<What>,
     ) -> Option<Box<dyn AnyScenario>> {
         let problem = P::read(body, settings);
@@ -124,8 +127,9 @@ impl<P: Mutable> Scenario<P> {
         // A sweep that could not be read may have been one of σ̂.
         let unread = settings.has("sweep") && swept.is_none();
         let shared = settings.has("sampling") || swept == Some(What::Sampling) || unread;
+        let usual = Usual { sampling: shared, ..usual };
         let estimators = settings.tables("estimators").map(|tables| {
-            let read = |table: &Settings| Written::read(table, body, expect_biased, shared);
+            let read = |table: &Settings| Written::read(table, body, usual);
             tables.iter().map(read).collect::<Vec<_>>()
         });
         let estimators = estimators?;
@@ -259,6 +263,12 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         self.written.len()
     }
 
+    fn draw_by(&mut self, order: Order) {
+        for written in &mut self.written {
+            written.order = order;
+        }
+    }
+
     fn depends_on(&self, estimator: usize, what: What) -> bool {
         let written = &self.written[estimator];
         let inputs = written.entry.inputs();
@@ -277,12 +287,7 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
     fn names(&self, estimator: usize, variation: Variation) -> Names {
         let written = &self.written[estimator];
         let swept_albedo = matches!(variation, Some((What::Albedo, _)));
-        let label = written.entry.label(!swept_albedo);
-        let name = if label.is_empty() {
-            written.name.clone()
-        } else {
-            format!("{} ({label})", written.name)
-        };
+        let name = written.label(!swept_albedo);
         let control = self.with_control(estimator, variation, |recipe| recipe.label());
         let (sampling, sampling_kind) = match (variation, self.sampling_of(estimator)) {
             (Some((What::Sampling, value)), _) if self.depends_on(estimator, What::Sampling) => {
@@ -302,6 +307,7 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         let written = &self.written[estimator];
         let varied = self.varied_entry(estimator, variation);
         let entry = varied.as_deref().unwrap_or(&*written.entry);
+        let order = written.order();
         let expect_biased = written.expect_biased;
         let outcome = self.setup(estimator, variation, address).and_then(|setup| {
             let refusal = entry.domain(&setup).err();
@@ -311,10 +317,10 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
                 }
                 // Forced: the formulas do not hold here, only the truth does.
                 let prediction = entry.predict(&setup).only_the_truth();
-                return Ok(Ready { experiment: entry.experiment(setup), prediction });
+                return Ok(Ready { experiment: entry.experiment(setup, order), prediction });
             }
-            let prediction = entry.predict(&setup);
-            Ok(Ready { experiment: entry.experiment(setup), prediction })
+            let prediction = predict(entry, &setup, order);
+            Ok(Ready { experiment: entry.experiment(setup, order), prediction })
         });
         let outcome = outcome.and_then(refuse_what_cannot_be_computed);
         Prepared { outcome, expect_biased }
@@ -330,7 +336,7 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         let entry = varied.as_deref().unwrap_or(&*self.written[estimator].entry);
         let setup = Setup { laws: false, ..self.setup(estimator, variation, pilots).ok()? };
         entry.domain(&setup).ok()?;
-        Some(entry.predict(&setup))
+        Some(predict(entry, &setup, self.written[estimator].order()))
     }
 
     fn portrait(

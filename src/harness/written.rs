@@ -1,10 +1,12 @@
 //! One estimator as a case file has it.
 
-use super::case::read_expect;
+use super::case::{read_expect, read_kernel};
 use crate::catalogue::{Page, Settings};
 use crate::estimators::trial::Entry;
-use crate::estimators::{Estimated, controls, sampling};
+use crate::estimators::{Estimated, Order, Setup, controls, sampling};
 use crate::media::Body;
+use crate::problems::Problem;
+use crate::theory::Prediction;
 
 /// An estimator as written.
 pub struct Written<P> {
@@ -18,6 +20,25 @@ pub struct Written<P> {
     pub control: Option<Box<dyn controls::Recipe>>,
     /// Whether the case declares it biased.
     pub expect_biased: bool,
+    /// The kernel that is wished.
+    pub order: Order,
+}
+
+/// What a case says of all its estimators, unless they say otherwise.
+#[derive(Debug, Clone, Copy)]
+pub struct Usual {
+    /// Whether they are declared biased.
+    pub expect_biased: bool,
+    /// The kernel of those that have it.
+    pub order: Order,
+    /// Whether there is a σ̂ for all.
+    pub sampling: bool,
+}
+
+/// What theory says of the draws of a kernel.
+pub fn predict<P: Problem>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
+    let prediction = entry.predict(setup);
+    if order == Order::Free { prediction.order_free() } else { prediction }
 }
 
 /// Reads a table, if the file has it; `None` after a mistake.
@@ -35,19 +56,33 @@ pub fn read_if<T: ?Sized>(
     }
 }
 
+impl<P: Problem> Written<P> {
+    /// The estimator with its settings, as in `single (terminating, order-free)`.
+    pub fn label(&self, albedo: bool) -> String {
+        let mut settings = self.entry.label(albedo);
+        if self.order() == Order::Free {
+            let comma = if settings.is_empty() { "" } else { ", " };
+            settings = format!("{settings}{comma}{}", Order::Free.word());
+        }
+        if settings.is_empty() { self.name.clone() } else { format!("{} ({settings})", self.name) }
+    }
+
+    /// In which order the collisions of its draws come.
+    pub fn order(&self) -> Order {
+        if self.entry.is_order_free() { self.order } else { Order::Along }
+    }
+}
+
 impl<P: Estimated> Written<P> {
-    /// Reads `{ NAME = { …, sampling, control, expect } }`.
-    pub fn read(
-        table: &Settings,
-        body: Option<&Body>,
-        expect_biased: bool,
-        shared: bool,
-    ) -> Option<Self> {
+    /// Reads `{ NAME = { …, sampling, control, expect, kernel } }`.
+    pub fn read(table: &Settings, body: Option<&Body>, usual: Usual) -> Option<Self> {
         let names: Vec<String> = P::CATALOGUE.pages.iter().map(Page::name).collect();
         let (index, settings) = table.choice(&names)?;
         let entry = P::read_estimator(index, &settings);
         let own_expect =
-            if settings.has("expect") { read_expect(&settings) } else { Some(expect_biased) };
+            if settings.has("expect") { read_expect(&settings) } else { Some(usual.expect_biased) };
+        let own_kernel = settings.has("kernel");
+        let order = if own_kernel { read_kernel(&settings) } else { Some(usual.order) };
         let Some(entry) = entry else {
             // The page's own mistakes are listed; what it would have taken is not known.
             settings.entry("sampling");
@@ -66,10 +101,14 @@ impl<P: Estimated> Written<P> {
         } else {
             Some(None)
         };
-        if inputs.sampling && !settings.has("sampling") && !shared {
+        if inputs.sampling && !settings.has("sampling") && !usual.sampling {
             let message = format!("`{}` has no sampling extinction", names[index]);
             let help = "add `sampling.constant.value = …` to it or to the problem, or sweep it";
             settings.fault_at(settings.span.clone(), "", message, help);
+        }
+        if own_kernel && order == Some(Order::Free) && !entry.is_order_free() {
+            let message = format!("`{}` has no order-free kernel", names[index]);
+            settings.fault("kernel", message, "product estimators have one; leave `kernel` out");
         }
         settings.close();
         Some(Self {
@@ -78,6 +117,7 @@ impl<P: Estimated> Written<P> {
             sampling: sampling?,
             control: control?,
             expect_biased: own_expect?,
+            order: order?,
         })
     }
 }

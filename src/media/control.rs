@@ -1,5 +1,7 @@
 //! The part of a medium that is integrated exactly.
 
+use fearless_simd::Level;
+
 use super::{Extinction, Medium, Piecewise};
 use crate::numeric::{Known, Lane, Span};
 
@@ -30,6 +32,23 @@ impl Control {
             },
             // One by one: kernels are not compiled for every pair of fields.
             Self::Field(field) => t.map(|t| field.extinction(t)),
+        }
+    }
+
+    /// `σ_c` at many distances, see [`super::look_up`].
+    pub fn look_up(&self, level: Level, at: &[f64], extinction: &mut [f64]) {
+        match self {
+            Self::None => extinction.fill(0.0),
+            Self::Pieces(pieces) => super::look_up(level, pieces, at, extinction),
+            Self::Field(field) => {
+                field.look_up(level, at, extinction);
+                let support = field.support();
+                for (extinction, &t) in extinction.iter_mut().zip(at) {
+                    if t < support.from || t > support.to {
+                        *extinction = 0.0;
+                    }
+                }
+            }
         }
     }
 

@@ -2,8 +2,11 @@
 
 use std::sync::Arc;
 
-use super::{FreeFlight, Profile, Visitor};
-use crate::numeric::{Known, Span};
+use fearless_simd::Level;
+
+use super::{Extinction, FreeFlight, Profile, Visitor};
+use crate::numeric::pack::in_fused_code;
+use crate::numeric::{Known, Lane, Span};
 
 /// A field along one ray, zero outside its support.
 ///
@@ -57,6 +60,12 @@ impl Medium {
         self.profile.visit(Lookups(at))
     }
 
+    /// `σ_t` at many distances inside the support, eight at a time on the hardware of a level; what
+    /// is beyond the last eight is left out.
+    pub fn look_up(&self, level: Level, at: &[f64], extinction: &mut [f64]) {
+        self.profile.visit(LookUp { level, at, extinction });
+    }
+
     /// `τ` over the part of `span` inside the support.
     #[must_use]
     pub fn optical_depth(&self, span: Span) -> Known {
@@ -84,11 +93,21 @@ impl Medium {
     }
 }
 
+/// For loops that need not be fast: compiled once for all fields, it finds the type anew each time.
+impl Extinction for Medium {
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        t.map(|t| self.profile.visit(Lookup(t)))
+    }
+}
+
 struct Lookup(f64);
 impl Visitor for Lookup {
     type Output = f64;
     fn visit<F: FreeFlight>(self, field: &F) -> f64 {
-        field.extinction(self.0)
+        in_fused_code(
+            #[inline(always)]
+            || field.extinction(self.0),
+        )
     }
 }
 
@@ -96,7 +115,28 @@ struct Lookups<'a>(&'a [f64]);
 impl Visitor for Lookups<'_> {
     type Output = Vec<f64>;
     fn visit<F: FreeFlight>(self, field: &F) -> Vec<f64> {
-        self.0.iter().map(|&t| field.extinction(t)).collect()
+        let mut found = vec![0.0; self.0.len()];
+        in_fused_code(
+            #[inline(always)]
+            || {
+                for (sigma, &t) in found.iter_mut().zip(self.0) {
+                    *sigma = field.extinction(t);
+                }
+            },
+        );
+        found
+    }
+}
+
+struct LookUp<'a> {
+    level: Level,
+    at: &'a [f64],
+    extinction: &'a mut [f64],
+}
+impl Visitor for LookUp<'_> {
+    type Output = ();
+    fn visit<F: FreeFlight>(self, field: &F) {
+        super::look_up(self.level, field, self.at, self.extinction);
     }
 }
 

@@ -16,11 +16,15 @@ pub mod grid_file;
 pub mod lattice;
 pub mod medium;
 pub mod piecewise;
+pub mod placement;
 pub mod search;
 pub mod voxels;
 
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
 use crate::catalogue::{Catalogue, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::{Known, Lane, Span, roots};
 
 pub use body::Body;
@@ -28,11 +32,37 @@ pub use control::Control;
 pub use course::Course;
 pub use medium::Medium;
 pub use piecewise::{Cursor, Piecewise};
+pub use placement::Placement;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
 pub trait Extinction: Send + Sync {
     /// The extinction at `t`, written once for every lane type.
     fn extinction<L: Lane>(&self, t: L) -> L;
+}
+
+/// Looks a field up at many distances, eight at a time on the hardware of a level; what is beyond the
+/// last eight is left out.
+pub fn look_up<F: Extinction>(level: Level, field: &F, at: &[f64], extinction: &mut [f64]) {
+    pack::on(level, Packs { field, at, extinction });
+}
+
+struct Packs<'a, F> {
+    field: &'a F,
+    at: &'a [f64],
+    extinction: &'a mut [f64],
+}
+
+impl<F: Extinction> Task for Packs<'_, F> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let (at, _) = self.at.as_chunks::<WIDTH>();
+        let (extinction, _) = self.extinction.as_chunks_mut::<WIDTH>();
+        for (at, extinction) in at.iter().zip(extinction) {
+            self.field.extinction(f64x8::from_slice(simd, at)).store_slice(extinction);
+        }
+    }
 }
 
 /// A field whose integral is known.

@@ -16,7 +16,7 @@ pub struct Piecewise {
     pub(super) knots: Vec<f64>,
     pub(super) left: Vec<f64>,
     pub(super) slope: Vec<f64>,
-    depth: Vec<f64>,
+    pub(super) depth: Vec<f64>,
     search: Search,
     /// Knot, left and slope of each piece, for lookups; the other columns are empty.
     rows: Vec<Row>,

@@ -68,7 +68,7 @@ pub const MUTANTS: &[StreamMutant] = &[
         name: "stream-one-lane",
         bug: "all lanes of a block have the same stream",
         check: "generator",
-        streams: |address| Streams::new([address.stream(); LANES]),
+        streams: |address| Streams { lanes: [address.stream(); LANES], ..address.streams() },
     },
     StreamMutant {
         name: "stream-lanes-shift",
@@ -77,7 +77,8 @@ pub const MUTANTS: &[StreamMutant] = &[
         streams: |address| {
             let lane =
                 |lane: usize| Address { block: 0, lane: address.block + lane as u64, ..address };
-            Streams::new(std::array::from_fn(|l| lane(l).stream()))
+            let lanes = std::array::from_fn(|l| lane(l).stream());
+            Streams { lanes, ..address.streams() }
         },
     },
 ];

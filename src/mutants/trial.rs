@@ -1,7 +1,7 @@
 //! The loop over a mutant's draws; the estimators' own is in `estimators/trial.rs`.
 
 use crate::estimators::{Draw, DrawBuffer, Experiment, Kernel, Setup};
-use crate::media::{Extinction, FreeFlight, Visitor};
+use crate::media::Extinction;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::{Stream, Streams};
@@ -39,27 +39,12 @@ impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
         buffer.clear();
         let mut copy = streams.clone();
         let streams = if D::REPLAYS { &mut copy } else { streams };
-        self.setup.problem.medium().profile().visit(Fill { trial: self, streams, count, buffer });
-    }
-}
-
-struct Fill<'a, P, D> {
-    trial: &'a Trial<P, D>,
-    streams: &'a mut Streams,
-    count: usize,
-    buffer: &'a mut DrawBuffer,
-}
-
-impl<P: Problem, D: Draws<P>> Visitor for Fill<'_, P, D> {
-    type Output = ();
-
-    fn visit<F: FreeFlight>(self, field: &F) {
-        let Self { trial, streams, count, buffer } = self;
+        let medium = self.setup.problem.medium();
         in_fused_code(
             #[inline(always)]
             || {
                 for _ in 0..count {
-                    let draw = trial.draws.draw(&trial.setup, field, streams.of_next_draw());
+                    let draw = self.draws.draw(&self.setup, medium, streams.of_next_draw());
                     buffer.push(&draw);
                 }
             },

@@ -19,7 +19,7 @@ use super::single::{self, Fused, Plain};
 use super::words::Words32;
 
 /// A row of a table: one line of the processor's cache.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 #[repr(align(64))]
 pub struct Row(pub [f64; 8]);
 

@@ -54,6 +54,30 @@ pub fn on<T: Task>(level: Level, task: T) -> T::Output {
     }
 }
 
+/// The same for tasks that only pay on wide hardware, AVX2 or more; a task is handed back elsewhere.
+///
+/// # Errors
+///
+/// The task, on x86 without AVX2.
+#[cfg(target_arch = "x86_64")]
+pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
+    match (level.as_avx512(), level.as_avx2()) {
+        (Some(simd), _) => Ok(vectorized(simd, task)),
+        (None, Some(simd)) => Ok(vectorized(simd, task)),
+        (None, None) => Err(task),
+    }
+}
+
+/// The same for tasks that only pay on wide hardware.
+///
+/// # Errors
+///
+/// None on this architecture.
+#[cfg(not(target_arch = "x86_64"))]
+pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
+    Ok(on(level, task))
+}
+
 /// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
 #[cfg(not(target_arch = "x86_64"))]
 pub fn on<T: Task>(level: Level, task: T) -> T::Output {

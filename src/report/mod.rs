@@ -3,6 +3,7 @@
 //! Floor 6. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
 //! It is one file and one line in the list at the foot of this page.
 
+pub mod bench;
 pub mod changes;
 pub mod console;
 pub mod number;

@@ -47,6 +47,25 @@ pub fn signed(z: f64) -> String {
     if z.abs() < 1e4 || !z.is_finite() { format!("{z:+.2}") } else { format!("{z:+.1e}") }
 }
 
+/// A time in the unit that suits it, from nanoseconds to years.
+#[must_use]
+pub fn time(seconds: f64) -> String {
+    const UNITS: [(f64, &str); 8] = [
+        (1e-6, "ns"),
+        (1e-3, "µs"),
+        (1.0, "ms"),
+        (60.0, "s"),
+        (3600.0, "min"),
+        (86_400.0, "h"),
+        (YEAR, "d"),
+        (f64::INFINITY, "a"),
+    ];
+    const SIZES: [f64; 8] = [1e-9, 1e-6, 1e-3, 1.0, 60.0, 3600.0, 86_400.0, YEAR];
+    const YEAR: f64 = 365.25 * 86_400.0;
+    let at = UNITS.iter().position(|unit| seconds < unit.0).unwrap_or(UNITS.len() - 1);
+    format!("{} {}", fixed(seconds / SIZES[at], 3), UNITS[at].1)
+}
+
 /// A share in percent.
 #[must_use]
 pub fn percent(share: f64) -> String {
@@ -109,5 +128,22 @@ mod tests {
         assert_eq!(signed(-0.314), "-0.31");
         assert_eq!(signed(2.0), "+2.00");
         assert_eq!(signed(123_456.0), "+1.2e5");
+    }
+
+    #[test]
+    fn times_have_a_unit_that_suits_them() {
+        let times = [
+            (2.5e-9, "2.50 ns"),
+            (4.2e-5, "42.0 µs"),
+            (0.5, "500 ms"),
+            (59.0, "59.0 s"),
+            (90.0, "1.50 min"),
+            (7200.0, "2.00 h"),
+            (1e6, "11.6 d"),
+            (1e12, "3.17e4 a"),
+        ];
+        for (seconds, text) in times {
+            assert_eq!(time(seconds), text);
+        }
     }
 }

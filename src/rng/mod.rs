@@ -5,7 +5,8 @@
 //! of it, so that any number of them makes the same draws.
 //!
 //! A block has [`LANES`] streams, and draw j of the block comes from stream j mod [`LANES`]: for
-//! every estimator, whether it draws one by one or in packs.
+//! every estimator, whether it draws one by one or in packs. One more stream serves order-free draws:
+//! it says how many walks of a request have how many collisions.
 
 pub mod xoshiro;
 
@@ -14,7 +15,7 @@ use rand_pcg::Pcg64;
 
 use crate::numeric::{Lane, pack::WIDTH};
 
-pub use xoshiro::Xoshiro;
+pub use xoshiro::{Lanes, Xoshiro};
 
 /// The generator of one stream of draws: xoshiro256++.
 pub type Stream = Xoshiro<u64>;
@@ -32,7 +33,8 @@ pub struct Address {
     pub experiment: u64,
     /// The block of draws within the experiment; [`PILOT`] for draws before the first.
     pub block: u64,
-    /// The lane within the block: below [`LANES`] for draws, [`PILOT`] for pilot rays.
+    /// The lane within the block: below [`LANES`] for draws, [`LANES`] for the numbers of collisions
+    /// of order-free draws, [`PILOT`] for pilot rays.
     pub lane: u64,
 }
 
@@ -79,7 +81,8 @@ impl Address {
     /// The streams of the block, at their beginnings.
     #[must_use]
     pub fn streams(self) -> Streams {
-        Streams::new(std::array::from_fn(|lane| Self { lane: lane as u64, ..self }.stream()))
+        let stream = |lane: usize| Self { lane: lane as u64, ..self }.stream();
+        Streams { lanes: std::array::from_fn(stream), turn: 0, counts: stream(LANES) }
     }
 }
 
@@ -88,17 +91,13 @@ impl Address {
 pub struct Streams {
     /// The streams, each where its last draw left it.
     pub lanes: [Stream; LANES],
-    /// The lane of the next draw.
+    /// The lane of the next draw; the first draw comes from the first.
     pub turn: usize,
+    /// The stream of the numbers of collisions of order-free draws.
+    pub counts: Stream,
 }
 
 impl Streams {
-    /// Streams of which the first makes the first draw.
-    #[must_use]
-    pub fn new(lanes: [Stream; LANES]) -> Self {
-        Self { lanes, turn: 0 }
-    }
-
     /// The stream of the next draw.
     #[inline(always)]
     pub fn of_next_draw(&mut self) -> &mut Stream {
@@ -168,6 +167,7 @@ mod tests {
         let mut beginnings: Vec<u64> = (0..4)
             .flat_map(|block| Address { block, ..base }.streams().words().take(LANES))
             .collect();
+        beginnings.extend((0..4).map(|block| Address { block, ..base }.streams().counts.word()));
         beginnings.push(base.pilot().next_u64());
         beginnings.sort_unstable();
         assert!(beginnings.windows(2).all(|pair| pair[0] != pair[1]));

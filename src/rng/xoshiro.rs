@@ -167,41 +167,54 @@ impl<W: Words> Xoshiro<W> {
     }
 }
 
-impl<S: Simd> Xoshiro<u64x8<S>> {
-    /// Eight streams side by side.
-    #[inline(always)]
+/// Eight streams side by side, between two kernels.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub struct Lanes([[u64; WIDTH]; 4]);
+
+impl Lanes {
+    /// The streams side by side.
     #[must_use]
-    pub fn side_by_side(simd: S, streams: &[Xoshiro<u64>; WIDTH]) -> Self {
-        let mut rows = [[0; WIDTH]; 4];
-        for (lane, stream) in streams.iter().enumerate() {
-            for (row, word) in rows.iter_mut().zip(stream.state) {
-                row[lane] = word;
-            }
-        }
-        let [a, b, c, d] = rows;
-        Self {
-            state: [
-                u64x8::from_slice(simd, &a),
-                u64x8::from_slice(simd, &b),
-                u64x8::from_slice(simd, &c),
-                u64x8::from_slice(simd, &d),
-            ],
-        }
+    pub fn of(streams: &[Xoshiro<u64>; WIDTH]) -> Self {
+        let word = |word: usize, lane: usize| streams[lane].state[word];
+        Self(std::array::from_fn(|i| std::array::from_fn(|lane| word(i, lane))))
     }
 
     /// Each of the streams by itself.
-    #[inline(always)]
     #[must_use]
     pub fn apart(&self) -> [Xoshiro<u64>; WIDTH] {
-        let mut streams = [Xoshiro { state: [0; 4] }; WIDTH];
-        for (i, words) in self.state.iter().enumerate() {
-            let mut row = [0; WIDTH];
-            words.store_slice(&mut row);
-            for (stream, word) in streams.iter_mut().zip(row) {
-                stream.state[i] = word;
-            }
+        std::array::from_fn(|lane| Xoshiro { state: self.0.map(|words| words[lane]) })
+    }
+
+    /// In the hardware's registers.
+    #[inline(always)]
+    #[must_use]
+    pub fn awake<S: Simd>(&self, simd: S) -> Xoshiro<u64x8<S>> {
+        let [a, b, c, d] = &self.0;
+        Xoshiro {
+            state: [
+                u64x8::from_slice(simd, a),
+                u64x8::from_slice(simd, b),
+                u64x8::from_slice(simd, c),
+                u64x8::from_slice(simd, d),
+            ],
         }
-        streams
+    }
+}
+
+impl<S: Simd> Xoshiro<u64x8<S>> {
+    /// Where the streams stand.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_rest(self) -> Lanes {
+        // One by one: a reference to the state would keep it out of the registers.
+        let [a, b, c, d] = self.state;
+        let mut lanes = Lanes([[0; WIDTH]; 4]);
+        a.store_slice(&mut lanes.0[0]);
+        b.store_slice(&mut lanes.0[1]);
+        c.store_slice(&mut lanes.0[2]);
+        d.store_slice(&mut lanes.0[3]);
+        lanes
     }
 }
 
@@ -260,13 +273,13 @@ mod tests {
         type Output = ([[f64; WIDTH]; 3], [Xoshiro<u64>; WIDTH]);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
-            let mut streams = Xoshiro::side_by_side(simd, &self.0);
+            let mut streams = Lanes::of(&self.0).awake(simd);
             let numbers = [streams.uniform(), streams.positive_uniform(), streams.ln_uniform()];
             let mut rows = [[0.0; WIDTH]; 3];
             for (row, number) in rows.iter_mut().zip(numbers) {
                 number.store_slice(row);
             }
-            (rows, streams.apart())
+            (rows, streams.at_rest().apart())
         }
     }
 

@@ -1,5 +1,9 @@
 //! How many lookups a draw makes.
 
+use statrs::function::gamma::{gamma, gamma_lr};
+
+use super::product::Integrals;
+
 /// Above this mean a law is left without probabilities.
 pub const LARGEST_MEAN: f64 = 2000.0;
 /// Probabilities below this, relative to the largest, are left out.
@@ -40,6 +44,48 @@ impl CountLaw {
             Window::default().add(&mut pmf, 1.0, mean, 0);
         }
         Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
+    }
+}
+
+impl CountLaw {
+    /// The lookups of an order-free draw: of N ~ Poisson(Λ) collisions it looks at one after the
+    /// other, in any order, until it has survived them all or one has killed it. Each lies anywhere,
+    /// so each is survived with the same chance `s = ∫σ̂q/Λ`.
+    ///
+    /// ```text
+    /// P(M = 0) = P(N = 0),   P(M = m) = s^{m−1} ((1 − s) P(N ≥ m) + s P(N = m))
+    /// E[M] = (1 − e^{−(1−s)Λ})/(1 − s)
+    /// ```
+    ///
+    /// Without probabilities, for Λ > 2000, moments are those of a walk with `r` constant.
+    #[must_use]
+    pub fn in_layers(collisions: f64, survival: f64) -> Self {
+        let poisson = Self::poisson(collisions);
+        let killed = 1.0 - survival;
+        if killed * collisions <= 1e-13 {
+            return poisson;
+        }
+        let mut pmf = poisson.pmf;
+        let (mut beyond, mut power) = (0.0, vec![1.0; pmf.len()]);
+        for m in 2..pmf.len() {
+            power[m] = power[m - 1] * survival;
+        }
+        for m in (1..pmf.len()).rev() {
+            let there = pmf[m];
+            beyond += there;
+            pmf[m] = power[m] * (killed * beyond + survival * there);
+        }
+        while pmf.last().is_some_and(|&last| last < 1e-17) {
+            pmf.pop();
+        }
+        let lookups: [f64; 4] = std::array::from_fn(|k| {
+            // k ∫₀^Λ e^{−(1−s)x} (sx)^{k−1} dx
+            let order = (k + 1) as f64;
+            let whole = survival.powf(order - 1.0) * gamma(order + 1.0) / killed.powf(order);
+            whole * gamma_lr(order, killed * collisions)
+        });
+        let integrals = Integrals { lookups, flown: collisions, ..Integrals::default() };
+        Self { pmf, poisson: false, ..integrals.count() }
     }
 }
 
@@ -109,6 +155,26 @@ pub fn poisson(n: u32, mean: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn moments_in_layers_are_those_of_the_probabilities() {
+        for (collisions, survival) in [(0.3, 0.9), (8.0, 0.0), (20.0, 0.83), (300.0, 0.999)] {
+            let law = CountLaw::in_layers(collisions, survival);
+            let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
+                law.pmf.iter().enumerate().map(|(m, p)| f(m as f64) * p).sum()
+            };
+            let mean = moment(&|m| m);
+            let variance = moment(&|m| (m - mean).powi(2));
+            let kurtosis = moment(&|m| (m - mean).powi(4)) / (variance * variance);
+            assert!((moment(&|_| 1.0) - 1.0).abs() < 1e-12);
+            assert!((law.mean / mean - 1.0).abs() < 1e-12, "{collisions}, {survival}");
+            assert!((law.variance / variance - 1.0).abs() < 1e-9, "{collisions}, {survival}");
+            assert!((law.kurtosis / kurtosis - 1.0).abs() < 1e-8, "{collisions}, {survival}");
+            let exact = -(-(1.0 - survival) * collisions).exp_m1() / (1.0 - survival);
+            assert!((law.mean / exact - 1.0).abs() < 1e-12);
+        }
+        assert!(CountLaw::in_layers(5.0, 1.0).poisson, "nothing kills");
+    }
 
     #[test]
     fn poisson_probabilities_sum_to_one() {

@@ -10,6 +10,8 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
+    /// The same of an order-free draw; `None` where there is none.
+    pub lookups_in_layers: Option<CountLaw>,
     /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
     pub random_numbers: Option<f64>,
     /// The whole law of the draw, where it is known.
@@ -154,11 +156,23 @@ impl Prediction {
         Self {
             channels,
             lookups: None,
+            lookups_in_layers: None,
             random_numbers: None,
             law: None,
             covariances: Vec::new(),
             increments: Vec::new(),
             stable_share: self.stable_share,
+        }
+    }
+
+    /// The same of order-free draws: their values have the same law, their lookups may have not.
+    #[must_use]
+    pub fn order_free(self) -> Self {
+        Self {
+            lookups: self.lookups_in_layers,
+            lookups_in_layers: None,
+            random_numbers: None,
+            ..self
         }
     }
 
@@ -168,6 +182,7 @@ impl Prediction {
         Self {
             channels: vec![channel],
             lookups: Some(lookups),
+            lookups_in_layers: None,
             random_numbers: None,
             law: None,
             covariances: Vec::new(),

@@ -3,6 +3,7 @@
 //! `UPDATE_GOLDEN=1 cargo test --test golden` rewrites the files; look at what changed before you
 //! commit it.
 
+mod bench;
 mod record;
 
 use std::path::{Path, PathBuf};

@@ -66,13 +66,13 @@ impl Estimator<FreeFlight> for Woodcock {
         Draw::free([ray.length()], lookups)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<FreeFlight>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::flight(level, setup, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::flight(level, setup, medium, request)
     }
 }

@@ -74,6 +74,7 @@ impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
     const IN_PACKETS: bool = true;
+    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -97,13 +98,13 @@ impl Estimator<Transmittance> for DoubleParticle {
         walk::product(setup, &Weight, medium, rng)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::product(level, setup, &Weight, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::product(level, setup, &Weight, medium, request)
     }
 }

@@ -35,6 +35,7 @@ impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const KEEPS_BOOKS: bool = true;
     const IN_PACKETS: bool = true;
+    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -58,13 +59,13 @@ impl Estimator<Transmittance> for Ratio {
         walk::product(setup, &Weight, medium, rng)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::product(level, setup, &Weight, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::product(level, setup, &Weight, medium, request)
     }
 }

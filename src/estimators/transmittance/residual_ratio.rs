@@ -36,6 +36,7 @@ impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
     const IN_PACKETS: bool = true;
+    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -72,13 +73,13 @@ impl Estimator<Transmittance> for ResidualRatio {
         walk::product(setup, &Weight, medium, rng)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::product(level, setup, &Weight, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::product(level, setup, &Weight, medium, request)
     }
 }

@@ -56,6 +56,7 @@ impl Estimator<Transmittance> for SingleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
     const KEEPS_BOOKS: bool = true;
     const IN_PACKETS: bool = true;
+    const ORDER_FREE: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let rule = settings.word("rule", &RULES);
@@ -116,13 +117,13 @@ impl Estimator<Transmittance> for SingleParticle {
         walk::product(setup, &self.rule, medium, rng)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::product(level, setup, &self.rule, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::product(level, setup, &self.rule, medium, request)
     }
 }

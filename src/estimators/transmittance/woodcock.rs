@@ -46,6 +46,7 @@ impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const KEEPS_BOOKS: bool = true;
     const IN_PACKETS: bool = true;
+    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -70,13 +71,13 @@ impl Estimator<Transmittance> for Woodcock {
         walk::product(setup, &Null, medium, rng)
     }
 
-    fn draw_packets<M: Extinction>(
+    fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
         medium: &M,
-        request: Request,
-    ) {
-        packet::product(level, setup, &Null, medium, request);
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::product(level, setup, &Null, medium, request)
     }
 }

@@ -9,6 +9,7 @@
 //! temporary name and renamed.
 
 pub mod compare;
+pub(in crate::harness) mod file;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -17,7 +18,6 @@ use serde::{Deserialize, Serialize};
 
 use super::case::Case;
 use super::record::{CaseRecord, Record, Row};
-use crate::files;
 
 /// The version of the file's form.
 pub const SCHEMA: u32 = 1;
@@ -121,7 +121,7 @@ pub enum BaselineError {
     },
     /// Another version of the form.
     #[error(
-        "{}: a baseline of form {found}, this program reads {SCHEMA}; \
+        "{}: a baseline of form {found}, this program reads {expected}; \
          make it anew with --save-baseline", path.display()
     )]
     Schema {
@@ -129,6 +129,8 @@ pub enum BaselineError {
         path: PathBuf,
         /// Its form.
         found: u64,
+        /// The form that the program reads.
+        expected: u32,
     },
     /// The file cannot be written.
     #[error("{}: cannot be written: {cause}; give another folder with --baselines", path.display())]
@@ -188,30 +190,11 @@ impl Baseline {
     ///
     /// There is none, or it is not what this program writes.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        let path = path.to_owned();
-        let text = match std::fs::read(&path) {
-            Ok(text) => text,
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {
-                return Err(BaselineError::Missing(path));
-            }
-            Err(cause) => return Err(BaselineError::Unreadable { path, cause }),
-        };
-        let tree: serde_json::Value = match serde_json::from_slice(&text) {
-            Ok(tree) => tree,
-            Err(cause) => return Err(BaselineError::Broken { path, cause }),
-        };
-        // The form is asked first: what else is there depends on it.
-        if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
-            && found != u64::from(SCHEMA)
-        {
-            return Err(BaselineError::Schema { path, found });
-        }
-        let stored: Self = match serde_json::from_value(tree) {
-            Ok(stored) => stored,
-            Err(cause) => return Err(BaselineError::Broken { path, cause }),
-        };
+        let stored: Self = file::read(path, SCHEMA)?;
         match stored.entries.iter().find(|entry| !entry.makes_sense()) {
-            Some(entry) => Err(BaselineError::Nonsense { path, id: entry.id.clone() }),
+            Some(entry) => {
+                Err(BaselineError::Nonsense { path: path.to_owned(), id: entry.id.clone() })
+            }
             None => Ok(stored),
         }
     }
@@ -222,9 +205,7 @@ impl Baseline {
     ///
     /// Its folder cannot be made or written into.
     pub fn writable(path: &Path) -> Result<(), BaselineError> {
-        folder_of(path)
-            .and_then(|()| files::writable(path))
-            .map_err(|cause| unwritable(path, cause))
+        file::writable(path)
     }
 
     /// Writes the file under a temporary name, then renames it.
@@ -233,22 +214,8 @@ impl Baseline {
     ///
     /// The system refuses.
     pub fn write(&self, path: &Path) -> Result<(), BaselineError> {
-        let write = || -> io::Result<()> {
-            let text = serde_json::to_string_pretty(self).map_err(io::Error::other)?;
-            folder_of(path)?;
-            files::replace(path, (text + "\n").as_bytes())
-        };
-        write().map_err(|cause| unwritable(path, cause))
+        file::write(self, path)
     }
-}
-
-/// Makes the folder of a file.
-fn folder_of(path: &Path) -> io::Result<()> {
-    std::fs::create_dir_all(path.parent().unwrap_or(Path::new(".")))
-}
-
-fn unwritable(path: &Path, cause: io::Error) -> BaselineError {
-    BaselineError::Unwritable { path: path.to_owned(), cause }
 }
 
 /// A hash of the program that runs: FNV-1a over words of 8 bytes.

@@ -30,6 +30,8 @@ pub struct Subject<'a> {
     pub expect_biased: bool,
     /// Whether each draw keeps its books, see [`crate::estimators::walk::Books`].
     pub keeps_books: bool,
+    /// Whether draws come one like the other; order-free ones come sorted by their lookups.
+    pub is_in_turn: bool,
     /// The variance of one draw by pilot draws, where theory has none.
     pub pilot_variance: Option<f64>,
 }

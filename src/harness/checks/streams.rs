@@ -73,6 +73,7 @@ impl Check for Streams {
         let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
         let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
         let enough = enough && by_one <= MOST_BY_ONE;
+        let enough = enough && subject.is_in_turn;
         if subject.expect_biased || is_faint(subject, channel) || !enough {
             return Vec::new();
         }

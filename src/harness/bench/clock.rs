@@ -1,0 +1,190 @@
+//! One round of one experiment, each way of drawing timed in turn.
+//!
+//! Only the filling of buffers is timed. Before the first lap of each way a buffer is filled and
+//! thrown away, so that none pays for what is read or mapped for the first time; every other round
+//! goes through the ways backwards, so that none is always the second.
+
+use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
+
+use cpu_time::ThreadTime;
+use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
+
+use super::curve::Sample;
+use crate::estimators::{DrawBuffer, Kernel};
+use crate::harness::plan::{BLOCK, Planned};
+
+/// What time is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Clock {
+    /// The time that the drawing thread had a processor: other processes hardly count.
+    Processor,
+    /// The time on the wall, the only one that tells what several threads gain.
+    Elapsed,
+}
+
+impl Clock {
+    /// The clock for so many threads.
+    #[must_use]
+    pub fn of(threads: usize) -> Self {
+        if threads > 1 { Self::Elapsed } else { Self::Processor }
+    }
+
+    /// The word in tables and files.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Processor => "processor",
+            Self::Elapsed => "elapsed",
+        }
+    }
+
+    /// The seconds that something takes.
+    fn time(self, f: impl FnOnce()) -> f64 {
+        match self {
+            Self::Processor => {
+                let begin = ThreadTime::now();
+                f();
+                begin.elapsed().as_secs_f64()
+            }
+            Self::Elapsed => {
+                let begin = Instant::now();
+                f();
+                begin.elapsed().as_secs_f64()
+            }
+        }
+    }
+}
+
+/// What one round says of one experiment, in seconds for a draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lap {
+    /// On one thread, as a run draws.
+    pub single: f64,
+    /// On all threads together, where there are several.
+    pub together: Option<f64>,
+    /// On one thread, one draw after the other.
+    pub plain: f64,
+}
+
+/// What times.
+#[derive(Debug, Clone, Copy)]
+pub struct Stopwatch {
+    /// What time is.
+    pub clock: Clock,
+    /// The vector hardware.
+    pub level: Level,
+    /// How many threads draw at once.
+    pub threads: usize,
+}
+
+impl Stopwatch {
+    /// The vector hardware in a word.
+    #[must_use]
+    pub fn level_name(&self) -> String {
+        let name = format!("{:?}", self.level);
+        name.split('(').next().unwrap_or_default().to_lowercase()
+    }
+
+    /// Times a round of an experiment; `sample` sees its draws. The rounds' draws differ, the ways
+    /// of drawing do not differ in them.
+    pub fn lap(&self, planned: &Planned, round: u32, draws: u64, sample: &mut Sample) -> Lap {
+        let mut lap = Lap { single: 0.0, together: None, plain: 0.0 };
+        let mut ways = [Way::Packets, Way::Together, Way::Plain];
+        if round % 2 == 1 {
+            ways.reverse();
+        }
+        sample.begin();
+        for way in ways {
+            match way {
+                Way::Packets => {
+                    let kernel = Kernel::Packets(self.level);
+                    let look = |buffer: &DrawBuffer| sample.absorb(buffer);
+                    lap.single = self.alone(planned, kernel, (round, draws), look);
+                }
+                Way::Together if self.threads > 1 => {
+                    lap.together = Some(self.together(planned, round, draws));
+                }
+                Way::Together => {}
+                Way::Plain => {
+                    lap.plain = self.alone(planned, Kernel::Single, (round, draws), |_| {});
+                }
+            }
+        }
+        sample.end();
+        lap
+    }
+
+    /// Seconds for a draw on this thread; `look` sees each buffer, untimed.
+    fn alone(
+        &self,
+        planned: &Planned,
+        kernel: Kernel,
+        (round, draws): (u32, u64),
+        mut look: impl FnMut(&DrawBuffer),
+    ) -> f64 {
+        let mut seconds = 0.0;
+        let first = u64::from(round) * draws.div_ceil(BLOCK);
+        let mut buffer = warm(planned, kernel, draws);
+        each_buffer(planned, kernel, (first, draws), |fill| {
+            seconds += self.clock.time(|| fill(&mut buffer));
+            look(&buffer);
+        });
+        seconds / draws as f64
+    }
+
+    /// Seconds for a draw on all threads of the pool, each of which makes so many.
+    fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
+        let (kernel, blocks) = (Kernel::Packets(self.level), draws.div_ceil(BLOCK));
+        let buffers = rayon::broadcast(|_| Mutex::new(warm(planned, kernel, draws)));
+        let seconds = self.clock.time(|| {
+            rayon::broadcast(|context| {
+                let (thread, threads) = (context.index(), context.num_threads() as u64);
+                let turn = u64::from(round) * threads + thread as u64;
+                // Each thread has a buffer of its own: none waits.
+                let mut buffer = buffers[thread].lock().unwrap_or_else(PoisonError::into_inner);
+                each_buffer(planned, kernel, (turn * blocks, draws), |fill| fill(&mut buffer));
+            });
+        });
+        seconds / (draws as f64 * self.threads as f64)
+    }
+}
+
+/// A way of drawing.
+#[derive(Clone, Copy)]
+enum Way {
+    Packets,
+    Together,
+    Plain,
+}
+
+/// A buffer that has been filled once.
+fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
+    let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
+    let mut buffer = DrawBuffer::new(channels);
+    let draws = draws.min(DrawBuffer::LENGTH as u64);
+    each_buffer(planned, kernel, (0, draws), |fill| fill(&mut buffer));
+    buffer
+}
+
+/// Calls `f` for each buffer of so many draws from a block on, with what fills it.
+fn each_buffer(
+    planned: &Planned,
+    kernel: Kernel,
+    (first, draws): (u64, u64),
+    mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer)),
+) {
+    let Ok(ready) = &planned.outcome else { return };
+    for block in 0..draws.div_ceil(BLOCK) {
+        let mut streams = planned.streams(first + block);
+        let mut left = (draws - block * BLOCK).min(BLOCK);
+        while left > 0 {
+            #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
+            let count = left.min(DrawBuffer::LENGTH as u64) as usize;
+            f(&mut |buffer| ready.experiment.fill_by(kernel, &mut streams, count, buffer));
+            left -= count as u64;
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! From what was timed and drawn to rows.
+
+use std::collections::BTreeMap;
+
+use super::clock::Lap;
+use super::curve::{ChannelSample, Sample};
+use super::figures::{ERRORS, efficiency, time_to};
+use super::record::{BenchRow, CurvePoint, Times};
+use super::spread::Spread;
+use crate::estimators::Refusal;
+use crate::harness::plan::Planned;
+use crate::harness::scenario::Ready;
+use crate::theory::Channel;
+
+/// A relative variance below this is rounding.
+const CERTAIN: f64 = 1e-20;
+
+/// What is said where a round took no time that the clock could tell.
+const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";
+
+/// The rounds of one experiment.
+#[derive(Debug, Clone, Default)]
+pub struct Laps(Vec<Lap>);
+
+impl Laps {
+    /// Adds a round.
+    pub fn push(&mut self, lap: Lap) {
+        self.0.push(lap);
+    }
+
+    /// A figure over the rounds; `None` where the clock was too coarse for one of them.
+    fn spread(&self, figure: impl Fn(&Lap) -> f64) -> Option<Spread> {
+        let figures: Vec<f64> = self.0.iter().map(figure).collect();
+        let is_told = figures.iter().all(|x| x.is_finite() && *x > 0.0);
+        Spread::of(figures).filter(|_| is_told)
+    }
+}
+
+/// The row of an experiment that cannot be drawn.
+#[must_use]
+pub fn refused(planned: &Planned, refusal: &Refusal) -> BenchRow {
+    BenchRow { is_refused: true, reason: refusal.to_string(), is_first: true, ..named(planned) }
+}
+
+fn named(planned: &Planned) -> BenchRow {
+    let names = planned.names.clone();
+    BenchRow {
+        estimator: names.estimator,
+        sampling: names.sampling,
+        sampling_kind: names.sampling_kind,
+        control: names.control,
+        swept: planned.variation.map(|(_, value)| value),
+        ..BenchRow::default()
+    }
+}
+
+/// The rows of an experiment, one to a channel.
+#[must_use]
+pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) -> Vec<BenchRow> {
+    let observed = sample.lookups.moments().map(|moments| moments.mean);
+    let predicted_lookups = ready.prediction.lookups.as_ref().map(|law| law.mean);
+    let lookups = predicted_lookups.or(observed);
+    let both = ready.prediction.channels.iter().zip(&sample.channels).enumerate();
+    let rows = both.map(|(index, (channel, drawn))| {
+        let truth = channel.truth.value;
+        let moments = drawn.tally.moments();
+        let variance = moments.and_then(|m| m.variance).map(|v| v * truth * truth);
+        let variance = variance.filter(|v| v.is_finite());
+        let (known, reason) = known_variance(channel, variance, planned.expect_biased);
+        let curve = match channel.moments {
+            // What is left of the error is rounding, and does not fall; a bias is more than that.
+            Some(m) if m.relative[0] <= CERTAIN && !planned.expect_biased => Vec::new(),
+            _ => curve(sample, drawn, (truth, known), lookups),
+        };
+        let times = times(laps, &curve, (truth, known), lookups);
+        let reason = if times.is_some() { reason } else { TOO_SHORT.to_owned() };
+        BenchRow {
+            is_first: index == 0,
+            channel: channel.name.clone(),
+            draws: Some(drawn.tally.draws),
+            mean: moments.map(|m| truth + m.mean * truth).filter(|mean| mean.is_finite()),
+            truth: Some(truth),
+            variance,
+            predicted_variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
+            lookups_per_draw: observed,
+            predicted_lookups,
+            fom: known.zip(lookups).and_then(|(v, n)| efficiency(v, n)),
+            reason,
+            times,
+            curve,
+            ..named(planned)
+        }
+    });
+    rows.collect()
+}
+
+/// The variance that an error falls with, or why there is none.
+fn known_variance(
+    channel: &Channel,
+    sample: Option<f64>,
+    expect_biased: bool,
+) -> (Option<f64>, String) {
+    let none = |reason: &str| (None, reason.to_owned());
+    if expect_biased {
+        return none("declared biased: its error does not fall to 0, so no time leads to it");
+    }
+    let (unit, predicted) = (channel.truth.value, channel.moments.map(|m| m.variance()));
+    match predicted.or(sample) {
+        Some(v) if v <= CERTAIN * unit * unit => match predicted {
+            Some(_) => {
+                none("no variance: each draw is the answer, and there is no error to wait for")
+            }
+            None => none("all draws are the same and theory has no variance: no time to an error"),
+        },
+        Some(v) if v.is_finite() => (Some(v), String::new()),
+        Some(_) => none("the variance in theory is beyond measure: no time to an error"),
+        None => none("neither theory nor the draws have a variance: no time to an error"),
+    }
+}
+
+fn curve(
+    sample: &Sample,
+    drawn: &ChannelSample,
+    (truth, variance): (f64, Option<f64>),
+    lookups: Option<f64>,
+) -> Vec<CurvePoint> {
+    let looks = sample.looks.iter().enumerate();
+    let point = |(look, &draws): (usize, &u64)| {
+        let error = drawn.error(look)?;
+        let n = draws as f64;
+        Some(CurvePoint {
+            draws,
+            lookups: n * lookups?,
+            error: error.typical * truth,
+            relative: error.typical,
+            least: error.least,
+            most: error.most,
+            predicted: variance.map(|v| (v / n).sqrt() / truth),
+        })
+    };
+    looks.filter_map(point).collect()
+}
+
+fn times(
+    laps: &Laps,
+    curve: &[CurvePoint],
+    (truth, variance): (f64, Option<f64>),
+    lookups: Option<f64>,
+) -> Option<Times> {
+    let draw = laps.spread(|lap| lap.together.unwrap_or(lap.single))?;
+    let plain = laps.spread(|lap| lap.plain)?;
+    let together = laps.0.first().is_some_and(|lap| lap.together.is_some());
+    let scaling = laps.spread(|lap| lap.single / lap.together.unwrap_or(lap.single));
+    let at = |per_draw: f64| curve.iter().map(|point| point.draws as f64 * per_draw).collect();
+    Some(Times {
+        ns_per_draw: draw.times(1e9),
+        plain_ns_per_draw: plain.times(1e9),
+        speedup: laps.spread(|lap| lap.plain / lap.single)?,
+        scaling: scaling.filter(|_| together),
+        draws_per_second: 1.0 / draw.median,
+        ns_per_lookup: lookups.filter(|&n| n > 0.0).map(|n| draw.median * 1e9 / n),
+        seconds_to: variance.map(|v| ERRORS.map(|error| time_to(error, v, truth, draw.median))),
+        efficiency: variance.and_then(|v| efficiency(v, draw.median)),
+        seconds: at(draw.median),
+        plain_seconds: at(plain.median),
+    })
+}
+
+/// Chooses what a plot shows: of each estimator, given by its number in the case, the last channel
+/// of the sweep point with the largest figure of merit.
+pub fn choose(rows: &mut [BenchRow], estimators: &[usize]) {
+    let merit = |row: &BenchRow| row.fom.unwrap_or(0.0);
+    let mut best: BTreeMap<usize, usize> = BTreeMap::new();
+    for (at, &estimator) in estimators.iter().enumerate() {
+        let is_last = rows.get(at + 1).is_none_or(|next| next.is_first);
+        let is_better = |&other: &usize| merit(&rows[at]) > merit(&rows[other]);
+        if is_last && !rows[at].curve.is_empty() && best.get(&estimator).is_none_or(is_better) {
+            best.insert(estimator, at);
+        }
+    }
+    for at in best.into_values() {
+        rows[at].is_shown = true;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(draws: u64) -> CurvePoint {
+        CurvePoint {
+            draws,
+            lookups: draws as f64,
+            error: 0.1,
+            relative: 0.1,
+            least: 0.1,
+            most: 0.1,
+            predicted: None,
+        }
+    }
+
+    fn row(estimator: &str, swept: Option<f64>, channel: &str, fom: f64) -> BenchRow {
+        BenchRow {
+            is_first: channel.is_empty() || channel == "T(1)",
+            estimator: estimator.to_owned(),
+            channel: channel.to_owned(),
+            swept,
+            fom: Some(fom),
+            curve: vec![point(64)],
+            ..BenchRow::default()
+        }
+    }
+
+    #[test]
+    fn a_plot_shows_the_best_of_a_sweep_and_the_last_of_a_curve() {
+        let mut rows = vec![
+            row("ratio", Some(1.0), "", 2.0),
+            row("ratio", Some(2.0), "", 3.0),
+            row("ratio", Some(4.0), "", 1.0),
+            row("regular", None, "", 0.0),
+            row("double", None, "T(1)", 9.0),
+            row("double", None, "T(2)", 5.0),
+            row("double", None, "T(3)", 1.0),
+            row("double", None, "T(1)", 9.0),
+        ];
+        choose(&mut rows, &[0, 0, 0, 1, 2, 2, 2, 3]);
+        let shown: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].is_shown).collect();
+        assert_eq!(shown, [1, 3, 6, 7]);
+    }
+
+    #[test]
+    fn figures_agree_with_each_other() {
+        let lap = |single| Lap { single, together: None, plain: 6e-8 };
+        let laps = Laps(vec![lap(2e-8), lap(1e-8), lap(3e-8)]);
+        let (truth, variance, lookups) = (0.5, 0.02, 4.0);
+        let times = times(&laps, &[point(64), point(100)], (truth, Some(variance)), Some(lookups));
+        let times = times.expect("rounds");
+        let near = |a: f64, b: f64| assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        near(times.ns_per_draw.median, 20.0);
+        near(times.draws_per_second, 5e7);
+        near(times.ns_per_lookup.expect("lookups"), 5.0);
+        near(times.speedup.median, 3.0);
+        near(times.speedup.least, 2.0);
+        near(times.speedup.most, 6.0);
+        near(times.efficiency.expect("a variance"), 1.0 / (variance * 2e-8));
+        for (seconds, error) in times.seconds_to.expect("a variance").iter().zip(ERRORS) {
+            // After that time the standard error is what was asked.
+            let draws = seconds * times.draws_per_second;
+            near((variance / draws).sqrt() / truth, error);
+        }
+        near(times.seconds[1], 2e-6);
+        assert_eq!(times.scaling, None);
+    }
+
+    #[test]
+    fn a_clock_that_stands_still_tells_nothing() {
+        let lap = |single| Lap { single, together: None, plain: 6e-8 };
+        let laps = Laps(vec![lap(2e-8), lap(0.0)]);
+        assert_eq!(times(&laps, &[point(64)], (0.5, Some(0.1)), Some(1.0)), None);
+    }
+}

@@ -1,0 +1,119 @@
+//! Where a collision lies that may be anywhere: a distance with the density σ̂/Λ.
+//!
+//! ```text
+//! ∫σ̂ from the first knot to t = uΛ,  u uniform
+//! ```
+
+use super::Piecewise;
+use super::search::Search;
+use crate::numeric::{Lane, Row};
+
+/// The inverse of a field's optical depth, for lanes.
+#[derive(Debug, Clone)]
+pub struct Placement<'a> {
+    depth: f64,
+    shape: Shape<'a>,
+}
+
+#[derive(Debug, Clone)]
+enum Shape<'a> {
+    /// One value.
+    Even { from: f64, length: f64, to: f64, mean_free_path: f64 },
+    /// The piece that holds an optical depth; its knot, first value and slope, and the depth before.
+    Pieces { search: Search, rows: Vec<Row>, field: &'a Piecewise },
+}
+
+impl<'a> Placement<'a> {
+    /// In a field that is not negative.
+    #[must_use]
+    pub fn new(field: &'a Piecewise) -> Self {
+        let depth = field.depth[field.depth.len() - 1];
+        let shape = if let Some(value) = field.single_value() {
+            let (from, to) = (field.knots[0], field.knots[1]);
+            Shape::Even { from, length: to - from, to, mean_free_path: 1.0 / value }
+        } else {
+            let row = |i: usize| {
+                let columns = [field.knots[i], field.left[i], field.slope[i], field.depth[i]];
+                let mut row = Row::default();
+                row.0[..columns.len()].copy_from_slice(&columns);
+                row
+            };
+            let rows = (0..field.left.len()).map(row).collect();
+            Shape::Pieces { search: Search::new(&field.depth), rows, field }
+        };
+        Self { depth, shape }
+    }
+
+    /// Λ.
+    #[must_use]
+    pub fn depth(&self) -> f64 {
+        self.depth
+    }
+
+    /// `1/σ̂`, where σ̂ has one value.
+    #[inline(always)]
+    #[must_use]
+    pub fn mean_free_path(&self) -> Option<f64> {
+        match self.shape {
+            Shape::Even { mean_free_path, .. } => Some(mean_free_path),
+            Shape::Pieces { .. } => None,
+        }
+    }
+
+    /// The distance for a number in `[0, 1)`, and the mean free path `1/σ̂` there.
+    ///
+    /// Within a piece, `y₀ s + k s²/2 = d` as in [`Piecewise::fly`], and `σ̂ = √(y₀² + 2kd)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn at<L: Lane>(&self, uniform: L) -> (L, L) {
+        match &self.shape {
+            &Shape::Even { from, length, to, mean_free_path } => {
+                let t = uniform.times_plus(uniform.each(length), uniform.each(from));
+                (t.or_less(t.each(to)), t.each(mean_free_path))
+            }
+            Shape::Pieces { search, rows, field } => {
+                let depth = uniform * self.depth;
+                let [knot, left, slope, before, _] = search.piece(depth).columns(rows);
+                let depth = depth - before;
+                let least = depth.each(f64::MIN_POSITIVE);
+                let here = (left * left + slope * 2.0 * depth).or_more(least).root();
+                let end = depth.each(field.knots[field.left.len()]);
+                let t = knot + depth * 2.0 / (left + here);
+                (t.or_less(end), depth.each(1.0) / here)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::media::{FreeFlight, OpticalDepth};
+    use crate::numeric::Span;
+
+    /// The place of a number is where a flight through its share of the optical depth ends.
+    #[test]
+    fn a_place_inverts_the_optical_depth() {
+        let many: Vec<f64> = (0..=40).map(|i| 0.1 * f64::from(i)).collect();
+        let values: Vec<f64> = (0..40).map(|i| f64::from(i % 7)).collect();
+        let fields = [
+            Piecewise::constant(0.7, Span::new(-1.0, 4.0)),
+            Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.0, 1.5, 0.4, 0.9]),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
+            Piecewise::steps(&many, &values),
+        ];
+        for field in fields {
+            let support = Span::new(field.knots()[0], field.knots()[field.knots().len() - 1]);
+            let placement = Placement::new(&field);
+            let whole = field.optical_depth(support).value;
+            assert!((placement.depth() - whole).abs() <= 1e-14 * whole);
+            for step in 0..1000 {
+                let uniform = (f64::from(step) + 0.37) / 1000.0;
+                let (t, mean_free_path) = placement.at(uniform);
+                let flown = field.free_flight(support, uniform * whole).expect("before the end");
+                assert!((t - flown).abs() < 1e-13, "{t} and {flown}");
+                assert!((1.0 / mean_free_path - field.value(t)).abs() < 1e-12, "at {t}");
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! What changed since a stored bench, in words.
+
+use crate::harness::bench::compare::{Change, Comparison};
+use crate::harness::bench::spread::Spread;
+use crate::report::number::{fixed, short};
+
+/// What was compared, and how.
+#[must_use]
+pub fn remarks(comparison: &Comparison) -> Vec<String> {
+    let Comparison { name, tolerance, compared, .. } = comparison;
+    let tolerance = short(*tolerance, 3);
+    let mut remarks = vec![format!(
+        "baseline {name}: {compared} times per draw compared; a change is one whose rounds do not \
+         overlap and whose ratio is beyond the tolerance of {tolerance}"
+    )];
+    if let Some([before, now]) = &comparison.levels {
+        remarks.push(format!("the vector hardware differs: {before} then, {now} now"));
+    }
+    for (what, ids) in [
+        ("not in the baseline", &comparison.added),
+        ("only in the baseline", &comparison.missing),
+        ("not compared, the case was rewritten", &comparison.rewritten),
+    ] {
+        if !ids.is_empty() {
+            remarks.push(format!("{what} ({}): {}", ids.len(), ids.join(", ")));
+        }
+    }
+    if comparison.changes.is_empty() {
+        remarks.push("no change".to_owned());
+    }
+    remarks
+}
+
+/// What changed, what became slower first: whether it did, and the numbers.
+#[must_use]
+pub fn all(comparison: &Comparison) -> Vec<(bool, String)> {
+    let mut told: Vec<_> =
+        comparison.changes.iter().map(|change| (change.is_regression, line(change))).collect();
+    told.sort_by_key(|(is_worse, _)| !is_worse);
+    told
+}
+
+fn line(change: &Change) -> String {
+    let [before, now] = change.ns_per_draw.map(of_rounds);
+    let [earlier, later] = change.speedup.map(of_rounds);
+    let ratio = fixed(change.ratio, 3);
+    format!(
+        "{}: time per draw {before} → {now} ns, ratio {ratio}; speedup over the plain loop \
+         {earlier} → {later}",
+        change.id
+    )
+}
+
+/// The median with the least and the most of the rounds.
+fn of_rounds(spread: Spread) -> String {
+    let [median, least, most] = [spread.median, spread.least, spread.most].map(|x| short(x, 3));
+    format!("{median} [{least}, {most}]")
+}

@@ -1,0 +1,167 @@
+//! The table of a bench on the screen: one block per case, then what it all comes to.
+
+use std::fmt::Write;
+
+use super::changes;
+use crate::harness::bench::record::{Bench, BenchCase, BenchRow, Times};
+use crate::harness::bench::spread::Spread;
+use crate::report::console::layout::{self, Column, Field, Grid, Paint, Pen, end_elided, wrapped};
+use crate::report::number::{count, fixed, short, time};
+
+/// A column: its heading, whether it is of numbers, its rank, its text.
+type Spec = (&'static str, bool, u8, fn(&BenchRow) -> String);
+
+const COLUMNS: &[Spec] = &[
+    ("estimator", false, 0, |row| row.estimator.clone()),
+    ("σ\u{302}", true, 1, |row| match row.sampling {
+        Some(sampling) => short(sampling, 4),
+        None => row.sampling_kind.clone(),
+    }),
+    ("control", false, 5, |row| row.control.clone()),
+    ("channel", false, 1, |row| row.channel.clone()),
+    ("ns/draw", true, 1, |row| {
+        spread(row, |times| Some(times.ns_per_draw), |s| fixed(s.median, 3))
+    }),
+    ("least–most", true, 6, |row| spread(row, |times| Some(times.ns_per_draw), range)),
+    ("draws/s", true, 7, |row| figure(row, |times| Some(fixed(times.draws_per_second, 3)))),
+    ("ns/lookup", true, 4, |row| figure(row, |times| Some(fixed(times.ns_per_lookup?, 3)))),
+    ("to 1e-2", true, 3, |row| figure(row, |times| Some(time(times.seconds_to?[0])))),
+    ("to 1e-3", true, 2, |row| figure(row, |times| Some(time(times.seconds_to?[1])))),
+    ("to 1e-4", true, 3, |row| figure(row, |times| Some(time(times.seconds_to?[2])))),
+    ("1/Vt", true, 4, |row| figure(row, |times| Some(fixed(times.efficiency?, 3)))),
+    ("1/VN", true, 5, |row| row.fom.map(|fom| fixed(fom, 3)).unwrap_or_default()),
+    ("speedup", true, 1, |row| spread(row, |times| Some(times.speedup), |s| fixed(s.median, 3))),
+    ("least–most", true, 6, |row| spread(row, |times| Some(times.speedup), range)),
+    ("scaling", true, 2, |row| spread(row, |times| times.scaling, |s| fixed(s.median, 3))),
+];
+
+fn figure(row: &BenchRow, text: impl Fn(&Times) -> Option<String>) -> String {
+    row.times.as_ref().and_then(text).unwrap_or_default()
+}
+
+fn spread(row: &BenchRow, of: fn(&Times) -> Option<Spread>, text: fn(Spread) -> String) -> String {
+    figure(row, |times| of(times).map(text))
+}
+
+/// The least and the most of the rounds.
+fn range(spread: Spread) -> String {
+    format!("{}–{}", fixed(spread.least, 3), fixed(spread.most, 3))
+}
+
+/// The table, `width` columns wide, with ANSI colours if asked for.
+#[must_use]
+pub fn table(bench: &Bench, pen: Pen) -> String {
+    let mut text = String::new();
+    for case in &bench.cases {
+        block(&mut text, pen, case);
+        text.push('\n');
+    }
+    closing(&mut text, pen, bench);
+    text
+}
+
+fn block(text: &mut String, pen: Pen, case: &BenchCase) {
+    let name = end_elided(&case.name, pen.width);
+    let room = pen.width.saturating_sub(layout::width(&name) + 2);
+    let title = if room > 8 { end_elided(&case.title, room) } else { String::new() };
+    let _ = writeln!(text, "{}  {title}", pen.paint(Paint::Bold, &name));
+    let facts = format!("{} · {}", case.problem, case.medium);
+    let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
+    let mut columns: Vec<Column> = Vec::new();
+    for &(head, right, rank, cell) in COLUMNS {
+        let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
+        columns.push(Column { head, right, rank, fields });
+        if head == "σ\u{302}"
+            && let Some(head) = swept_apart(case)
+        {
+            let cell = |row: &BenchRow| row.swept.map(|x| short(x, 4)).unwrap_or_default();
+            let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
+            columns.push(Column { head, right: true, rank: 1, fields });
+        }
+    }
+    let mut grid = Grid { columns };
+    grid.fit(pen.width);
+    text.push_str(&grid.render(pen));
+    notes(text, pen, case);
+}
+
+/// The heading of the swept quantity where it is not the sampling extinction itself.
+fn swept_apart(case: &BenchCase) -> Option<&'static str> {
+    match case.swept.as_deref()? {
+        "sampling" => None,
+        "sampling-scale" => Some("σ\u{302} scale"),
+        "albedo" => Some("albedo"),
+        "points" => Some("points"),
+        _ => Some("swept"),
+    }
+}
+
+/// Why numbers are missing: each reason once, with the rows it is about.
+fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
+    let mut notes: Vec<(&BenchRow, Vec<String>)> = Vec::new();
+    for row in case.rows.iter().filter(|row| !row.reason.is_empty()) {
+        let place = row.swept.map(|x| short(x, 4));
+        let same = |note: &&mut (&BenchRow, Vec<String>)| {
+            note.0.reason == row.reason && note.0.estimator == row.estimator
+        };
+        match notes.iter_mut().find(same) {
+            Some(note) => note.1.extend(place),
+            None => notes.push((row, place.into_iter().collect())),
+        }
+    }
+    for (row, mut places) in notes {
+        places.dedup();
+        let at =
+            if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) };
+        let word = if row.is_refused { "refused" } else { "note" };
+        let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
+        for (i, line) in wrapped(&note, pen.width - 4).into_iter().enumerate() {
+            let _ = writeln!(text, "{}{line}", if i == 0 { "  " } else { "    " });
+        }
+    }
+}
+
+fn closing(text: &mut String, pen: Pen, bench: &Bench) {
+    let conditions = &bench.conditions;
+    let experiments = || bench.cases.iter().flat_map(BenchCase::experiments);
+    let timed = experiments().filter(|row| row.times.is_some()).count();
+    let refused = experiments().filter(|row| row.is_refused).count();
+    let mut counts = format!("{timed} timed");
+    if refused > 0 {
+        let _ = write!(counts, " · {refused} refused");
+    }
+    let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &counts));
+    let mut facts = vec![
+        format!("{} rounds of {} draws", bench.rounds, count(bench.draws)),
+        format!("seed {}", bench.seed),
+        format!("{} time", conditions.clock.word()),
+        conditions.level.clone(),
+        format!("{} s, threads: {}", short(conditions.seconds, 3), conditions.threads),
+    ];
+    if let Some(speedup) = conditions.speedup {
+        let [median, least, most] =
+            [speedup.median, speedup.least, speedup.most].map(|x| fixed(x, 3));
+        facts.insert(
+            0,
+            format!("median speedup over the plain loop {median}, from {least} to {most}"),
+        );
+    }
+    for line in wrapped(&facts.join(" · "), pen.width) {
+        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
+    }
+    let Some(comparison) = &bench.comparison else { return };
+    text.push('\n');
+    for (is_worse, line) in changes::all(comparison) {
+        let (word, paint) =
+            if is_worse { ("REGRESSION", Paint::Red) } else { ("improvement", Paint::Green) };
+        for (i, line) in wrapped(&line, pen.width.saturating_sub(14)).into_iter().enumerate() {
+            let head = if i == 0 { pen.paint(paint, word) } else { "   ".to_owned() };
+            let _ = writeln!(text, "  {head} {line}");
+        }
+    }
+    for remark in changes::remarks(comparison) {
+        for line in wrapped(&remark, pen.width) {
+            let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
+        }
+    }
+}

@@ -1,0 +1,34 @@
+//! What a bench found, as a table on the screen, files and plots.
+//!
+//! ```text
+//! bench.csv        one row per experiment and channel: times, ratios, efficiencies
+//! CASE.error.csv   the measured error against draws, lookups and time, with what theory expects
+//! CASE.svg, .png   the same as a log-log plot
+//! ```
+
+pub mod changes;
+pub mod console;
+pub mod error_csv;
+pub mod plot;
+pub mod rows;
+
+use std::path::PathBuf;
+
+use crate::harness::bench::record::Bench;
+use crate::report::{Artifact, ReportError};
+
+/// Every file of a bench.
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
+    let bytes = rows::csv(bench)?.into_bytes();
+    let mut artifacts = vec![Artifact { path: PathBuf::from("bench.csv"), bytes }];
+    for case in bench.cases.iter().filter(|case| case.rows.iter().any(|row| !row.curve.is_empty()))
+    {
+        artifacts.push(error_csv::artifact(case)?);
+        artifacts.extend(plot::artifacts(bench, case)?);
+    }
+    Ok(artifacts)
+}

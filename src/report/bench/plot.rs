@@ -1,0 +1,174 @@
+//! `CASE.svg` and `CASE.png`: the measured error against time and against lookups.
+//!
+//! Points are measured, with bars from the least to the most of the rounds; lines are √(V/n), which
+//! falls with slope −1/2. The thin, pale line of the same colour is that of the plain loop.
+
+use plotters::style::{Color, RGBAColor};
+
+use crate::harness::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
+use crate::report::number::{count, short};
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::legend::{self, Entry, LINE};
+use crate::report::plots::sheet::Align;
+use crate::report::plots::style::{DARK, GREY, Style};
+use crate::report::plots::{self, Axis, Panel, Sheet};
+use crate::report::{Artifact, ReportError};
+
+const WIDTH: f64 = 1200.0;
+const LEFT: f64 = 92.0;
+const TOP: f64 = 104.0;
+const PANEL: [f64; 2] = [490.0, 400.0];
+const PITCH: f64 = 600.0;
+
+/// The dashes, the width and the colour of a line.
+type Look = (&'static [f64], f64, RGBAColor);
+
+/// One line of the plot.
+struct Series<'a> {
+    row: &'a BenchRow,
+    times: &'a Times,
+    style: Style,
+}
+
+/// The figure of a case in both formats.
+pub(super) fn artifacts(bench: &Bench, case: &BenchCase) -> Result<Vec<Artifact>, ReportError> {
+    plots::artifacts(&case.name, "", &figure(bench, case)?)
+}
+
+fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
+    let face = Typeface::load().map_err(|error| ReportError::Draw {
+        figure: case.name.clone(),
+        message: error.to_string(),
+    })?;
+    let shown = case.rows.iter().filter(|row| row.is_shown);
+    let series: Vec<Series> = shown
+        .filter_map(|row| row.times.as_ref().map(|times| (row, times)))
+        .enumerate()
+        .map(|(i, (row, times))| Series { row, times, style: Style::of(i) })
+        .collect();
+    let entries: Vec<Entry> = series.iter().map(Series::entry).collect();
+    let notes = notes(case);
+    let (span, below) = (WIDTH - LEFT - 18.0, TOP + PANEL[1] + 84.0);
+    let legend = legend::height(&face, &entries, span);
+    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0);
+    let words = subtitle(bench, case);
+    for (y, text, size, colour) in [(30.0, &case.title, 20.0, DARK), (57.0, &words, 13.0, GREY)] {
+        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
+    }
+    let time = format!("{} time [s]", bench.conditions.clock.word());
+    in_time(&mut sheet, &series, &time);
+    in_lookups(&mut sheet, &series);
+    legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
+    for (i, note) in notes.iter().enumerate() {
+        let at = [LEFT, below + legend + i as f64 * 19.0 - LINE / 2.0 + 4.0];
+        sheet.text(at, fit(&face, note, 12.5, span), 12.5, GREY, Align::Start);
+    }
+    Ok(sheet)
+}
+
+fn subtitle(bench: &Bench, case: &BenchCase) -> String {
+    let (rounds, threads) = (bench.rounds, bench.conditions.threads);
+    let draws = format!("{rounds} rounds of {} draws", count(bench.draws));
+    let words = [case.name.clone(), case.problem.clone(), case.medium.clone(), draws];
+    let facts = [format!("threads: {threads}"), bench.conditions.level.clone()];
+    words.into_iter().chain(facts).collect::<Vec<_>>().join("  ·  ")
+}
+
+impl Series<'_> {
+    fn entry(&self) -> Entry {
+        let row = self.row;
+        let sampling = row.sampling.map(|sampling| format!("σ\u{302} = {}", short(sampling, 4)));
+        let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
+        let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];
+        let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+        let Style { colour, dash, marker } = self.style;
+        let line = self.points().any(|point| point.predicted.is_some());
+        Entry {
+            label: label.join(", "),
+            line: line.then_some((dash, 2.0)),
+            marker: Some(marker),
+            colour,
+        }
+    }
+
+    fn points(&self) -> impl Iterator<Item = &CurvePoint> {
+        self.row.curve.iter()
+    }
+
+    /// Draws the points and the line of theory at these prices.
+    fn draw(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64]) {
+        let Style { colour, dash, marker } = self.style;
+        self.line(sheet, panel, prices, (dash, 1.8, colour));
+        for (point, &price) in self.points().zip(prices) {
+            let Some(spot) = panel.spot(price, point.relative) else { continue };
+            panel.bar(sheet, spot[0], (point.least, point.most), (3.5, 1.2, colour.mix(0.6)));
+            panel.point(sheet, spot, marker, 4.4, colour);
+        }
+    }
+
+    /// Draws the line of theory at these prices.
+    fn line(&self, sheet: &mut Sheet, panel: &Panel, prices: &[f64], look: Look) {
+        let both = prices.iter().zip(self.points());
+        let line = both.filter_map(|(&price, point)| Some((price, point.predicted?)));
+        panel.line(sheet, line, look);
+    }
+}
+
+/// The panel at this place, its axes around what is shown: of an error bar, at most two decades below
+/// the error itself, for a mean may meet the truth by chance.
+fn panel(place: f64, title: &str, prices: impl Iterator<Item = f64>, series: &[Series]) -> Panel {
+    let points = || series.iter().flat_map(Series::points);
+    let errors = points().flat_map(|p| [p.relative, p.most, p.least.max(p.relative * 1e-2)]);
+    let errors = errors.chain(points().filter_map(|point| point.predicted));
+    let positive = |x: &f64| *x > 0.0 && x.is_finite();
+    let x = Axis::around(title, true, 0.04, prices.filter(positive));
+    let y = Axis::around("|mean − T| / T", true, 0.04, errors.filter(positive));
+    let left = LEFT + place * PITCH;
+    Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y }
+}
+
+fn in_time(sheet: &mut Sheet, series: &[Series], title: &str) {
+    let seconds =
+        series.iter().flat_map(|one| one.times.seconds.iter().chain(&one.times.plain_seconds));
+    let panel = panel(0.0, title, seconds.copied(), series);
+    panel.grid(sheet);
+    for one in series {
+        one.line(sheet, &panel, &one.times.plain_seconds, (&[], 1.1, one.style.colour.mix(0.5)));
+    }
+    for one in series {
+        one.draw(sheet, &panel, &one.times.seconds);
+    }
+    panel.frame(sheet, "(a) Error against time; thin lines: the plain loop");
+}
+
+fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
+    let lookups = |one: &Series| one.points().map(|point| point.lookups).collect::<Vec<f64>>();
+    let all: Vec<f64> = series.iter().flat_map(lookups).collect();
+    let panel = panel(1.0, "lookups of σₜ", all.into_iter(), series);
+    panel.grid(sheet);
+    for one in series {
+        one.draw(sheet, &panel, &lookups(one));
+    }
+    panel.frame(sheet, "(b) Error against lookups");
+}
+
+/// What the marks mean, and what the plot cannot show, in words.
+fn notes(case: &BenchCase) -> Vec<String> {
+    let mut notes = vec![
+        "Points: root mean square over the rounds, bars: the least and the most of them. \
+         Lines: √(V/n), of slope −1/2, V the variance in theory or, without one, the sample's."
+            .to_owned(),
+    ];
+    let left_out = case.rows.iter().any(|row| !row.curve.is_empty() && !row.is_shown);
+    if left_out {
+        notes.push(
+            "Of a sweep the point with the largest figure of merit is shown, of a curve the last \
+             distance."
+                .to_owned(),
+        );
+    }
+    let lacking = case.rows.iter().filter(|row| !row.is_refused && !row.reason.is_empty());
+    notes.extend(lacking.map(|row| format!("{}: {}", row.estimator, row.reason)));
+    notes.dedup();
+    notes
+}

@@ -1,0 +1,205 @@
+//! The reports of one fixed bench, byte for byte.
+
+use std::path::PathBuf;
+
+use trueflight::harness::bench::clock::Clock;
+use trueflight::harness::bench::compare::{Change, Comparison};
+use trueflight::harness::bench::record::{
+    Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times,
+};
+use trueflight::harness::bench::spread::Spread;
+use trueflight::report::bench::{console, render, rows};
+use trueflight::report::console::layout::Pen;
+
+use super::compare;
+
+fn spread(median: f64) -> Spread {
+    Spread { median, least: median * 0.875, most: median * 1.25 }
+}
+
+fn times(ns: f64, variance: Option<f64>, curve: &[CurvePoint]) -> Times {
+    let at = |ns: f64| curve.iter().map(|point| point.draws as f64 * ns * 1e-9).collect();
+    Times {
+        ns_per_draw: spread(ns),
+        plain_ns_per_draw: spread(4.0 * ns),
+        speedup: spread(4.0),
+        scaling: Some(spread(1.875)),
+        draws_per_second: 1e9 / ns,
+        ns_per_lookup: Some(ns / 8.0),
+        seconds_to: variance.map(|v| [1e4, 1e6, 1e8].map(|n| n * v * 16.0 * ns * 1e-9)),
+        efficiency: variance.map(|v| 1e9 / (v * ns)),
+        seconds: at(ns),
+        plain_seconds: at(4.0 * ns),
+    }
+}
+
+fn row(estimator: &str, swept: Option<f64>, ns: f64, variance: f64) -> BenchRow {
+    let point = |draws: u64| {
+        let predicted = (variance / draws as f64).sqrt() * 4.0;
+        CurvePoint {
+            draws,
+            lookups: draws as f64 * 8.0,
+            error: predicted * 0.25,
+            relative: predicted,
+            least: predicted * 0.25,
+            most: predicted * 2.0,
+            predicted: Some(predicted),
+        }
+    };
+    let curve: Vec<CurvePoint> = [64, 256, 1024].map(point).into();
+    BenchRow {
+        is_first: true,
+        estimator: estimator.to_owned(),
+        sampling: swept,
+        sampling_kind: "constant".to_owned(),
+        swept,
+        draws: Some(3072),
+        mean: Some(0.25),
+        truth: Some(0.25),
+        variance: Some(variance * 1.0625),
+        predicted_variance: Some(variance),
+        lookups_per_draw: Some(8.0),
+        predicted_lookups: Some(8.0),
+        fom: Some(1.0 / (variance * 8.0)),
+        is_shown: swept.is_none_or(|swept| swept == 2.0),
+        times: Some(times(ns, Some(variance), &curve)),
+        curve,
+        ..BenchRow::default()
+    }
+}
+
+fn case() -> BenchCase {
+    let refused = BenchRow {
+        is_first: true,
+        is_refused: true,
+        estimator: "woodcock".to_owned(),
+        sampling: Some(0.5),
+        sampling_kind: "constant".to_owned(),
+        swept: Some(0.5),
+        reason: "the majorant is 0.9: below it the chance of a real collision would exceed 1"
+            .to_owned(),
+        ..BenchRow::default()
+    };
+    let exact = BenchRow {
+        is_first: true,
+        estimator: "regular".to_owned(),
+        draws: Some(3072),
+        mean: Some(0.25),
+        truth: Some(0.25),
+        variance: Some(0.0),
+        predicted_variance: Some(0.0),
+        lookups_per_draw: Some(8.0),
+        predicted_lookups: Some(8.0),
+        reason: "no variance: each draw is the answer, and there is no error to wait for"
+            .to_owned(),
+        times: Some(times(16.0, None, &[])),
+        ..BenchRow::default()
+    };
+    BenchCase {
+        name: "bench/eq21-sweep".to_owned(),
+        title: "Eq. 21, \"quoted\" & <tagged>".to_owned(),
+        problem: "transmittance".to_owned(),
+        medium: "eq21".to_owned(),
+        digest: "00ff".to_owned(),
+        swept: Some("sampling".to_owned()),
+        rows: vec![
+            refused,
+            row("woodcock", Some(1.0), 32.0, 0.1875),
+            row("woodcock", Some(2.0), 64.0, 0.1875),
+            row("single (non-terminating, a=0.7)", Some(2.0), 128.0, 0.015_625),
+            exact,
+        ],
+    }
+}
+
+fn bench() -> Bench {
+    let id = "bench/eq21-sweep|woodcock|1||1".to_owned();
+    let change = |ratio: f64| Change {
+        id: id.clone(),
+        ns_per_draw: [spread(32.0), spread(32.0 * ratio)],
+        speedup: [spread(4.0), spread(4.0 / ratio)],
+        ratio,
+        is_regression: ratio > 1.0,
+    };
+    Bench {
+        version: "0.1.0".to_owned(),
+        seed: 1,
+        draws: 1024,
+        rounds: 3,
+        conditions: Conditions {
+            threads: 2,
+            clock: Clock::Elapsed,
+            level: "avx2".to_owned(),
+            seconds: 2.25,
+            speedup: Some(spread(4.0)),
+        },
+        cases: vec![case()],
+        comparison: Some(Comparison {
+            name: "main".to_owned(),
+            tolerance: 0.25,
+            compared: 3,
+            changes: vec![change(0.5), change(2.0)],
+            added: vec!["case|new".to_owned()],
+            missing: Vec::new(),
+            rewritten: vec!["case|old".to_owned()],
+            levels: Some(["sse2", "avx2"].map(str::to_owned)),
+        }),
+    }
+}
+
+#[test]
+fn files_of_a_bench() {
+    let artifacts = render(&bench()).expect("renders");
+    let names: Vec<String> = artifacts.iter().map(|a| a.path.display().to_string()).collect();
+    let case = |ending: &str| format!("bench/eq21-sweep.{ending}");
+    assert_eq!(names, ["bench.csv".to_owned(), case("error.csv"), case("svg"), case("png")]);
+    for artifact in artifacts {
+        if artifact.path.extension().is_some_and(|ending| ending == "png") {
+            assert!(artifact.bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+        } else {
+            compare(&artifact.path, &artifact.bytes);
+        }
+    }
+}
+
+#[test]
+fn rows_of_a_bench() {
+    let json = rows::json(&bench()).expect("renders");
+    compare(&PathBuf::from("bench/bench.json"), json.as_bytes());
+    let parsed: Vec<serde_json::Map<String, serde_json::Value>> =
+        serde_json::from_str(&json).expect("is JSON");
+    let csv = rows::csv(&bench()).expect("renders");
+    let header: Vec<&str> = csv.lines().next().expect("a line").split(',').collect();
+    assert_eq!(parsed.len(), 5);
+    assert!(header.iter().all(|&name| parsed[0].contains_key(name)));
+    // What is unknown is empty, and never zero.
+    assert_eq!(parsed[0]["ns_per_draw"], serde_json::Value::Null);
+    assert_eq!(parsed[4]["seconds_to_1e-3"], serde_json::Value::Null);
+}
+
+#[test]
+fn consoles_of_a_bench() {
+    for width in [80, 160] {
+        let text = console::table(&bench(), Pen { width, colour: false });
+        let widest = text.lines().map(|line| line.chars().count()).max();
+        // A combining hat is a character without width.
+        assert!(widest.is_some_and(|widest| widest <= width + 2), "{width}: {widest:?}");
+        compare(&PathBuf::from(format!("bench/console-{width}.txt")), text.as_bytes());
+    }
+}
+
+#[test]
+fn nothing_is_too_odd_to_plot() {
+    for value in [0.0, -1.0, f64::NAN, f64::INFINITY, 1e308, 5e-324] {
+        let mut bench = bench();
+        for row in &mut bench.cases[0].rows {
+            for point in &mut row.curve {
+                (point.relative, point.least, point.predicted) = (value, value, Some(value));
+            }
+            if let Some(times) = &mut row.times {
+                times.seconds.fill(value);
+            }
+        }
+        render(&bench).expect("renders");
+    }
+}
