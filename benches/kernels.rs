@@ -20,7 +20,7 @@ use rand::Rng;
 use rand_pcg::Pcg64;
 use trueflight::estimators::{DrawBuffer, Kernel, Order};
 use trueflight::harness::plan::{BLOCK, Planned};
-use trueflight::harness::{Amount, Case, Options, Plan, Source};
+use trueflight::harness::{Amount, Case, Options, Plan, Source, draw};
 use trueflight::media::lattice::hash3;
 
 const ROUNDS: usize = 7;
@@ -293,6 +293,37 @@ fn median(values: &mut [f64]) -> f64 {
     values[values.len() / 2]
 }
 
+/// How much a sweep of eight σ̂ gains by looking the medium up once for all.
+fn sharing(name: &str, field: &str) {
+    let field = field.rsplit_once("sampling.").map_or(field, |(field, _)| field);
+    let text = format!(
+        "title = \"{name}\"\nkernel = \"order-free\"\n[problem.transmittance]\n{field}
+        sweep.sampling = {{ from = 0.7, to = 2, points = 8 }}\nestimators = [{{ ratio = {{}} }}]"
+    );
+    let source = Source { name: name.into(), path: format!("{name}.toml").into(), text };
+    let cases = [Case::read(&source).unwrap_or_else(|error| panic!("{}", error.render(false)))];
+    let options = Options { draws: Amount::Exactly(BLOCK), ..Options::default() };
+    let mut plan = Plan::new(&cases, &options);
+    // Nothing is asked of the draws: only their making is timed.
+    plan.cases[0].experiments.iter_mut().for_each(|planned| planned.questions.clear());
+    let all: Vec<&Planned> = plan.cases[0].experiments.iter().collect();
+    let time = |f: &dyn Fn()| {
+        let begin = ThreadTime::now();
+        f();
+        begin.elapsed().as_secs_f64()
+    };
+    let mut ratios = Vec::new();
+    for _ in 0..ROUNDS {
+        let alone = time(&|| {
+            for planned in &all {
+                black_box(draw::blocks(&[planned], 0));
+            }
+        });
+        ratios.push(alone / time(&|| drop(black_box(draw::blocks(&all, 0)))));
+    }
+    println!("\n{name}, eight σ̂ on shared lookups {:.2}×", median(&mut ratios));
+}
+
 fn main() {
     println!("{:?}, {ROUNDS} rounds, processor time of one draw", Level::new());
     let word = std::env::args().skip(1).find(|word| !word.starts_with('-')).unwrap_or_default();
@@ -329,5 +360,10 @@ fn main() {
             let (time, ratio) = (1e9 * median(&mut times[i]), median(&mut ratios[i]));
             println!("  {name:16} {time:8.2} ns {ratio:7.2}× mean {:.5}", means[i]);
         }
+    }
+    if "sharing".contains(&word) {
+        sharing("Eq. 21", EQ21);
+        sharing("128³ grid", GRID);
+        sharing("12-octave noise", NOISE);
     }
 }

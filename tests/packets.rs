@@ -11,7 +11,7 @@ use fearless_simd::Level;
 use trueflight::estimators::{DrawBuffer, Kernel, Order};
 use trueflight::harness::plan::Planned;
 use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Case, Plan};
+use trueflight::harness::{Case, Filter, Options, Plan};
 use trueflight::numeric::pack::fuses;
 
 /// Draws of several requests in a row, which no number of lanes divides.
@@ -187,7 +187,9 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
 fn order_free() -> Vec<Case> {
     let mut cases = cases();
     cases.retain(|case| case.problem == "transmittance");
-    cases.iter_mut().for_each(|case| case.scenario.draw_by(Order::Free));
+    for case in &mut cases {
+        case.scenario.draw_by(Order::Free);
+    }
     cases
 }
 
@@ -267,4 +269,38 @@ fn an_order_free_kernel_that_is_not_there_is_a_mistake() {
     assert!(missing.contains("`next-flight` has no order-free kernel"), "{missing}");
     let unknown = message("free").expect("a mistake");
     assert!(unknown.contains("one of `ordered`, `order-free`"), "{unknown}");
+}
+
+/// A sweep of σ̂ and estimators of other controls and rules, all on the same lookups.
+const SWEEP: &str = "title = \"sweep\"\nkernel = \"order-free\"\n[problem.transmittance]
+    volume.eq21 = {}\nray = { origin = [1, 0, -3], direction = [0, 0.1, 1], length = 30 }
+    sweep.sampling = { values = [0.7, 1.1, 1.6, 2.4] }
+    estimators = [{ ratio = {} }, { double.control.explorers.points = 5 }, { woodcock = {} },
+        { single = { rule = \"adaptive\", albedo = 0.3 } },
+        { double = { sampling.local-majorants.segments = 5 } }]";
+
+#[test]
+fn shared_lookups_change_no_draw() {
+    let sweep = [case("sweep", SWEEP)];
+    let all = common::judged(&sweep, &options(3, 90_000));
+    let all = &all.results.cases[0].rows;
+    let mut shared = 0;
+    for pattern in ["*:ratio*", "*:double*", "*:woodcock*", "*:single*"] {
+        let filter = Filter::new(pattern);
+        let filter = Some(filter.expect("a pattern"));
+        let alone = common::judged(&sweep, &Options { filter, ..options(3, 90_000) });
+        for row in &alone.results.cases[0].rows {
+            let same = |other: &&Row| {
+                (&other.estimator, &other.sampling_kind, other.swept)
+                    == (&row.estimator, &row.sampling_kind, row.swept)
+            };
+            let together = all.iter().find(same).expect("the same experiment");
+            assert_eq!(row.mean, together.mean, "{}", row.command);
+            assert_eq!(row.variance, together.variance);
+            assert_eq!(row.lookups_per_draw, together.lookups_per_draw);
+            assert!(row.sharing.is_none() || row.sharing < together.sharing);
+            shared += usize::from(together.sharing.is_some());
+        }
+    }
+    assert!(shared >= 14, "only {shared} shared their lookups");
 }

@@ -59,7 +59,9 @@ impl Experiments {
             read_case(name).map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
         if let Some(order) = self.kernel {
-            cases.iter_mut().for_each(|case| case.scenario.draw_by(order));
+            for case in &mut cases {
+                case.scenario.draw_by(order);
+            }
         }
         if errors.is_empty() {
             return distinct(cases);

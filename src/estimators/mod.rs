@@ -17,6 +17,7 @@ pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
 pub mod walk;
+pub mod walkers;
 
 use fearless_simd::Level;
 
@@ -78,8 +79,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const KEEPS_BOOKS: bool = false;
     /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
     const IN_PACKETS: bool = false;
-    /// Whether its draws may be made in any order of their collisions, by
-    /// [`Estimator::draw_packets`] where the request says [`Order::Free`].
+    /// Whether its draws may be made in any order of their collisions, by [`Estimator::walkers`].
     const ORDER_FREE: bool = false;
 
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
@@ -125,9 +125,19 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
     -> Draw<P::Value>;
 
-    /// Makes the draws of a request on the hardware of a level: ordered, as [`Estimator::draw`]
-    /// makes them from the request's streams in turn, bit for bit; order-free, equal in law. What the hardware has no kernel for is
-    /// handed back.
+    /// So many draws to be made in any order of their collisions; `None` where that cannot be.
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<P>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn walkers::Walkers + 'a>> {
+        let _ = (setup, request);
+        None
+    }
+
+    /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
+    /// turn, bit for bit, on the hardware of a level. What the hardware has no kernel for is handed
+    /// back.
     fn draw_packets<'a, M: Extinction>(
         &self,
         level: Level,

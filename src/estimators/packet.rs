@@ -15,7 +15,7 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use super::rules::Collision;
 use super::walk::Books;
-use super::{DrawBuffer, Order, Setup, layers};
+use super::{DrawBuffer, Setup};
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::pack::{self, Task, WIDTH};
@@ -31,8 +31,6 @@ pub struct Request<'a> {
     pub count: usize,
     /// Where they go.
     pub buffer: &'a mut DrawBuffer,
-    /// In which order their collisions come.
-    pub order: Order,
 }
 
 /// Which walks ended in a step, as bits, and which of them because they reached the end.
@@ -56,19 +54,15 @@ trait Walks<S: Simd> {
     fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
 }
 
-/// The draws of a product estimator, on the hardware of a level; a request for ordered ones is handed
-/// back where the hardware is too narrow.
-pub fn product<'a, P: Problem, M: Extinction, R: Collision>(
+/// The draws of a product estimator, on the hardware of a level; a request is handed back where the
+/// hardware is too narrow.
+pub fn product<'a, P, M: Extinction, R: Collision>(
     level: Level,
     setup: &Setup<P>,
     rule: &R,
     medium: &M,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if request.order == Order::Free {
-        layers::product(level, setup, rule, request);
-        return None;
-    }
     let (sampling, control) = (&setup.sampling, &setup.control);
     let begin = setup.control_transmittance;
     let task = Product { sampling, control, begin, rule, medium, request };
@@ -281,7 +275,7 @@ fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
 fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
-    let Request { streams, count, buffer, .. } = request;
+    let Request { streams, count, buffer } = request;
     let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return };
     let reader = walks.reader();
     let mut numbers = Lanes::of(&streams.lanes).awake(simd);

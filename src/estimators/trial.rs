@@ -2,12 +2,14 @@
 
 use fearless_simd::Level;
 
+use super::layers;
 use super::packet::Request;
+use super::walkers::{self, Walkers};
 use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
-use crate::media::{FreeFlight, Visitor};
+use crate::media::{FreeFlight, Placement, Visitor};
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
-use crate::rng::{Address, Streams};
+use crate::rng::{Address, Lanes, Streams};
 use crate::theory::Prediction;
 
 /// A buffer of draws: one array per channel, one for the lookups, one for the defects.
@@ -123,6 +125,22 @@ pub trait Experiment: Send + Sync {
     fn order(&self) -> Order {
         Order::Along
     }
+
+    /// Whether it can share its lookups with others that can, on the same medium.
+    fn shares_lookups(&self) -> bool {
+        false
+    }
+
+    /// So many order-free draws, to be made by [`Experiment::draw_layers`]; `None` where there are none.
+    fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {
+        let _ = request;
+        None
+    }
+
+    /// Makes order-free draws of this experiment, or of several that share their lookups with it.
+    fn draw_layers(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn Walkers]) {
+        let _ = (level, places, requests);
+    }
 }
 
 /// An estimator as written in a case, with its type erased.
@@ -204,7 +222,15 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         count: usize,
         buffer: &mut DrawBuffer,
     ) {
-        let request = Request { streams, count, buffer, order: self.order };
+        if let (Kernel::Packets(level), Order::Free) = (kernel, self.order) {
+            let places = streams.places();
+            let request = walkers::Request { counts: &mut streams.counts, count, buffer };
+            if let Some(mut walkers) = self.walkers(request) {
+                self.draw_layers(level, &places, &mut [&mut *walkers]);
+            }
+            return;
+        }
+        let request = Request { streams, count, buffer };
         self.setup.problem.medium().profile().visit(Fill { trial: self, kernel, request });
     }
 
@@ -214,6 +240,19 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
 
     fn order(&self) -> Order {
         self.order
+    }
+
+    fn shares_lookups(&self) -> bool {
+        self.order == Order::Free && self.setup.sampling.single_value().is_some()
+    }
+
+    fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {
+        self.estimator.walkers(&self.setup, request)
+    }
+
+    fn draw_layers(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn Walkers]) {
+        let placement = Placement::new(&self.setup.sampling);
+        layers::draw(level, self.setup.problem.medium(), &placement, places, requests);
     }
 }
 

@@ -143,7 +143,8 @@ impl Case {
         let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
         root.close();
         let (problem, scenario, sweep) = problem?;
-        (expect_biased?, order?);
+        expect_biased?;
+        order?;
         Some(Self {
             name: source.name.clone(),
             path: source.path.clone(),

@@ -5,10 +5,14 @@
 //! draws below the plan's fixed number.
 
 use cpu_time::ThreadTime;
+use fearless_simd::Level;
 
 use super::checks::Kind;
 use super::plan::{BLOCK, Planned};
+use super::scenario::Ready;
 use crate::estimators::DrawBuffer;
+use crate::estimators::walkers::{Request, Walkers};
+use crate::rng::Streams;
 use crate::stats::Tally;
 use crate::stats::gate::{GateSums, SUMS};
 
@@ -53,56 +57,132 @@ enum Absorber {
     Silent,
 }
 
-/// Draws a block.
+/// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
+/// the draws that it would make alone; the processor time is shared out evenly.
 #[must_use]
-pub fn block(planned: &Planned, block: u64) -> Option<Block> {
+pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
     // Processor time, not wall time: other processes do not count.
     let begin = ThreadTime::now();
-    let ready = planned.outcome.as_ref().ok()?;
-    let prediction = &ready.prediction;
-    let mut streams = planned.streams(block);
-    let mut buffer = DrawBuffer::new(prediction.channels.len());
-    let mut absorbers: Vec<Absorber> =
-        planned.questions.iter().map(|question| Absorber::new(&question.kind)).collect();
-    let mut tallies = vec![Tally::default(); prediction.channels.len()];
-    let mut lookups = Tally::default();
-    let expected_lookups = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
-    let (start, end) = (block * BLOCK, ((block + 1) * BLOCK).min(planned.horizon));
-    let mut at = start;
-    let (mut y, mut counts) = (Vec::new(), Vec::new());
-    while at < end {
-        let is_fixed = at < planned.fixed;
-        let until = if is_fixed { end.min(planned.fixed) } else { end };
-        #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
-        let count = (until - at).min(DrawBuffer::LENGTH as u64) as usize;
-        ready.experiment.fill(&mut streams, count, &mut buffer);
+    let mut drawings: Vec<Option<Drawing>> =
+        group.iter().map(|planned| Drawing::begin(planned, block)).collect();
+    loop {
+        let open = drawings.iter_mut().flatten().filter(|drawing| drawing.count() > 0);
+        let mut open: Vec<&mut Drawing> = open.collect();
+        match &mut open[..] {
+            [] => break,
+            [drawing] => drawing.fill(),
+            several => fill_together(several),
+        }
+        open.into_iter().for_each(Drawing::absorb);
+    }
+    let seconds = begin.elapsed().as_secs_f64() / group.len() as f64;
+    drawings.into_iter().map(|drawing| drawing.map(|drawing| drawing.close(seconds))).collect()
+}
+
+/// Fills a buffer of each by lookups that they share.
+fn fill_together(drawings: &mut [&mut Drawing]) {
+    let Some(leader) = drawings.first().map(|drawing| drawing.ready) else { return };
+    let mut places = None;
+    let walkers = drawings.iter_mut().filter_map(|drawing| {
+        // The same for all: they find them at the same address.
+        places = Some(drawing.streams.places());
+        let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
+        let request = Request { counts, count, buffer: &mut drawing.buffer };
+        drawing.ready.experiment.walkers(request)
+    });
+    let mut walkers: Vec<Box<dyn Walkers + '_>> = walkers.collect();
+    let mut requests: Vec<&mut dyn Walkers> = walkers.iter_mut().map(|w| &mut **w as _).collect();
+    if let Some(places) = places {
+        leader.experiment.draw_layers(Level::new(), &places, &mut requests);
+    }
+}
+
+/// A block on its way.
+struct Drawing<'p> {
+    planned: &'p Planned,
+    ready: &'p Ready,
+    streams: Streams,
+    buffer: DrawBuffer,
+    absorbers: Vec<Absorber>,
+    tallies: Vec<Tally>,
+    lookups: Tally,
+    /// The numbers of its first draw, of the next, and of the first beyond it.
+    start: u64,
+    at: u64,
+    end: u64,
+    y: Vec<f64>,
+    counts: Vec<f64>,
+}
+
+impl<'p> Drawing<'p> {
+    /// At the first draw; `None` for what is refused.
+    fn begin(planned: &'p Planned, block: u64) -> Option<Self> {
+        let ready = planned.outcome.as_ref().ok()?;
+        let channels = ready.prediction.channels.len();
+        let start = block * BLOCK;
+        Some(Self {
+            planned,
+            ready,
+            streams: planned.streams(block),
+            buffer: DrawBuffer::new(channels),
+            absorbers: planned.questions.iter().map(|q| Absorber::new(&q.kind)).collect(),
+            tallies: vec![Tally::default(); channels],
+            lookups: Tally::default(),
+            start,
+            at: start,
+            end: (start + BLOCK).min(planned.horizon),
+            y: Vec::new(),
+            counts: Vec::new(),
+        })
+    }
+
+    /// Whether the next draws are among those whose number the plan has fixed.
+    fn is_fixed(&self) -> bool {
+        self.at < self.planned.fixed
+    }
+
+    /// How many draws the next buffer takes; 0 at the end.
+    #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
+    fn count(&self) -> usize {
+        let until = if self.is_fixed() { self.end.min(self.planned.fixed) } else { self.end };
+        until.saturating_sub(self.at).min(DrawBuffer::LENGTH as u64) as usize
+    }
+
+    fn fill(&mut self) {
+        let count = self.count();
+        self.ready.experiment.fill(&mut self.streams, count, &mut self.buffer);
+    }
+
+    /// Every question absorbs the buffer.
+    fn absorb(&mut self) {
+        let (count, is_fixed) = (self.count(), self.is_fixed());
         #[allow(clippy::cast_possible_truncation)] // below a block's length
-        let first = (at - start) as usize;
-        for (question, absorber) in planned.questions.iter().zip(&mut absorbers) {
-            absorber.absorb(&question.kind, &buffer, first, is_fixed, &mut y);
+        let first = (self.at - self.start) as usize;
+        for (question, absorber) in self.planned.questions.iter().zip(&mut self.absorbers) {
+            absorber.absorb(&question.kind, &self.buffer, first, is_fixed, &mut self.y);
         }
         if is_fixed {
-            for ((tally, channel), values) in
-                tallies.iter_mut().zip(&prediction.channels).zip(&buffer.values)
-            {
+            let prediction = &self.ready.prediction;
+            let channels = self.tallies.iter_mut().zip(&prediction.channels);
+            for ((tally, channel), values) in channels.zip(&self.buffer.values) {
                 tally.merge(&Tally::of(values, channel.mean.value, channel.truth.value));
             }
-            counts.clear();
-            counts.extend(buffer.lookups.iter().map(|&lookups| f64::from(lookups)));
-            lookups.merge(&Tally::of(&counts, expected_lookups, 1.0));
+            let expected = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
+            self.counts.clear();
+            self.counts.extend(self.buffer.lookups.iter().map(|&lookups| f64::from(lookups)));
+            self.lookups.merge(&Tally::of(&self.counts, expected, 1.0));
         }
-        at += count as u64;
+        self.at += count as u64;
     }
-    #[allow(clippy::cast_possible_truncation)] // below a block's length
-    let fixed = end.min(planned.fixed).saturating_sub(start) as usize;
-    let answers = planned
-        .questions
-        .iter()
-        .zip(absorbers)
-        .map(|(question, absorber)| absorber.answer(&question.kind, fixed))
-        .collect();
-    let seconds = begin.elapsed().as_secs_f64();
-    Some(Block { draws: end - start, tallies, lookups, answers, seconds })
+
+    fn close(self, seconds: f64) -> Block {
+        #[allow(clippy::cast_possible_truncation)] // below a block's length
+        let fixed = self.end.min(self.planned.fixed).saturating_sub(self.start) as usize;
+        let questions = self.planned.questions.iter().zip(self.absorbers);
+        let answers = questions.map(|(q, absorber)| absorber.answer(&q.kind, fixed)).collect();
+        let Self { tallies, lookups, .. } = self;
+        Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
+    }
 }
 
 impl Absorber {

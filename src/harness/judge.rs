@@ -18,7 +18,7 @@ use crate::theory::{Channel, Prediction};
 #[must_use]
 pub fn planned(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
-        case.experiments.iter().flat_map(theory_rows).collect()
+        case.experiments.iter().flat_map(|planned| theory_rows(case, planned)).collect()
     };
     let mut record = record(plan, plan.cases.iter().map(|case| (rows(case), None, None)));
     for (case, planned_case) in record.results.cases.iter_mut().zip(&plan.cases) {
@@ -39,7 +39,7 @@ pub fn predicted(plan: &Plan) -> Record {
         let best = curves::best_of_each(case.case, plan.options.seed);
         let rows = case.experiments.par_iter().map(|planned| {
             let optimum = best.get(planned.estimator).copied().flatten();
-            let mut rows = theory_rows(planned);
+            let mut rows = theory_rows(case, planned);
             for row in rows.iter_mut().filter(|row| row.verdict.is_none()) {
                 row.best_sampling = optimum.map(|best: Optimum| best.sampling);
                 row.best_fom = optimum.map(|best| best.figure_of_merit);
@@ -146,7 +146,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
 const LONGEST_LAW: usize = 100;
 
 /// The rows of an experiment with what theory says of each channel.
-fn theory_rows(planned: &Planned) -> Vec<Row> {
+fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let blank = Row {
         estimator: planned.names.estimator.clone(),
         sampling: planned.names.sampling,
@@ -165,10 +165,13 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
     let prediction = &ready.prediction;
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
     let law = prediction.lookups.as_ref();
+    let kernel = ready.experiment.order().word();
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
         let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
         Row {
+            kernel: kernel.to_owned(),
+            sharing: sharing(case, planned),
             channel: channel.name.clone(),
             truth: Some(channel.truth.value),
             truth_error: Some(channel.truth.error),
@@ -195,6 +198,13 @@ fn theory_rows(planned: &Planned) -> Vec<Row> {
     rows.collect()
 }
 
+/// How many experiments of the case share an experiment's lookups.
+fn sharing(case: &PlannedCase, planned: &Planned) -> Option<u64> {
+    let places = planned.places?;
+    let all = case.experiments.iter().filter(|other| other.places == Some(places)).count();
+    (all > 1).then_some(all as u64)
+}
+
 fn finite(x: Option<f64>) -> Option<f64> {
     x.filter(|x| x.is_finite())
 }
@@ -207,7 +217,7 @@ fn drawn_rows(
     drawn: &Drawn,
     findings: &[Finding],
 ) -> Vec<Row> {
-    let mut rows = theory_rows(planned);
+    let mut rows = theory_rows(case, planned);
     let Ok(ready) = &planned.outcome else { return rows };
     let prediction = &ready.prediction;
     let command = command(plan, case, planned);

@@ -92,6 +92,8 @@ pub struct Planned {
     pub names: Names,
     /// Where its random numbers are.
     pub address: Address,
+    /// Where the places of its collisions are, where it may share their lookups with others.
+    pub places: Option<Address>,
     /// n: how many draws are planned.
     pub draws: u64,
     /// How many of the first draws the p-values and z-scores get.
@@ -120,7 +122,11 @@ impl Planned {
     /// The streams of a block.
     #[must_use]
     pub fn streams(&self, block: u64) -> Streams {
-        (self.find_streams)(Address { block, ..self.address })
+        let own = (self.find_streams)(Address { block, ..self.address });
+        match self.places {
+            Some(places) => Streams { counts: own.counts, ..Address { block, ..places }.streams() },
+            None => own,
+        }
     }
 }
 
@@ -193,6 +199,7 @@ impl<'a> Plan<'a> {
         self.options.seed = seed;
         for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
             planned.address.seed = seed;
+            planned.places = planned.places.map(|places| Address { seed, ..places });
         }
     }
 
@@ -238,11 +245,14 @@ fn plan_experiment(
     }
     let pilots = pilot_address(options.seed, case, estimator);
     let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
+    let shares = outcome.as_ref().is_ok_and(|ready| ready.experiment.shares_lookups());
+    let places = shares.then(|| places_address(options.seed, &case.name));
     Planned {
         estimator,
         variation,
         names,
         address,
+        places,
         draws: most,
         fixed: most,
         horizon: most,
@@ -340,6 +350,12 @@ fn needed(questions: &[Question], most: u64) -> u64 {
 #[must_use]
 pub fn pilot_address(seed: u64, case: &Case, estimator: usize) -> Address {
     address(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
+}
+
+/// Where all order-free experiments of a case whose σ̂ is constant find the places of their
+/// collisions: they lie anywhere on the ray, whatever estimator, control and σ̂.
+fn places_address(seed: u64, case: &str) -> Address {
+    Address { seed, experiment: name_hash(&format!("{case}|places")), block: 0, lane: 0 }
 }
 
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when

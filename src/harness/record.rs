@@ -125,6 +125,11 @@ pub struct Row {
     pub control: String,
     /// The value of the swept quantity; `None` for experiments outside the sweep.
     pub swept: Option<f64>,
+    /// The kernel that draws, `ordered` or `order-free`; empty for what is refused.
+    pub kernel: String,
+    /// How many experiments of the case, this one included, look the medium up once for all; `None`
+    /// where each does for itself.
+    pub sharing: Option<u64>,
     /// The channel's name, as in `T(5)`; empty where the value has one channel only.
     pub channel: String,
     /// How many draws the means, variances and z-scores of this row are of: a number fixed by the

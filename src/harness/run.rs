@@ -113,15 +113,19 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
             }
         }
         for units in units(&fronts).chunks(BATCH) {
-            let drawn: Vec<Option<Block>> = units
+            let drawn: Vec<Vec<Option<Block>>> = units
                 .par_iter()
-                .map(|&(planned, block, _)| {
-                    let drawn = if expired() { None } else { draw::block(planned, block) };
-                    progress(drawn.as_ref().map_or(0, |block| block.draws));
+                .map(|unit| {
+                    let drawn = if expired() { Vec::new() } else { unit.draw(&fronts) };
+                    progress(drawn.iter().flatten().map(|block| block.draws).sum());
                     drawn
                 })
                 .collect();
-            for (&(_, _, front), block) in units.iter().zip(drawn) {
+            let drawn = units.iter().zip(drawn).flat_map(|(unit, blocks)| {
+                let blocks = blocks.into_iter().chain(std::iter::repeat_with(|| None));
+                unit.fronts.iter().copied().zip(blocks)
+            });
+            for (front, block) in drawn {
                 // What comes after a missing block is left out: the first blocks are kept.
                 match block {
                     Some(block) if !cut_by_time => fronts[front].ahead.push_back(block),
@@ -179,9 +183,22 @@ fn fronts<'p>(plan: &'p Plan) -> Vec<Front<'p>> {
     fronts
 }
 
+/// A block of an experiment, or of several that share their lookups.
+struct Unit {
+    block: u64,
+    fronts: Vec<usize>,
+}
+
+impl Unit {
+    fn draw(&self, fronts: &[Front]) -> Vec<Option<Block>> {
+        let group: Vec<&Planned> = self.fronts.iter().map(|&front| fronts[front].planned).collect();
+        draw::blocks(&group, self.block)
+    }
+}
+
 /// The blocks up to the next look of every open experiment, block by block so that a time limit
 /// cuts all alike; and further ones while there are too few to keep all threads at work.
-fn units<'p>(fronts: &[Front<'p>]) -> Vec<(&'p Planned, u64, usize)> {
+fn units(fronts: &[Front]) -> Vec<Unit> {
     let enough = 4 * rayon::current_num_threads();
     let open = || fronts.iter().enumerate().filter(|(_, front)| !front.is_done);
     let drawn = |front: &Front| front.blocks + front.ahead.len() as u64;
@@ -201,11 +218,20 @@ fn units<'p>(fronts: &[Front<'p>]) -> Vec<(&'p Planned, u64, usize)> {
             until = longer;
         }
     }
-    let mut units: Vec<_> = open()
-        .flat_map(|(i, front)| (drawn(front)..until[i]).map(move |block| (front.planned, block, i)))
+    let mut blocks: Vec<(u64, usize)> = open()
+        .flat_map(|(i, front)| (drawn(front)..until[i]).map(move |block| (block, i)))
         .collect();
-    units.sort_by_key(|unit| unit.1);
-    units
+    blocks.sort_unstable();
+    let together = |a: &(u64, usize), b: &(u64, usize)| {
+        let (first, second) = (&fronts[a.1], &fronts[b.1]);
+        let shares =
+            first.planned.places.is_some() && first.planned.places == second.planned.places;
+        a.0 == b.0 && first.case == second.case && shares
+    };
+    let groups = blocks.chunk_by(together);
+    groups
+        .map(|group| Unit { block: group[0].0, fronts: group.iter().map(|g| g.1).collect() })
+        .collect()
 }
 
 /// The look after one at `blocks`.

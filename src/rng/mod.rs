@@ -106,6 +106,16 @@ impl Streams {
         &mut self.lanes[lane]
     }
 
+    /// The places of the next request of order-free draws: the streams as they stand. Each goes on
+    /// by one word.
+    pub fn places(&mut self) -> Lanes {
+        let places = Lanes::of(&self.lanes);
+        for lane in &mut self.lanes {
+            lane.word();
+        }
+        places
+    }
+
     /// The next word of each lane in turn, for those who look at the streams themselves.
     pub fn words(mut self) -> impl Iterator<Item = u64> {
         std::iter::from_fn(move || Some(self.of_next_draw().word()))

@@ -16,6 +16,7 @@ use std::convert::Infallible;
 use fearless_simd::{Bytes, ExtractToken, Simd, SimdBase, SimdInt, f64x8, u64x8};
 use rand::TryRng;
 
+use super::mix;
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 
@@ -178,6 +179,14 @@ impl Lanes {
     pub fn of(streams: &[Xoshiro<u64>; WIDTH]) -> Self {
         let word = |word: usize, lane: usize| streams[lane].state[word];
         Self(std::array::from_fn(|i| std::array::from_fn(|lane| word(i, lane))))
+    }
+
+    /// The streams of a branch: found from where these stand and a number, without going there.
+    #[must_use]
+    pub fn branch(&self, number: u32) -> Self {
+        let shift = u64::from(number) + 1;
+        let branched = |word: u64| mix(word ^ mix(shift));
+        Self(self.0.map(|words| words.map(branched)))
     }
 
     /// Each of the streams by itself.

@@ -21,6 +21,7 @@ use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
+use crate::estimators::walkers::{self, Walkers};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -57,6 +58,14 @@ impl Estimator<Transmittance> for Ratio {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Weight, medium, rng)
+    }
+
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<Transmittance>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn Walkers + 'a>> {
+        walkers::product(setup, Weight, request)
     }
 
     fn draw_packets<'a, M: Extinction>(

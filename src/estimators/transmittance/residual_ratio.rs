@@ -22,6 +22,7 @@ use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
+use crate::estimators::walkers::{self, Walkers};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls, walk};
 use crate::media::{Control, Extinction};
 use crate::problems::Transmittance;
@@ -71,6 +72,14 @@ impl Estimator<Transmittance> for ResidualRatio {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Weight, medium, rng)
+    }
+
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<Transmittance>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn Walkers + 'a>> {
+        walkers::product(setup, Weight, request)
     }
 
     fn draw_packets<'a, M: Extinction>(

@@ -32,6 +32,7 @@ use fearless_simd::Level;
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
+use crate::estimators::walkers::{self, Walkers};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -115,6 +116,14 @@ impl Estimator<Transmittance> for SingleParticle {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &self.rule, medium, rng)
+    }
+
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<Transmittance>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn Walkers + 'a>> {
+        walkers::product(setup, self.rule, request)
     }
 
     fn draw_packets<'a, M: Extinction>(

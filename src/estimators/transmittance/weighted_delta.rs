@@ -19,6 +19,7 @@ use fearless_simd::Level;
 use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
+use crate::estimators::walkers::{self, Walkers};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -57,6 +58,14 @@ impl Estimator<Transmittance> for WeightedDelta {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &RULE, medium, rng)
+    }
+
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<Transmittance>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn Walkers + 'a>> {
+        walkers::product(setup, RULE, request)
     }
 
     fn draw_packets<'a, M: Extinction>(

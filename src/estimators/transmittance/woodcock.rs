@@ -21,6 +21,7 @@ use fearless_simd::Level;
 use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
+use crate::estimators::walkers::{self, Walkers};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
@@ -69,6 +70,14 @@ impl Estimator<Transmittance> for Woodcock {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         walk::product(setup, &Null, medium, rng)
+    }
+
+    fn walkers<'a>(
+        &'a self,
+        setup: &'a Setup<Transmittance>,
+        request: walkers::Request<'a>,
+    ) -> Option<Box<dyn Walkers + 'a>> {
+        walkers::product(setup, Null, request)
     }
 
     fn draw_packets<'a, M: Extinction>(
