@@ -249,3 +249,31 @@ fn a_sampling_extinction_that_touches_zero_is_refused() {
     assert!(refused("{ knots = [0, 1], values = [0.2, 0.2] }"));
     assert!(!refused("{ knots = [0, 1], values = [0, 0.2] }"));
 }
+
+/// Ratio tracking and the double particle without a control are one estimator.
+#[test]
+fn what_is_the_same_by_definition_is_drawn_once() {
+    let text = |estimators: &str| {
+        format!(
+            "title = \"same\"\n[problem.transmittance]
+            medium.piecewise-constant = {{ breaks = [0, 1, 2], values = [0.4, 0.9] }}\nspan = [0, 2]
+            sampling.constant.value = 1.5\nestimators = [{estimators}]"
+        )
+    };
+    let double = "{ double = {} }";
+    let rows = common::rows(
+        &text(&format!("{{ ratio = {{}} }}, {double}, {{ residual-ratio = {{}} }}")),
+        100_000,
+    );
+    let alone = common::rows(&text(double), 100_000);
+    assert_eq!([&rows[0].same_as, &rows[1].same_as, &rows[2].same_as], ["", "ratio", ""]);
+    assert_eq!(alone[0].same_as, "", "there is no other");
+    for row in [&rows[1], &alone[0]] {
+        assert_eq!(
+            (row.mean, row.variance, row.drawn),
+            (rows[0].mean, rows[0].variance, rows[0].drawn)
+        );
+        assert_eq!(row.verdict, rows[0].verdict);
+    }
+    assert_ne!(rows[2].mean, rows[0].mean, "its control is the mean");
+}

@@ -99,6 +99,12 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
+    /// The estimator that it is by definition where it has no control; `None` if it is its own.
+    #[must_use]
+    fn without_control() -> Option<&'static str> {
+        None
+    }
+
     /// The control it uses where the case gives none.
     #[must_use]
     fn default_control() -> Option<Box<dyn controls::Recipe>> {

@@ -151,6 +151,8 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn label(&self, albedo: bool) -> String;
     /// See [`Estimator::with_albedo`].
     fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>>;
+    /// See [`Estimator::without_control`].
+    fn without_control(&self) -> Option<&'static str>;
     /// See [`Estimator::default_control`].
     fn default_control(&self) -> Option<Box<dyn controls::Recipe>>;
     /// See [`Estimator::domain`].
@@ -180,6 +182,10 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
 
     fn with_albedo(&self, albedo: f64) -> Option<Box<dyn Entry<P>>> {
         Estimator::with_albedo(self, albedo).map(|page| Box::new(page) as Box<dyn Entry<P>>)
+    }
+
+    fn without_control(&self) -> Option<&'static str> {
+        E::without_control()
     }
 
     fn default_control(&self) -> Option<Box<dyn controls::Recipe>> {

@@ -12,6 +12,7 @@ use super::plan::{BLOCK, Planned};
 use super::scenario::Ready;
 use crate::estimators::DrawBuffer;
 use crate::estimators::walkers::{Request, Walkers};
+use crate::numeric::sum::sum_in_lanes;
 use crate::rng::Streams;
 use crate::stats::Tally;
 use crate::stats::gate::{GateSums, SUMS};
@@ -208,7 +209,7 @@ impl Absorber {
                 y.clear();
                 (scalar.observe)(buffer, y);
                 sums.absorb(y, &scalar.design.arguments());
-                *total += sum(y);
+                *total += sum_in_lanes(y, |y| y);
             }
             (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(buffer, first, sums),
             (Self::Largest(most), Kind::Always(always)) => {
@@ -231,18 +232,6 @@ impl Absorber {
             _ => Answer::Silent,
         }
     }
-}
-
-/// The sum in eight lanes, whose additions need not wait for each other.
-fn sum(y: &[f64]) -> f64 {
-    let (rows, rest) = y.as_chunks::<8>();
-    let mut lanes = [0.0; 8];
-    for row in rows {
-        for (lane, y) in lanes.iter_mut().zip(row) {
-            *lane += y;
-        }
-    }
-    lanes.iter().sum::<f64>() + rest.iter().sum::<f64>()
 }
 
 /// The larger of two, or not a number where one is none.

@@ -166,12 +166,14 @@ fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
     let law = prediction.lookups.as_ref();
     let kernel = ready.experiment.order().word();
+    let same_as = twin(case, planned).unwrap_or_default();
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
         let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
         Row {
             kernel: kernel.to_owned(),
             sharing: sharing(case, planned),
+            same_as: same_as.clone(),
             channel: channel.name.clone(),
             truth: Some(channel.truth.value),
             truth_error: Some(channel.truth.error),
@@ -196,6 +198,12 @@ fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
         }
     });
     rows.collect()
+}
+
+/// The estimator that an experiment is by definition, where the case has it too.
+fn twin(case: &PlannedCase, planned: &Planned) -> Option<String> {
+    let index = case.experiments.iter().position(|other| std::ptr::eq(other, planned))?;
+    case.twin(index).map(|twin| case.experiments[twin].names.estimator.clone())
 }
 
 /// How many experiments of the case share an experiment's lookups.

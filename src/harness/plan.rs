@@ -82,6 +82,28 @@ pub struct PlannedCase<'a> {
     pub experiments: Vec<Planned>,
 }
 
+impl PlannedCase<'_> {
+    /// The experiment before this one that it is by definition: their draws are the same, and made
+    /// once.
+    #[must_use]
+    pub fn twin(&self, index: usize) -> Option<usize> {
+        let this = &self.experiments[index];
+        let asked = |planned: &Planned| -> Vec<String> {
+            planned.questions.iter().map(|question| question.check.clone()).collect()
+        };
+        let is_same = |other: &Planned| {
+            (other.address, other.draws, other.fixed, other.horizon)
+                == (this.address, this.draws, this.fixed, this.horizon)
+                && other.expect_biased == this.expect_biased
+                && asked(other) == asked(this)
+        };
+        let ready = this.outcome.is_ok();
+        (0..index).find(|&i| {
+            ready && self.experiments[i].outcome.is_ok() && is_same(&self.experiments[i])
+        })
+    }
+}
+
 /// One experiment.
 pub struct Planned {
     /// Which estimator of the case.
@@ -361,7 +383,9 @@ fn places_address(seed: u64, case: &str) -> Address {
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when
 /// other experiments join or leave the run. `twins` come before it in the case under the same name.
 fn address(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
-    let Names { estimator, sampling, sampling_kind, control } = names;
+    let Names { sampling, sampling_kind, control, .. } = names;
+    // What is the same by definition makes the same draws.
+    let estimator = names.alias.as_ref().unwrap_or(&names.estimator);
     let sampling = sampling.map_or(String::new(), |value| value.to_string());
     let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
     let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");

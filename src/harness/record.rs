@@ -127,6 +127,9 @@ pub struct Row {
     pub swept: Option<f64>,
     /// The kernel that draws, `ordered` or `order-free`; empty for what is refused.
     pub kernel: String,
+    /// The estimator before it in the case that it is by definition: it was drawn once for both. Empty
+    /// for what is drawn for itself.
+    pub same_as: String,
     /// How many experiments of the case, this one included, look the medium up once for all; `None`
     /// where each does for itself.
     pub sharing: Option<u64>,

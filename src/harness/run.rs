@@ -145,6 +145,13 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     for front in fronts {
         cases[front.case][front.index] = front.drawn;
     }
+    for (drawn, planned_case) in cases.iter_mut().zip(&plan.cases) {
+        for index in 0..drawn.len() {
+            if let Some(twin) = planned_case.twin(index) {
+                drawn[index] = drawn[twin].clone();
+            }
+        }
+    }
     Draws { cases, cut_by_time, cut_by_budget }
 }
 
@@ -166,7 +173,7 @@ fn fronts<'p>(plan: &'p Plan) -> Vec<Front<'p>> {
     let mut fronts = Vec::new();
     for (case, planned_case) in plan.cases.iter().enumerate() {
         for (index, planned) in planned_case.experiments.iter().enumerate() {
-            if planned.outcome.is_ok() {
+            if planned.outcome.is_ok() && planned_case.twin(index).is_none() {
                 fronts.push(Front {
                     case,
                     index,

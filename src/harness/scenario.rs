@@ -4,6 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::mutation::Walk;
 use super::sweep::What;
+pub use super::written::Names;
 use super::written::{Usual, Written, predict, read_if};
 use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
@@ -72,19 +73,6 @@ pub trait AnyScenario: Send + Sync {
         name: &str,
         walk: Walk,
     ) -> Option<Result<Box<dyn Experiment>, Refusal>>;
-}
-
-/// What an experiment is called.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Names {
-    /// The estimator with its settings.
-    pub estimator: String,
-    /// The constant σ̂.
-    pub sampling: Option<f64>,
-    /// σ̂ in words.
-    pub sampling_kind: String,
-    /// The control in words.
-    pub control: String,
 }
 
 /// An experiment that can be drawn, or the reason why not.
@@ -300,7 +288,9 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
             (_, Some(recipe)) => (recipe.constant(), recipe.label()),
             (_, None) => (None, String::new()),
         };
-        Names { estimator: name, sampling, sampling_kind, control }
+        let is_plain = control.is_empty() && sampling.is_some();
+        let alias = if is_plain { written.alias() } else { None };
+        Names { estimator: name, sampling, sampling_kind, control, alias }
     }
 
     fn prepare(&self, estimator: usize, variation: Variation, address: Address) -> Prepared {

@@ -35,6 +35,21 @@ pub struct Usual {
     pub sampling: bool,
 }
 
+/// What an experiment is called.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Names {
+    /// The estimator with its settings.
+    pub estimator: String,
+    /// The constant σ̂.
+    pub sampling: Option<f64>,
+    /// σ̂ in words.
+    pub sampling_kind: String,
+    /// The control in words.
+    pub control: String,
+    /// The estimator that it is by definition, where that is another one.
+    pub alias: Option<String>,
+}
+
 /// What theory says of the draws of a kernel.
 pub fn predict<P: Problem>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> Prediction {
     let prediction = entry.predict(setup);
@@ -59,12 +74,21 @@ pub fn read_if<T: ?Sized>(
 impl<P: Problem> Written<P> {
     /// The estimator with its settings, as in `single (terminating, order-free)`.
     pub fn label(&self, albedo: bool) -> String {
+        self.label_of(&self.name, albedo)
+    }
+
+    /// The same under the name of the estimator that it is by definition without a control.
+    pub fn alias(&self) -> Option<String> {
+        self.entry.without_control().map(|name| self.label_of(name, true))
+    }
+
+    fn label_of(&self, name: &str, albedo: bool) -> String {
         let mut settings = self.entry.label(albedo);
         if self.order() == Order::Free {
             let comma = if settings.is_empty() { "" } else { ", " };
             settings = format!("{settings}{comma}{}", Order::Free.word());
         }
-        if settings.is_empty() { self.name.clone() } else { format!("{} ({settings})", self.name) }
+        if settings.is_empty() { name.to_owned() } else { format!("{name} ({settings})") }
     }
 
     /// In which order the collisions of its draws come.

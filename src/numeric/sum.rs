@@ -49,6 +49,20 @@ impl FromIterator<f64> for Sum {
     }
 }
 
+/// `Σ f(x)` in eight lanes, whose additions need not wait for each other.
+#[inline]
+#[must_use]
+pub fn sum_in_lanes(values: &[f64], f: impl Fn(f64) -> f64) -> f64 {
+    let (rows, rest) = values.as_chunks::<8>();
+    let mut lanes = [0.0; 8];
+    for row in rows {
+        for (lane, &x) in lanes.iter_mut().zip(row) {
+            *lane += f(x);
+        }
+    }
+    lanes.iter().sum::<f64>() + rest.iter().map(|&x| f(x)).sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

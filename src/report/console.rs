@@ -136,6 +136,12 @@ fn footnotes(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View,
             None => notes.push(vec![row]),
         }
     }
+    for row in case.rows.iter().filter(|row| !row.same_as.is_empty()) {
+        let places = views::places(case, &[row]);
+        let at = if places.is_empty() { places } else { format!(" ({places})") };
+        let (this, other) = (&row.estimator, &row.same_as);
+        let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
+    }
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
         let places = views::places(case, &rows);

@@ -152,6 +152,7 @@ const VERDICTS: &[Column] = columns! {
     p_law = |joined| Number(joined.row.p_law);
     drawn = |joined| Count(joined.row.drawn);
     kernel = |joined| Text(joined.row.kernel.clone());
+    same_as = |joined| Text(joined.row.same_as.clone());
     sharing = |joined| Count(joined.row.sharing);
     loss_1 = |joined| Number(joined.row.losses.map(|losses| losses[0]));
     loss_2 = |joined| Number(joined.row.losses.map(|losses| losses[1]));

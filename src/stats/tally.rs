@@ -2,6 +2,9 @@
 
 use crate::numeric::sum::Sum;
 
+/// The sums side by side.
+const LANES: usize = 8;
+
 /// Sums of `y` and `y²`, where `y` is a draw less a known shift, in units of a known scale.
 ///
 /// The shift is the predicted mean, so that a small spread on a large mean loses no digits. Within
@@ -30,15 +33,24 @@ impl Tally {
     /// The sums of one block, or a part of it.
     #[must_use]
     pub fn of(values: &[f64], shift: f64, scale: f64) -> Self {
-        let (mut sum, mut squares) = (0.0, 0.0);
+        // Eight sums of each, whose additions need not wait for each other.
+        let (mut sums, mut squares) = ([0.0; LANES], [0.0; LANES]);
         let inverse = 1.0 / scale;
-        for value in values {
-            let y = (value - shift) * inverse;
-            sum += y;
-            squares += y * y;
+        let mut add = |row: &[f64]| {
+            for ((value, sum), squares) in row.iter().zip(&mut sums).zip(&mut squares) {
+                let y = (value - shift) * inverse;
+                *sum += y;
+                *squares += y * y;
+            }
+        };
+        let (rows, rest) = values.as_chunks::<LANES>();
+        for row in rows {
+            add(row);
         }
+        add(rest);
+        let squares: f64 = squares.iter().sum();
         let mut tally = Self { draws: values.len() as u64, ..Self::default() };
-        tally.sum.add(sum);
+        tally.sum.add(sums.iter().sum());
         tally.squares.add(squares);
         if !squares.is_finite() {
             tally.not_finite = values.iter().filter(|x| !x.is_finite()).count() as u64;

@@ -81,6 +81,10 @@ impl Estimator<Transmittance> for DoubleParticle {
         Some(Self)
     }
 
+    fn without_control() -> Option<&'static str> {
+        Some("ratio")
+    }
+
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         unbiased_where_covered(setup)
     }

@@ -43,6 +43,10 @@ impl Estimator<Transmittance> for ResidualRatio {
         Some(Self)
     }
 
+    fn without_control() -> Option<&'static str> {
+        Some("ratio")
+    }
+
     fn default_control() -> Option<Box<dyn controls::Recipe>> {
         Some(Box::new(controls::mean::Mean))
     }

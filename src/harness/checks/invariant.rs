@@ -14,12 +14,28 @@ use crate::estimators::DrawBuffer;
 /// The check of the invariant.
 pub struct Invariant;
 
+const LANES: usize = 8;
+
 fn largest(draws: &DrawBuffer) -> f64 {
-    let both = draws.defects.iter().zip(&draws.lookups);
-    both.fold(0.0, |most: f64, (defect, &lookups)| {
-        let y = defect / (1.0 + f64::from(lookups));
-        if y.is_nan() { y } else { most.max(y) }
-    })
+    // Eight by eight: their divisions and comparisons need not wait for each other.
+    let (mut most, mut sum) = ([0.0; LANES], [0.0; LANES]);
+    let mut add = |defects: &[f64], lookups: &[u32]| {
+        let lanes = most.iter_mut().zip(&mut sum);
+        for ((&defect, &lookups), (most, sum)) in defects.iter().zip(lookups).zip(lanes) {
+            let y = defect / (1.0 + f64::from(lookups));
+            *most = if y > *most { y } else { *most };
+            *sum += y;
+        }
+    };
+    let (defects, last_defects) = draws.defects.as_chunks::<LANES>();
+    let (lookups, last_lookups) = draws.lookups.as_chunks::<LANES>();
+    for (defects, lookups) in defects.iter().zip(lookups) {
+        add(defects, lookups);
+    }
+    add(last_defects, last_lookups);
+    // Defects are sizes: their sum is no number only where one of them is none.
+    let sum: f64 = sum.iter().sum();
+    if sum.is_nan() { sum } else { most.into_iter().fold(0.0, f64::max) }
 }
 
 impl Check for Invariant {

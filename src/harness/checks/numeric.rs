@@ -5,14 +5,14 @@
 
 use super::{Always, Ask, Check, Kind, Subject};
 use crate::estimators::DrawBuffer;
+use crate::numeric::sum::sum_in_lanes;
 
 /// The check of the numbers.
 pub struct Numeric;
 
 fn largest(draws: &DrawBuffer) -> f64 {
     // x · 0 is 0 for every finite x and not a number otherwise.
-    let zeros = draws.values.iter().flatten().map(|x| x * 0.0);
-    zeros.sum::<f64>()
+    draws.values.iter().map(|values| sum_in_lanes(values, |x| x * 0.0)).sum()
 }
 
 impl Check for Numeric {
