@@ -23,6 +23,19 @@ use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 use crate::rng::{LANES, Lanes, Streams, Xoshiro};
 
+/// With more pieces of σ̂ than this, lanes that cross them hold the others up for longer than eight
+/// lookups at once gain, unless lookups are costly.
+const MOST_PIECES: usize = 12;
+/// The same of the control, where σ̂ has several pieces, too.
+const MOST_CONTROL_PIECES: usize = 8;
+
+/// Whether packets are faster than one draw after the other.
+fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
+    let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
+    let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
+    M::IS_COSTLY || sampling.single_value().is_some() || few
+}
+
 /// What is to be drawn.
 pub struct Request<'a> {
     /// The streams of the block, where the draws before left them.
@@ -55,7 +68,7 @@ trait Walks<S: Simd> {
 }
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
-/// hardware is too narrow.
+/// hardware is too narrow or one draw after the other is faster.
 pub fn product<'a, P, M: Extinction, R: Collision>(
     level: Level,
     setup: &Setup<P>,
@@ -64,6 +77,9 @@ pub fn product<'a, P, M: Extinction, R: Collision>(
     request: Request<'a>,
 ) -> Option<Request<'a>> {
     let (sampling, control) = (&setup.sampling, &setup.control);
+    if !pays::<M>(sampling, control) {
+        return Some(request);
+    }
     let begin = setup.control_transmittance;
     let task = Product { sampling, control, begin, rule, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
@@ -76,6 +92,9 @@ pub fn flight<'a, P: Problem, M: Extinction>(
     medium: &M,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
+    if !pays::<M>(&setup.sampling, &Control::None) {
+        return Some(request);
+    }
     let ray = setup.problem.medium().span();
     let task = Flight { sampling: &setup.sampling, ray, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)

@@ -36,6 +36,9 @@ pub use placement::Placement;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
 pub trait Extinction: Send + Sync {
+    /// Whether a lookup costs so much that all else in a walk hardly counts.
+    const IS_COSTLY: bool = false;
+
     /// The extinction at `t`, written once for every lane type.
     fn extinction<L: Lane>(&self, t: L) -> L;
 }

@@ -147,6 +147,8 @@ impl OctaveLine {
 }
 
 impl Extinction for NoiseRay {
+    const IS_COSTLY: bool = true;
+
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
         self.spectrum.value(self.track.at(t), self.unit)

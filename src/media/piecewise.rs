@@ -117,6 +117,12 @@ impl Piecewise {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
     }
 
+    /// How many pieces there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.left.len()
+    }
+
     /// Whether no piece has a slope.
     #[must_use]
     pub fn is_steps(&self) -> bool {
