@@ -1,5 +1,6 @@
 //! From a plan, or from what a plan drew, to a record.
 
+use fearless_simd::Level;
 use rayon::prelude::*;
 
 use super::options::Options;
@@ -10,6 +11,7 @@ use super::record::{
 };
 use super::run::{Drawn, Draws};
 use super::{curves, findings, suite, summary};
+use crate::numeric::pack;
 use crate::stats::Tally;
 use crate::theory::optimum::Optimum;
 use crate::theory::{Channel, Prediction};
@@ -112,6 +114,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         .collect();
     let timing = Timing {
         threads: rayon::current_num_threads(),
+        level: pack::word(Level::new()),
         seconds: 0.0,
         rows: cases.iter().map(|case| vec![None; case.rows.len()]).collect(),
     };

@@ -383,6 +383,8 @@ pub struct MeasuredPoint {
 pub struct Timing {
     /// How many threads drew.
     pub threads: usize,
+    /// The vector hardware that drew, as in `avx512`.
+    pub level: String,
     /// Wall-clock seconds of the whole run.
     pub seconds: f64,
     /// Per case and row, the processor seconds of the drawing; the rows of one experiment share

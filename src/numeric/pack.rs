@@ -31,6 +31,13 @@ pub fn fuses(level: Level) -> bool {
     }
 }
 
+/// A level in a word, as in `avx512`.
+#[must_use]
+pub fn word(level: Level) -> String {
+    let name = format!("{level:?}");
+    name.split('(').next().unwrap_or_default().to_lowercase()
+}
+
 /// A computation that is compiled once for each level of vector hardware.
 pub trait Task {
     /// What it answers.

@@ -317,7 +317,7 @@ pub fn record() -> Record {
     let rows = vec![first, vec![Some(0.5); 4]];
     Record {
         results,
-        timing: Timing { threads: 2, seconds: 2.25, rows },
+        timing: Timing { threads: 2, level: "avx2".into(), seconds: 2.25, rows },
         comparison: Some(comparison()),
     }
 }

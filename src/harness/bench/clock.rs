@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 use super::curve::Sample;
 use crate::estimators::{DrawBuffer, Kernel};
 use crate::harness::plan::{BLOCK, Planned};
+use crate::numeric::pack;
 
 /// What time is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -84,8 +85,7 @@ impl Stopwatch {
     /// The vector hardware in a word.
     #[must_use]
     pub fn level_name(&self) -> String {
-        let name = format!("{:?}", self.level);
-        name.split('(').next().unwrap_or_default().to_lowercase()
+        pack::word(self.level)
     }
 
     /// Times a round of an experiment; `sample` sees its draws. The rounds' draws differ, the ways
