@@ -278,7 +278,7 @@ fn kernels() -> Vec<(&'static str, Order, Kernel)> {
         let levels = [
             ("ordered, avx2", ordered, best.as_avx2().map(Level::Avx2)),
             ("order-free, avx2", free, best.as_avx2().map(Level::Avx2)),
-            ("ordered, sse2", ordered, best.as_sse2().map(Level::Sse2)),
+            ("order-free, sse2", free, best.as_sse2().map(Level::Sse2)),
         ];
         kernels.extend(levels.into_iter().filter_map(|(name, order, level)| {
             level.map(|level| (name, order, Kernel::Packets(level)))
