@@ -283,9 +283,9 @@ fn an_order_free_kernel_that_is_not_there_is_a_mistake() {
 const SWEEP: &str = "title = \"sweep\"\nkernel = \"order-free\"\n[problem.transmittance]
     volume.eq21 = {}\nray = { origin = [1, 0, -3], direction = [0, 0.1, 1], length = 30 }
     sweep.sampling = { values = [0.7, 1.1, 1.6, 2.4] }
-    estimators = [{ ratio = {} }, { double.control.explorers.points = 5 }, { woodcock = {} },
-        { single = { rule = \"adaptive\", albedo = 0.3 } },
-        { double = { sampling.local-majorants.segments = 5 } }]";
+    estimators = [{ ratio = {} }, { double = { sampling.local-majorants.segments = 5 } },
+        { double.control.explorers.points = 5 }, { woodcock = {} },
+        { single = { rule = \"adaptive\", albedo = 0.3 } }]";
 
 #[test]
 fn shared_lookups_change_no_draw() {
@@ -311,4 +311,15 @@ fn shared_lookups_change_no_draw() {
         }
     }
     assert!(shared >= 14, "only {shared} shared their lookups");
+}
+
+#[test]
+fn order_free_draws_of_too_many_collisions_are_refused() {
+    let text = "title = \"many\"\n[problem.transmittance]
+        medium.constant.extinction = 5.0\nspan = [0, 4]\nsampling.constant.value = 1e6
+        estimators = [{ woodcock.kernel = \"order-free\" }, { woodcock = {} }]";
+    let rows = common::predicted(text);
+    assert_eq!(rows[0].verdict, Some(Verdict::Refused));
+    assert!(rows[0].reason.contains("order-free"), "{}", rows[0].reason);
+    assert_eq!(rows[1].verdict, None, "{}", rows[1].reason);
 }

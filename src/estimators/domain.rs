@@ -1,6 +1,7 @@
 //! Where an estimator exists and is unbiased.
 
 use super::Setup;
+use crate::media::Placement;
 use crate::numeric::Span;
 use crate::problems::Problem;
 
@@ -40,7 +41,24 @@ impl Refusal {
     }
 }
 
+/// More collisions than this on a ray are walked one after the other.
+const MOST_COLLISIONS: f64 = 1e6;
+
 impl<P: Problem> Setup<P> {
+    /// Whether a table of the numbers of collisions is small enough for order-free draws.
+    ///
+    /// # Errors
+    ///
+    /// Λ and its limit.
+    pub fn require_few_collisions(&self) -> Result<(), Refusal> {
+        let collisions = Placement::new(&self.sampling).depth();
+        if collisions <= MOST_COLLISIONS {
+            return Ok(());
+        }
+        let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
+        Err(Refusal::mismatch(needs, format!("∫σ̂ = {collisions:e}")))
+    }
+
     fn residual(&self, t: f64, extinction: f64) -> f64 {
         extinction - self.control.extinction(t)
     }

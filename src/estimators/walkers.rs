@@ -146,24 +146,41 @@ struct Collisions<'a, R> {
 }
 
 impl<R: Collision> Collisions<'_, R> {
-    /// The factors of the weights at the collisions of a pack, and who survives, as bits.
+    /// What becomes of the walks at the collisions of a pack.
     #[inline(always)]
-    fn fate<S: Simd>(&self, simd: S, from: usize) -> (f64x8<S>, u64) {
+    fn fate<S: Simd>(&self, simd: S, from: usize) -> Fates<S> {
         let Self { rule, sites, subtracted, mean_free_path } = self;
         let mean_free_path = match *mean_free_path {
             Some(path) => f64x8::splat(simd, path),
             None => eight(simd, &sites.mean_free_path, from),
         };
         let residual = eight(simd, &sites.extinction, from) - eight(simd, subtracted, from);
-        let outcome = rule.at(residual * mean_free_path);
-        let survived = if R::DECIDES {
-            eight(simd, &sites.decision, from).below(outcome.survival).to_bitmask()
-        } else {
-            u64::MAX
-        };
-        (outcome.weight, survived)
+        let ratio = residual * mean_free_path;
+        let outcome = rule.at(ratio);
+        if !R::DECIDES {
+            return Fates { factor: outcome.weight, survived: ALL, unknown: 0 };
+        }
+        // A ratio that is no number makes the draw none: its walk survives to show it.
+        let known = ratio.at_most(ratio);
+        let survived = eight(simd, &sites.decision, from).below(outcome.survival);
+        let unknown = ALL & !known.to_bitmask();
+        let factor = Lane::select(known, outcome.weight, ratio);
+        Fates { factor, survived: survived.to_bitmask() | unknown, unknown }
     }
 }
+
+/// What becomes of the walks of a pack.
+struct Fates<S: Simd> {
+    /// The factors of their weights.
+    factor: f64x8<S>,
+    /// Who survives, as bits.
+    survived: u64,
+    /// Whose ratio is no number, as bits.
+    unknown: u64,
+}
+
+/// The bits of a whole pack.
+const ALL: u64 = (1 << WIDTH) - 1;
 
 #[inline(always)]
 fn eight<S: Simd>(simd: S, row: &[f64; BATCH], from: usize) -> f64x8<S> {
@@ -188,9 +205,14 @@ impl<R: Collision> Task for Fate<'_, R> {
         let Self { collisions, weights, first, count, mut survivors } = self;
         let whole = count / WIDTH * WIDTH;
         for from in (0..whole).step_by(WIDTH) {
-            let (factor, survived) = collisions.fate(simd, from);
+            let Fates { factor, survived, unknown } = collisions.fate(simd, from);
             if R::DECIDES && !R::WEIGHS {
-                // They have the weight that they began with.
+                // They have the weight that they began with, unless it is no number.
+                if unknown != 0
+                    && let Some(weight) = weights.get_mut(survivors)
+                {
+                    *weight = f64::NAN;
+                }
                 survivors += survived.count_ones() as usize;
             } else if let Some(places) = weights.get_mut(first + from..first + from + WIDTH) {
                 let weight = f64x8::from_slice(simd, places) * factor;
@@ -205,7 +227,7 @@ impl<R: Collision> Task for Fate<'_, R> {
             }
         }
         if whole < count {
-            let (factor, survived) = collisions.fate(simd, whole);
+            let Fates { factor, survived, .. } = collisions.fate(simd, whole);
             let mut pack = [0.0; WIDTH];
             let last = &weights[first + whole..first + count];
             pack[..last.len()].copy_from_slice(last);

@@ -146,7 +146,10 @@ impl Planned {
     pub fn streams(&self, block: u64) -> Streams {
         let own = (self.find_streams)(Address { block, ..self.address });
         match self.places {
-            Some(places) => Streams { counts: own.counts, ..Address { block, ..places }.streams() },
+            Some(places) => {
+                let shared = (self.find_streams)(Address { block, ..places });
+                Streams { counts: own.counts, ..shared }
+            }
             None => own,
         }
     }

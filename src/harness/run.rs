@@ -210,10 +210,13 @@ fn units(fronts: &[Front]) -> Vec<Unit> {
     let open = || fronts.iter().enumerate().filter(|(_, front)| !front.is_done);
     let drawn = |front: &Front| front.blocks + front.ahead.len() as u64;
     let mut until: Vec<u64> = fronts.iter().map(|front| front.look.max(drawn(front))).collect();
-    let missing = |until: &[u64]| -> u64 { open().map(|(i, front)| until[i] - drawn(front)).sum() };
+    let blocks = |until: &[u64]| -> Vec<(u64, usize)> {
+        open().flat_map(|(i, front)| (drawn(front)..until[i]).map(move |b| (b, i))).collect()
+    };
+    let missing = |until: &[u64]| grouped(fronts, blocks(until)).len();
     // Only where a look waits for blocks is there anything to draw.
     if missing(&until) > 0 {
-        while missing(&until) < enough as u64 {
+        while missing(&until) < enough {
             let longer: Vec<u64> = fronts
                 .iter()
                 .zip(&until)
@@ -225,20 +228,24 @@ fn units(fronts: &[Front]) -> Vec<Unit> {
             until = longer;
         }
     }
-    let mut blocks: Vec<(u64, usize)> = open()
-        .flat_map(|(i, front)| (drawn(front)..until[i]).map(move |block| (block, i)))
-        .collect();
-    blocks.sort_unstable();
-    let together = |a: &(u64, usize), b: &(u64, usize)| {
-        let (first, second) = (&fronts[a.1], &fronts[b.1]);
-        let shares =
-            first.planned.places.is_some() && first.planned.places == second.planned.places;
-        a.0 == b.0 && first.case == second.case && shares
+    grouped(fronts, blocks(&until))
+}
+
+/// The blocks as units of work: those of experiments that share their lookups are one.
+fn grouped(fronts: &[Front], mut blocks: Vec<(u64, usize)>) -> Vec<Unit> {
+    let company = |&(block, i): &(u64, usize)| {
+        let front = &fronts[i];
+        let places = front.planned.places.map(|places| (front.case, places.experiment));
+        // Nobody else has this place.
+        (block, places.is_none().then_some(i), places)
     };
-    let groups = blocks.chunk_by(together);
-    groups
-        .map(|group| Unit { block: group[0].0, fronts: group.iter().map(|g| g.1).collect() })
-        .collect()
+    blocks.sort_by_key(|unit| (company(unit), unit.1));
+    let groups = blocks.chunk_by(|a, b| company(a) == company(b));
+    let unit = |group: &[(u64, usize)]| Unit {
+        block: group[0].0,
+        fronts: group.iter().map(|member| member.1).collect(),
+    };
+    groups.map(unit).collect()
 }
 
 /// The look after one at `blocks`.

@@ -300,6 +300,9 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         let order = written.order();
         let expect_biased = written.expect_biased;
         let outcome = self.setup(estimator, variation, address).and_then(|setup| {
+            if order == Order::Free {
+                setup.require_few_collisions()?;
+            }
             let refusal = entry.domain(&setup).err();
             if let Some(refusal) = refusal {
                 if !expect_biased {

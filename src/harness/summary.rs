@@ -43,7 +43,9 @@ fn close(gate: &mut Gate, cases: &[CaseRecord]) {
 /// once, in the first of its rows.
 fn scalars(case: &CaseRecord) -> impl Iterator<Item = (&Row, &Finding)> {
     let first = |i: usize, row: &Row| i == 0 || case.rows[i - 1].stream != row.stream;
-    case.rows.iter().enumerate().flat_map(move |(i, row)| {
+    // What was drawn once is told once.
+    let own = case.rows.iter().enumerate().filter(|(_, row)| row.same_as.is_empty());
+    own.flat_map(move |(i, row)| {
         let is_first = first(i, row);
         let own = move |finding: &&Finding| {
             let is_whole = finding.channel.is_empty();

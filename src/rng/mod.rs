@@ -116,6 +116,18 @@ impl Streams {
         places
     }
 
+    /// The words that order-free draws use: those of the first branches of each request's places.
+    pub fn branched_words(mut self) -> impl Iterator<Item = u64> {
+        const BRANCHES: u32 = 8;
+        const WORDS: usize = 64;
+        std::iter::repeat_with(move || self.places()).flat_map(|places| {
+            (0..BRANCHES).flat_map(move |number| {
+                let lanes = places.branch(number).apart();
+                Self { lanes, turn: 0, counts: lanes[0] }.words().take(WORDS)
+            })
+        })
+    }
+
     /// The next word of each lane in turn, for those who look at the streams themselves.
     pub fn words(mut self) -> impl Iterator<Item = u64> {
         std::iter::from_fn(move || Some(self.of_next_draw().word()))
@@ -178,6 +190,7 @@ mod tests {
             .flat_map(|block| Address { block, ..base }.streams().words().take(LANES))
             .collect();
         beginnings.extend((0..4).map(|block| Address { block, ..base }.streams().counts.word()));
+        beginnings.extend(base.streams().branched_words().take(4096));
         beginnings.push(base.pilot().next_u64());
         beginnings.sort_unstable();
         assert!(beginnings.windows(2).all(|pair| pair[0] != pair[1]));

@@ -50,21 +50,22 @@ impl CountLaw {
 impl CountLaw {
     /// The lookups of an order-free draw: of N ~ Poisson(Λ) collisions it looks at one after the
     /// other, in any order, until it has survived them all or one has killed it. Each lies anywhere,
-    /// so each is survived with the same chance `s = ∫σ̂q/Λ`.
+    /// so each is survived with the same chance `s = 1 − K/Λ`, `K = ∫σ̂(1 − q)`.
     ///
     /// ```text
     /// P(M = 0) = P(N = 0),   P(M = m) = s^{m−1} ((1 − s) P(N ≥ m) + s P(N = m))
-    /// E[M] = (1 − e^{−(1−s)Λ})/(1 − s)
+    /// E[M] = (1 − e^{−K})/(1 − s)
     /// ```
     ///
     /// Without probabilities, for Λ > 2000, moments are those of a walk with `r` constant.
     #[must_use]
-    pub fn in_layers(collisions: f64, survival: f64) -> Self {
+    pub fn in_layers(collisions: f64, deaths: f64) -> Self {
         let poisson = Self::poisson(collisions);
-        let killed = 1.0 - survival;
-        if killed * collisions <= 1e-13 {
+        if !(deaths > 1e-13 && deaths <= collisions && collisions.is_finite()) {
             return poisson;
         }
+        let killed = deaths / collisions;
+        let survival = 1.0 - killed;
         let mut pmf = poisson.pmf;
         let (mut beyond, mut power) = (0.0, vec![1.0; pmf.len()]);
         for m in 2..pmf.len() {
@@ -82,7 +83,7 @@ impl CountLaw {
             // k ∫₀^Λ e^{−(1−s)x} (sx)^{k−1} dx
             let order = (k + 1) as f64;
             let whole = survival.powf(order - 1.0) * gamma(order + 1.0) / killed.powf(order);
-            whole * gamma_lr(order, killed * collisions)
+            whole * gamma_lr(order, deaths)
         });
         let integrals = Integrals { lookups, flown: collisions, ..Integrals::default() };
         Self { pmf, poisson: false, ..integrals.count() }
@@ -159,7 +160,7 @@ mod tests {
     #[test]
     fn moments_in_layers_are_those_of_the_probabilities() {
         for (collisions, survival) in [(0.3, 0.9), (8.0, 0.0), (20.0, 0.83), (300.0, 0.999)] {
-            let law = CountLaw::in_layers(collisions, survival);
+            let law = CountLaw::in_layers(collisions, (1.0 - survival) * collisions);
             let moment = |f: &dyn Fn(f64) -> f64| -> f64 {
                 law.pmf.iter().enumerate().map(|(m, p)| f(m as f64) * p).sum()
             };
@@ -173,7 +174,7 @@ mod tests {
             let exact = -(-(1.0 - survival) * collisions).exp_m1() / (1.0 - survival);
             assert!((law.mean / exact - 1.0).abs() < 1e-12);
         }
-        assert!(CountLaw::in_layers(5.0, 1.0).poisson, "nothing kills");
+        assert!(CountLaw::in_layers(5.0, 0.0).poisson, "nothing kills");
     }
 
     #[test]

@@ -43,7 +43,7 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
     Prediction {
         channels,
         lookups: Some(product.lookups(&mesh, &whole)),
-        lookups_in_layers: None,
+        layers: None,
         random_numbers: Some(whole.flown + 1.0),
         law: None,
         covariances,

@@ -10,8 +10,9 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
-    /// The same of an order-free draw; `None` where there is none.
-    pub lookups_in_layers: Option<CountLaw>,
+    /// Λ = ∫σ̂ and ∫σ̂(1 − q), which make the law of an order-free draw's lookups; `None` where there
+    /// are no such draws.
+    pub layers: Option<[f64; 2]>,
     /// `E[random numbers]` of one draw as this crate makes it; `None` where it is not worked out.
     pub random_numbers: Option<f64>,
     /// The whole law of the draw, where it is known.
@@ -156,7 +157,7 @@ impl Prediction {
         Self {
             channels,
             lookups: None,
-            lookups_in_layers: None,
+            layers: None,
             random_numbers: None,
             law: None,
             covariances: Vec::new(),
@@ -168,12 +169,8 @@ impl Prediction {
     /// The same of order-free draws: their values have the same law, their lookups may have not.
     #[must_use]
     pub fn order_free(self) -> Self {
-        Self {
-            lookups: self.lookups_in_layers,
-            lookups_in_layers: None,
-            random_numbers: None,
-            ..self
-        }
+        let lookups = self.layers.map(|[flown, killed]| CountLaw::in_layers(flown, killed));
+        Self { lookups, random_numbers: None, ..self }
     }
 
     /// An experiment with one unbiased channel.
@@ -182,7 +179,7 @@ impl Prediction {
         Self {
             channels: vec![channel],
             lookups: Some(lookups),
-            lookups_in_layers: None,
+            layers: None,
             random_numbers: None,
             law: None,
             covariances: Vec::new(),

@@ -51,8 +51,8 @@ pub struct Integrals {
     pub decisions: f64,
     /// `∫σ̂`.
     pub flown: f64,
-    /// `∫σ̂q`.
-    pub survived: f64,
+    /// `∫σ̂(1 − q)`.
+    pub killed: f64,
     /// `e^{−K(S)}`: how many walks nothing ends.
     pub alive: f64,
     /// The length on which `w ≤ 2σ_t`.
@@ -160,13 +160,8 @@ impl<'a> Product<'a> {
         // One for each flight, the last one included, and one for each fate that is open.
         let walked = lookups.mean + all.alive + all.decisions;
         let random_numbers = (self.killing == 0.0).then_some(walked);
-        let lookups_in_layers = (self.killing == 0.0).then(|| all.count_in_layers());
-        Prediction {
-            lookups_in_layers,
-            random_numbers,
-            stable_share,
-            ..Prediction::single(channel, lookups)
-        }
+        let layers = (self.killing == 0.0).then_some([all.flown, all.killed]);
+        Prediction { layers, random_numbers, stable_share, ..Prediction::single(channel, lookups) }
     }
 }
 
@@ -200,15 +195,6 @@ impl Integrals {
         let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
         CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
-    }
-}
-
-impl Integrals {
-    /// The number of lookups of an order-free draw, see [`CountLaw::in_layers`].
-    #[must_use]
-    pub fn count_in_layers(&self) -> CountLaw {
-        let survival = if self.flown > 0.0 { self.survived / self.flown } else { 1.0 };
-        CountLaw::in_layers(self.flown, survival)
     }
 }
 
@@ -276,7 +262,7 @@ impl Totals {
             lookups: self.lookups.map(|sum| sum.value()),
             decisions: self.decisions.value(),
             flown: self.flown.value(),
-            survived: self.survivals.value(),
+            killed: self.deaths.value(),
             alive: (-self.deaths.value()).exp(),
             stable: self.stable.value(),
         }

@@ -157,7 +157,8 @@ impl Baseline {
             for (r, row) in case.rows.iter().enumerate().filter(|(_, row)| row.drawn.is_some()) {
                 let is_first = r == 0 || case.rows[r - 1].stream != row.stream;
                 let seconds = record.timing.rows.get(c).and_then(|rows| *rows.get(r)?);
-                let seconds = seconds.filter(|_| is_first);
+                // What shares its lookups takes a time that depends on its company.
+                let seconds = seconds.filter(|_| is_first && row.sharing.is_none());
                 entries.push(Entry::of(case, row, results.seed, &digest, seconds, is_first));
             }
         }

@@ -7,7 +7,7 @@
 //! Rounds are independent, so that the error over several is smoother than |mean − T| of one. Where
 //! theory has a variance, it should follow √(V/n).
 
-use crate::estimators::DrawBuffer;
+use crate::estimators::{DrawBuffer, Order};
 use crate::harness::plan::Planned;
 use crate::stats::Tally;
 
@@ -59,7 +59,13 @@ impl Sample {
             |_| Vec::new(),
             |ready| ready.prediction.channels.iter().map(|channel| channel.truth.value).collect(),
         );
-        Self::about(&truths, draws)
+        let mut sample = Self::about(&truths, draws);
+        if planned.outcome.as_ref().is_ok_and(|ready| ready.experiment.order() == Order::Free) {
+            // Draws of a request come sorted: only whole requests are a sample.
+            let length = DrawBuffer::LENGTH as u64;
+            sample.looks.retain(|&look| look % length == 0 || look == draws);
+        }
+        sample
     }
 
     /// About these truths, one to a channel.

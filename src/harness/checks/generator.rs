@@ -12,6 +12,7 @@
 //! are compared with each other as blocks are.
 
 use super::{Ask, Check, Inspected, Kind, Subject};
+use crate::estimators::Order;
 use crate::stats::{correlation, ties};
 
 /// The streams of how many blocks are compared.
@@ -47,12 +48,21 @@ impl Check for Generator {
     }
 }
 
+/// The words of a block as the draws use them.
+fn words(inspected: &Inspected, block: u64) -> Box<dyn Iterator<Item = u64>> {
+    let streams = (inspected.streams)(block);
+    match inspected.experiment.order() {
+        Order::Along => Box::new(streams.words()),
+        Order::Free => Box::new(streams.branched_words()),
+    }
+}
+
 fn p_value(inspected: &Inspected) -> f64 {
     // Neighbouring blocks follow each other, and so do blocks far apart.
     let blocks = inspected.blocks.clamp(2, BLOCKS);
     let mut marked = Vec::new();
     for block in 0..blocks {
-        let words: Vec<u64> = (inspected.streams)(block).words().take(WORDS).collect();
+        let words: Vec<u64> = words(inspected, block).take(WORDS).collect();
         let bits = ties::or_of_words(words[..SHORT].iter().map(|word| word >> 11));
         if bits != (1 << 53) - 1 {
             return 0.0;
