@@ -33,7 +33,7 @@ use crate::numeric::pack::{self, Task, WIDTH};
 use crate::rng::{Lanes, Xoshiro};
 
 /// Collisions that are looked up together: their numbers stay in the first-level cache.
-pub const BATCH: usize = 256;
+pub const BATCH: usize = 512;
 
 /// What is known of each collision of a batch.
 #[repr(align(64))]
@@ -76,13 +76,14 @@ pub fn draw(
             return;
         }
         // Streams of the layer: how far others went in the one before does not matter.
-        let (mut chance, mut fate) = (places.branch(2 * layer), places.branch(2 * layer + 1));
+        let mut chance = places.branch(2 * layer);
+        let mut fate = decides.then(|| places.branch(2 * layer + 1));
         for first in (0..most).step_by(BATCH) {
             sites.length = BATCH.min((most - first).next_multiple_of(WIDTH));
             let (chance, sites) = (&mut chance, &mut *sites);
             medium.profile().visit(Visit { level, placement, chance, sites });
-            if decides {
-                pack::on(level, Decide { fate: &mut fate, sites });
+            if let Some(fate) = &mut fate {
+                pack::on(level, Decide { fate, sites });
             }
             for walkers in requests.iter_mut() {
                 walkers.collide(level, sites, first);
