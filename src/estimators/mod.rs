@@ -192,6 +192,45 @@ macro_rules! estimators {
 }
 use estimators;
 
+/// The draws of a product estimator of transmittance, by all kernels: all that differs is the rule at
+/// a collision, as in `product_draws!(self => self.rule)`.
+macro_rules! product_draws {
+    ($this:ident => $rule:expr) => {
+        const KEEPS_BOOKS: bool = true;
+        const IN_PACKETS: bool = true;
+        const ORDER_FREE: bool = true;
+
+        #[inline(always)]
+        fn draw<M: $crate::media::Extinction>(
+            &$this,
+            setup: &$crate::estimators::Setup<Transmittance>,
+            medium: &M,
+            rng: &mut $crate::rng::Stream,
+        ) -> $crate::estimators::Draw<[f64; 1]> {
+            $crate::estimators::walk::product(setup, &$rule, medium, rng)
+        }
+
+        fn walkers<'a>(
+            &'a $this,
+            setup: &'a $crate::estimators::Setup<Transmittance>,
+            request: $crate::estimators::walkers::Request<'a>,
+        ) -> Option<Box<dyn $crate::estimators::walkers::Walkers + 'a>> {
+            $crate::estimators::walkers::product(setup, $rule, request)
+        }
+
+        fn draw_packets<'a, M: $crate::media::Extinction>(
+            &$this,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<Transmittance>,
+            medium: &M,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::packet::product(level, setup, &$rule, medium, request)
+        }
+    };
+}
+use product_draws;
+
 /// Lists recipes that prepare a sampling extinction or a control from its settings.
 macro_rules! recipes {
     ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {

@@ -17,16 +17,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
-use fearless_simd::Level;
-
 use crate::catalogue::Settings;
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
-use crate::media::Extinction;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::count::poisson;
 use crate::theory::{Law, Prediction};
 
@@ -73,9 +67,6 @@ fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
 
 impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -93,31 +84,5 @@ impl Estimator<Transmittance> for DoubleParticle {
         predict_weighted(setup)
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &Weight, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, Weight, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &Weight, medium, request)
-    }
+    product_draws!(self => Weight);
 }

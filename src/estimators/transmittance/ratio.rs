@@ -15,17 +15,11 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
 
-use fearless_simd::Level;
-
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
-use crate::media::Extinction;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::Prediction;
 
 /// Ratio tracking; σ̂ is its only input.
@@ -34,9 +28,6 @@ pub struct Ratio;
 
 impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -50,31 +41,5 @@ impl Estimator<Transmittance> for Ratio {
         predict_weighted(setup)
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &Weight, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, Weight, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &Weight, medium, request)
-    }
+    product_draws!(self => Weight);
 }

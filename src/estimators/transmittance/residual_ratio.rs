@@ -16,17 +16,12 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
 
-use fearless_simd::Level;
-
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::catalogue::Settings;
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Weight;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls, walk};
-use crate::media::{Control, Extinction};
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, controls, product_draws};
+use crate::media::Control;
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::Prediction;
 
 /// Residual ratio tracking; σ̂ and a constant control are its inputs.
@@ -35,9 +30,6 @@ pub struct ResidualRatio;
 
 impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -68,31 +60,5 @@ impl Estimator<Transmittance> for ResidualRatio {
         predict_weighted(setup)
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &Weight, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, Weight, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &Weight, medium, request)
-    }
+    product_draws!(self => Weight);
 }

@@ -27,16 +27,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
 
-use fearless_simd::Level;
-
 use crate::catalogue::{Domain, Settings};
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
-use crate::media::Extinction;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::Prediction;
 
 const RULES: [&str; 4] = ["terminating", "clamped", "non-terminating", "adaptive"];
@@ -55,9 +49,6 @@ fn terminating_exists(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
 
 impl Estimator<Transmittance> for SingleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let rule = settings.word("rule", &RULES);
@@ -108,31 +99,5 @@ impl Estimator<Transmittance> for SingleParticle {
         setup.product(&self.rule).predict()
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &self.rule, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, self.rule, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &self.rule, medium, request)
-    }
+    product_draws!(self => self.rule);
 }

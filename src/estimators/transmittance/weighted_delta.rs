@@ -14,16 +14,10 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
-use fearless_simd::Level;
-
 use crate::catalogue::Settings;
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Single;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
-use crate::media::Extinction;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::Prediction;
 
 const RULE: Single = Single::NonTerminating { albedo: 1.0 };
@@ -34,9 +28,6 @@ pub struct WeightedDelta;
 
 impl Estimator<Transmittance> for WeightedDelta {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -50,31 +41,5 @@ impl Estimator<Transmittance> for WeightedDelta {
         setup.product(&RULE).predict()
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &RULE, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, RULE, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &RULE, medium, request)
-    }
+    product_draws!(self => RULE);
 }

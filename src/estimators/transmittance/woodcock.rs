@@ -16,16 +16,10 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
-use fearless_simd::Level;
-
 use crate::catalogue::Settings;
-use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
-use crate::estimators::walkers::{self, Walkers};
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, walk};
-use crate::media::Extinction;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
-use crate::rng::Stream;
 use crate::theory::{Law, Prediction};
 
 /// Woodcock tracking; σ̂ is its only input.
@@ -45,9 +39,6 @@ pub fn zero_or_one(prediction: Prediction) -> Prediction {
 
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const KEEPS_BOOKS: bool = true;
-    const IN_PACKETS: bool = true;
-    const ORDER_FREE: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -62,31 +53,5 @@ impl Estimator<Transmittance> for Woodcock {
         zero_or_one(setup.product(&Null).predict())
     }
 
-    #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        walk::product(setup, &Null, medium, rng)
-    }
-
-    fn walkers<'a>(
-        &'a self,
-        setup: &'a Setup<Transmittance>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn Walkers + 'a>> {
-        walkers::product(setup, Null, request)
-    }
-
-    fn draw_packets<'a, M: Extinction>(
-        &self,
-        level: Level,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        request: Request<'a>,
-    ) -> Option<Request<'a>> {
-        packet::product(level, setup, &Null, medium, request)
-    }
+    product_draws!(self => Null);
 }
