@@ -101,7 +101,7 @@ fn a_failure_is_1_and_its_reports_are_written() {
     let place = Place::new(&biased());
     let output = place.check(1, &format!("cases {FILES} --out out --seed 3 --color always"));
     let [junit, _, markdown] = place.reports();
-    let words = ["ray-marching", "off by", "--seed 3 --draws 16384", "trueflight check cases/case"];
+    let words = ["ray-marching", "off by", "--seed 3 --draws 8", "trueflight check cases/case"];
     for text in [said(&output), junit, markdown] {
         assert_says(&text, &words);
     }

@@ -299,8 +299,8 @@ fn predict_and_plan_write_no_files() {
 fn the_same_seed_makes_the_same_files_on_any_number_of_threads() {
     let place = Place::new(&[("case.toml", GOOD)]);
     let without_timing = |threads: u32| {
-        let output =
-            place.run(&format!("run case.toml --draws 50000 --format csv --threads {threads}"));
+        let output = place
+            .run(&format!("run case.toml --draws 50000 --fresh --format csv --threads {threads}"));
         let text = stdout(&output);
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         let headers = reader.headers().expect("columns").clone();
@@ -370,4 +370,29 @@ fn colours_only_where_they_are_wanted() {
     assert!(!coloured("plan case.toml"), "stdout is no terminal here");
     assert!(coloured("predict case.toml --color always") || coloured("list --color always"));
     assert!(!coloured("predict case.toml --color never"));
+}
+
+#[test]
+fn a_second_run_in_the_same_folder_reuses_what_has_not_changed() {
+    let place = Place::new(&[("case.toml", GOOD)]);
+    let first = place.run("run case.toml --draws 50000");
+    assert!(!stdout(&first).contains("were reused"));
+    let summary = || std::fs::read_to_string(place.path().join("results/summary.csv")).expect("it");
+    let drawn = summary();
+    let plan = stdout(&place.run("plan case.toml --draws 50000"));
+    assert!(plan.contains("have not changed since the last run in results"), "{plan}");
+    let second = place.run("run case.toml --draws 50000");
+    assert!(stdout(&second).contains("were reused (--fresh makes them anew)"));
+    // Even the times are those of the first run; only the last column tells.
+    let told = summary();
+    assert!(told.lines().skip(1).all(|line| line.ends_with(",yes") || line.contains("refused")));
+    assert_eq!(told.replace(",yes\n", ",\n"), drawn);
+    for changed in ["--fresh", "--seed 2", "--save-baseline main"] {
+        let output = place.run(&format!("run case.toml --draws 50000 {changed}"));
+        assert!(!stdout(&output).contains("were reused"), "{changed}");
+    }
+    std::fs::write(place.path().join("results/draws.bin"), "broken").expect("writable");
+    let output = place.run("run case.toml --draws 50000");
+    assert_eq!(code(&output), 0);
+    assert!(!stdout(&output).contains("were reused"));
 }

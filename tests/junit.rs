@@ -181,7 +181,13 @@ fn record() -> Record {
             cut_by_budget: false,
             cases: vec![case, empty],
         },
-        timing: Timing { threads: 2, level: "avx2".into(), seconds: 1234.5, rows: vec![times] },
+        timing: Timing {
+            threads: 2,
+            level: "avx2".into(),
+            seconds: 1234.5,
+            reused: vec![vec![false; times.len()]],
+            rows: vec![times],
+        },
         comparison: None,
     }
 }

@@ -36,6 +36,11 @@ pub struct Baselines {
 }
 
 impl BaselineArguments {
+    /// Whether a run is stored or compared.
+    pub fn is_used(&self) -> bool {
+        self.baseline.is_some() || self.save_baseline.is_some()
+    }
+
     /// Reads the baseline and tries the folder, before anything is drawn.
     pub fn open(&self) -> anyhow::Result<Baselines> {
         let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
@@ -48,8 +53,7 @@ impl BaselineArguments {
             Ok((name.clone(), path))
         });
         let (stored, save) = (stored.transpose()?, save.transpose()?);
-        let is_idle = stored.is_none() && save.is_none();
-        let executable = if is_idle { String::new() } else { fingerprint()? };
+        let executable = if self.is_used() { fingerprint()? } else { String::new() };
         Ok(Baselines { stored, save, executable, time_tolerance: self.time_tolerance })
     }
 }

@@ -1,20 +1,50 @@
 //! Drawing a plan with a bar of progress, and the limits of it.
 
+use std::fs;
+use std::path::Path;
 use std::time::Instant;
 
+use anyhow::Context;
 use indicatif::ProgressBar;
+use trueflight::files;
+use trueflight::harness::baseline::fingerprint;
 use trueflight::harness::record::Record;
+use trueflight::harness::reuse::Kept;
 use trueflight::harness::{Plan, judge, run};
 
 use super::{Console, output};
 
+/// The file beside the results that keeps what was drawn.
+const KEPT: &str = "draws.bin";
+
 /// Draws a plan and judges it.
 pub fn draw(plan: &Plan, console: &Console) -> Record {
+    draw_the_rest(plan, &mut Kept::default(), console)
+}
+
+/// Draws what has not been kept, keeps it, and judges all.
+pub fn draw_the_rest(plan: &Plan, kept: &mut Kept, console: &Console) -> Record {
     let begin = Instant::now();
     let bar = progress(plan, console);
-    let draws = run::draw(plan, &|draws| bar.inc(draws));
+    let draws = run::draw_the_rest(plan, kept, &|draws| bar.inc(draws));
     bar.finish_and_clear();
+    kept.keep(plan, &draws);
     judge::judged(plan, &draws, begin.elapsed().as_secs_f64())
+}
+
+/// What this program has drawn for the results in a folder.
+pub fn kept(out: &Path) -> anyhow::Result<Kept> {
+    let program = fingerprint()?;
+    // Without a file there is nothing to reuse, and that is no mistake.
+    let bytes = fs::read(out.join(KEPT)).unwrap_or_default();
+    Ok(Kept::read(&bytes, &program))
+}
+
+/// Writes what was drawn beside the results.
+pub fn keep(kept: &Kept, out: &Path) -> anyhow::Result<()> {
+    let path = out.join(KEPT);
+    let bytes = kept.bytes().with_context(|| format!("cannot encode {}", path.display()))?;
+    files::replace(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 
 fn progress(plan: &Plan, console: &Console) -> ProgressBar {

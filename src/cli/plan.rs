@@ -1,18 +1,23 @@
 //! `trueflight plan`: what would run, what is refused, and why.
 
+use std::path::PathBuf;
+
 use clap::Args;
 use trueflight::harness::{judge, options::DRAWS};
 use trueflight::report::console::View;
 
-use super::Console;
 use super::output::{self, Format};
 use super::selection::Selection;
+use super::{Console, drawing};
 
 /// Arguments of `plan`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
+    /// Folder of the results of an earlier run: what has not changed since would not be drawn
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
@@ -23,7 +28,18 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
     let options = selection.options(DRAWS)?;
-    let record = selection.on_threads(|| Ok(judge::planned(&selection.plan(&cases, &options)?)))?;
+    let (record, kept) = selection.on_threads(|| {
+        let plan = selection.plan(&cases, &options)?;
+        Ok((judge::planned(&plan), drawing::kept(&arguments.out)?.count(&plan)))
+    })?;
     output::print_record(&record, View::Plan, arguments.format, console)?;
+    let [kept, ready] = kept;
+    if kept > 0 && arguments.format == Format::Table && !console.quiet {
+        let folder = arguments.out.display();
+        output::print(&format!(
+            "{kept} of {ready} experiments have not changed since the last run in {folder}: `run` \
+             would reuse their draws (--fresh makes them anew)\n"
+        ))?;
+    }
     Ok(0)
 }

@@ -1,10 +1,13 @@
 //! `trueflight run`: the main job.
 
+use std::fmt::Write;
 use std::path::PathBuf;
 
 use clap::Args;
 use trueflight::harness::Options;
+use trueflight::harness::baseline::fingerprint;
 use trueflight::harness::options::DRAWS;
+use trueflight::harness::reuse::Kept;
 use trueflight::report::{self, console::View};
 
 use super::baseline::BaselineArguments;
@@ -27,6 +30,9 @@ pub struct Arguments {
     /// Draw exactly what is planned: no check stops the drawing, none prolongs it
     #[arg(long)]
     fixed_draws: bool,
+    /// Draw every experiment, also those that have not changed since the last run in the same folder
+    #[arg(long)]
+    fresh: bool,
     /// Let every underpowered check make its experiment inconclusive
     #[arg(long)]
     strict: bool,
@@ -53,9 +59,16 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
     let baselines = arguments.baseline.open()?;
-    let record = selection.on_threads(|| {
+    // A comparison wants times and evidence of its own.
+    let mut kept = if arguments.fresh || arguments.baseline.is_used() {
+        Kept::new(&fingerprint()?)
+    } else {
+        drawing::kept(&arguments.out)?
+    };
+    let (record, [reused, ready]) = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
-        Ok(drawing::draw(&plan, console))
+        let counts = kept.count(&plan);
+        Ok((drawing::draw_the_rest(&plan, &mut kept, console), counts))
     })?;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Vec::new();
@@ -65,6 +78,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         errors.extend(failed.into_iter().map(anyhow::Error::from));
         written
     });
+    errors.extend(drawing::keep(&kept, &arguments.out).err());
     errors.extend(output::print_record(&record, View::Run, arguments.format, console).err());
     let stored = baselines.store(&record, run.as_ref()).unwrap_or_else(|error| {
         errors.push(error);
@@ -72,7 +86,15 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     });
     match files {
         Ok(files) if arguments.format == Format::Table && !console.quiet => {
-            let said = format!("{files} files in {}\n{stored}", arguments.out.display());
+            let mut said = format!("{files} files in {}\n", arguments.out.display());
+            if reused > 0 {
+                let _ = writeln!(
+                    said,
+                    "{reused} of {ready} experiments have not changed since the last run there: their \
+                     draws were reused (--fresh makes them anew)"
+                );
+            }
+            said.push_str(&stored);
             errors.extend(output::print(&said).err());
         }
         Ok(_) => {}

@@ -77,6 +77,8 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     const INPUTS: Inputs;
     /// Whether its draws know their [`Draw::defect`].
     const KEEPS_BOOKS: bool = false;
+    /// Whether σ̂ may be 0 wherever the residual is: collisions there change nothing but the cost.
+    const SKIPS: bool = false;
     /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
     const IN_PACKETS: bool = false;
     /// Whether its draws may be made in any order of their collisions, by [`Estimator::walkers`].
@@ -197,6 +199,7 @@ use estimators;
 macro_rules! product_draws {
     ($this:ident => $rule:expr) => {
         const KEEPS_BOOKS: bool = true;
+        const SKIPS: bool = true;
         const IN_PACKETS: bool = true;
         const ORDER_FREE: bool = true;
 

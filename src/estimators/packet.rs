@@ -33,7 +33,7 @@ const MOST_CONTROL_PIECES: usize = 8;
 fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
     let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
-    M::IS_COSTLY || sampling.single_value().is_some() || few
+    M::IS_COSTLY || sampling.even().is_some() || few
 }
 
 /// What is to be drawn.
@@ -116,13 +116,13 @@ impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, control, begin, rule, medium, request } = self;
         let weight = f64x8::splat(simd, begin);
-        let from = f64x8::splat(simd, sampling.knots()[0]);
+        let from = f64x8::splat(simd, sampling.begin().t);
         let books = Books::open(weight);
         // What does not change is found here, not in every step.
         let constant = control.single_value().map(|value| f64x8::splat(simd, value));
         let control = Subtracted { control, constant };
-        if let Some(value) = sampling.single_value() {
-            let course = Even::new(simd, sampling, value);
+        if let Some(even) = sampling.even() {
+            let course = Even::new(simd, even);
             let walks = Products { rule, medium, control, begin, from, course, weight, books };
             run(simd, walks, request);
         } else {
@@ -163,9 +163,9 @@ impl<M: Extinction> Task for Flight<'_, '_, M> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, ray, medium, request } = self;
-        let from = f64x8::splat(simd, sampling.knots()[0]);
-        if let Some(value) = sampling.single_value() {
-            let course = Even::new(simd, sampling, value);
+        let from = f64x8::splat(simd, sampling.begin().t);
+        if let Some(even) = sampling.even() {
+            let course = Even::new(simd, even);
             run(simd, Flights { medium, ray, from, course }, request);
         } else {
             let course = Pieces::new(simd, sampling);

@@ -2,11 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::media::{Body, Control, Piecewise};
-use crate::numeric::Lane;
+use crate::media::{Body, Control, OpticalDepth, Piecewise};
+use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 use crate::rng::Address;
 use crate::theory::{Mesh, Rule, product::Product};
+
+/// A gap shorter than this share of the support is flown through.
+const SHORTEST_GAP: f64 = 1.0 / 16.0;
 
 /// What a recipe sees when it prepares a sampling extinction or a control.
 #[derive(Clone, Copy)]
@@ -35,6 +38,8 @@ pub struct Setup<P> {
     pub control_transmittance: f64,
     /// `T` over the support, in units of `exp(−log_unit)`.
     pub transmittance: f64,
+    /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`].
+    pub skipped: f64,
     /// Whether whole laws are asked for; a search for optima leaves them out.
     pub laws: bool,
 }
@@ -64,8 +69,59 @@ impl<P: Problem> Setup<P> {
             log_unit,
             control_transmittance,
             transmittance,
+            skipped: 0.0,
             laws: true,
         }
+    }
+
+    /// The same with σ̂ = 0 where medium and control are: at both ends of the support, and on gaps
+    /// that are long enough to be worth a piece of σ̂. Collisions there would multiply weights by 1;
+    /// so would all where the residual is 0 throughout, which leaves nothing of σ̂.
+    #[must_use]
+    pub fn skipping(mut self) -> Self {
+        let support = self.mesh.support();
+        let is_worth = |stretch: &Span| {
+            let is_at_end = stretch.from == support.from || stretch.to == support.to;
+            is_at_end || stretch.length() >= SHORTEST_GAP * support.length()
+        };
+        let mut stretches = self.empty_stretches();
+        stretches.retain(is_worth);
+        stretches.retain(|&stretch| self.sampling.optical_depth(stretch).value > 0.0);
+        if !stretches.is_empty() {
+            self.sampling = self.sampling.zero_on(&stretches);
+            self.skipped = stretches.iter().map(|s| s.length()).sum::<f64>() / support.length();
+        }
+        self
+    }
+
+    /// The longest stretches on which medium and control are 0, or the whole support where they are
+    /// the same.
+    fn empty_stretches(&self) -> Vec<Span> {
+        let cut = self.mesh.refined(&self.control.breaks(), &|_, _| Vec::new());
+        let is_nothing = |t: f64, sigma: f64| sigma == 0.0 && self.control.extinction(t) == 0.0;
+        let is_residual = |t: f64, sigma: f64| sigma != self.control.extinction(t);
+        let (mut stretches, mut is_same) = (Vec::<Span>::new(), true);
+        for panel in cut.panels() {
+            let nodes = || panel.t.iter().zip(panel.extinction);
+            is_same &= !nodes().any(|(&t, &sigma)| is_residual(t, sigma));
+            if !nodes().all(|(&t, &sigma)| is_nothing(t, sigma)) {
+                continue;
+            }
+            match stretches.last_mut() {
+                Some(last) if last.to == panel.span.from => last.to = panel.span.to,
+                _ => stretches.push(panel.span),
+            }
+        }
+        if is_same {
+            stretches = vec![self.mesh.support()];
+        }
+        // What hides between the nodes shows in the integral.
+        stretches.retain(|&stretch| {
+            let medium = self.mesh.medium().optical_depth(stretch);
+            let control = self.control.optical_depth(stretch);
+            (medium.value - control.value).abs() <= medium.error + control.error
+        });
+        stretches
     }
 
     /// `r`, where medium, control and σ̂ are each one constant on the support.

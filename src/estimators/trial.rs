@@ -126,9 +126,15 @@ pub trait Experiment: Send + Sync {
         Order::Along
     }
 
-    /// Whether it can share its lookups with others that can, on the same medium.
-    fn shares_lookups(&self) -> bool {
-        false
+    /// The share of the ray's support on which σ̂ was made 0, because nothing is to be found there.
+    fn skipped(&self) -> f64 {
+        0.0
+    }
+
+    /// The stretch on which any place is as likely as any other to be that of a collision: experiments
+    /// on the same stretch of the same medium can share their lookups. `None` where that cannot be.
+    fn shared_stretch(&self) -> Option<[f64; 2]> {
+        None
     }
 
     /// So many order-free draws, to be made by [`Experiment::draw_layers`]; `None` where there are none.
@@ -165,6 +171,8 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn predict(&self, setup: &Setup<P>) -> Prediction;
     /// See [`Estimator::portrait`].
     fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait>;
+    /// See [`Estimator::SKIPS`].
+    fn skips(&self) -> bool;
     /// See [`Estimator::ORDER_FREE`].
     fn is_order_free(&self) -> bool;
     /// Joins the estimator and its setup. The order is along the ray where it cannot be free.
@@ -202,6 +210,10 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
 
     fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait> {
         Estimator::portrait(self, setup, address)
+    }
+
+    fn skips(&self) -> bool {
+        E::SKIPS
     }
 
     fn is_order_free(&self) -> bool {
@@ -248,8 +260,13 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         self.order
     }
 
-    fn shares_lookups(&self) -> bool {
-        self.order == Order::Free && self.setup.sampling.single_value().is_some()
+    fn skipped(&self) -> f64 {
+        self.setup.skipped
+    }
+
+    fn shared_stretch(&self) -> Option<[f64; 2]> {
+        let even = self.setup.sampling.even().filter(|_| self.order == Order::Free);
+        even.map(|even| [even.from, even.to])
     }
 
     fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {

@@ -2,8 +2,8 @@
 
 use rayon::prelude::*;
 
+use super::addresses;
 use super::case::Case;
-use super::plan::pilot_address;
 use super::record::{Curve, CurvePoint, Sweep};
 use super::scenario::Variation;
 use super::sweep::{SweepAxis, What};
@@ -60,7 +60,7 @@ pub fn best_of_each(case: &Case, seed: u64) -> Vec<Option<Optimum>> {
             if !scenario.depends_on(estimator, What::SamplingScale) {
                 return None;
             }
-            let pilots = pilot_address(seed, case, estimator);
+            let pilots = addresses::pilots(seed, case, estimator);
             best_constant(scenario.natural_scale(estimator, None), |sampling| {
                 scenario.predict(estimator, Some((What::Sampling, sampling)), pilots)
             })
@@ -76,7 +76,7 @@ fn point(
     x: f64,
 ) -> Option<CurvePoint> {
     let prediction: Prediction =
-        case.scenario.predict(estimator, variation, pilot_address(seed, case, estimator))?;
+        case.scenario.predict(estimator, variation, addresses::pilots(seed, case, estimator))?;
     let variance = prediction.channels.last()?.moments?.variance();
     let lookups = prediction.lookups.as_ref()?.mean;
     let fom = 1.0 / (variance * lookups);

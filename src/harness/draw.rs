@@ -8,6 +8,7 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 
 use super::checks::Kind;
+use super::counted::Counted;
 use super::plan::{BLOCK, Planned};
 use super::scenario::Ready;
 use crate::estimators::DrawBuffer;
@@ -112,7 +113,6 @@ struct Drawing<'p> {
     at: u64,
     end: u64,
     y: Vec<f64>,
-    counts: Vec<f64>,
 }
 
 impl<'p> Drawing<'p> {
@@ -133,7 +133,6 @@ impl<'p> Drawing<'p> {
             at: start,
             end: (start + BLOCK).min(planned.horizon),
             y: Vec::new(),
-            counts: Vec::new(),
         })
     }
 
@@ -157,21 +156,20 @@ impl<'p> Drawing<'p> {
     /// Every question absorbs the buffer.
     fn absorb(&mut self) {
         let (count, is_fixed) = (self.count(), self.is_fixed());
+        let draws = Counted::new(&self.buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
         for (question, absorber) in self.planned.questions.iter().zip(&mut self.absorbers) {
-            absorber.absorb(&question.kind, &self.buffer, first, is_fixed, &mut self.y);
+            absorber.absorb(&question.kind, &draws, first, is_fixed, &mut self.y);
         }
         if is_fixed {
             let prediction = &self.ready.prediction;
             let channels = self.tallies.iter_mut().zip(&prediction.channels);
-            for ((tally, channel), values) in channels.zip(&self.buffer.values) {
-                tally.merge(&Tally::of(values, channel.mean.value, channel.truth.value));
+            for (index, (tally, channel)) in channels.enumerate() {
+                tally.merge(&draws.tally(index, channel.mean.value, channel.truth.value));
             }
             let expected = prediction.lookups.as_ref().map_or(0.0, |law| law.mean);
-            self.counts.clear();
-            self.counts.extend(self.buffer.lookups.iter().map(|&lookups| f64::from(lookups)));
-            self.lookups.merge(&Tally::of(&self.counts, expected, 1.0));
+            self.lookups.merge(&draws.tally_of_lookups(expected));
         }
         self.at += count as u64;
     }
@@ -199,21 +197,31 @@ impl Absorber {
     fn absorb(
         &mut self,
         kind: &Kind,
-        buffer: &DrawBuffer,
+        draws: &Counted,
         first: usize,
         is_fixed: bool,
         y: &mut Vec<f64>,
     ) {
         match (self, kind) {
             (Self::Gate(sums, total), Kind::Scalar(scalar)) => {
-                y.clear();
-                (scalar.observe)(buffer, y);
-                sums.absorb(y, &scalar.design.arguments());
-                *total += sum_in_lanes(y, |y| y);
+                let times = draws.observe(&scalar.observe, y);
+                if scalar.bias != 0.0 {
+                    for y in y.iter_mut() {
+                        *y += scalar.bias;
+                    }
+                }
+                let arguments = scalar.design.arguments();
+                if let Some(times) = times {
+                    sums.absorb_counted(y, times, &arguments);
+                    *total += y.iter().zip(times).map(|(y, times)| y * times).sum::<f64>();
+                } else {
+                    sums.absorb(y, &arguments);
+                    *total += sum_in_lanes(y, |y| y);
+                }
             }
-            (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(buffer, first, sums),
+            (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(draws, first, sums),
             (Self::Largest(most), Kind::Always(always)) => {
-                *most = larger(*most, (always.largest)(buffer));
+                *most = larger(*most, (always.largest)(draws.draws));
             }
             _ => {}
         }

@@ -77,18 +77,15 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     record.results.cut_by_budget = draws.cut_by_budget;
     summary::complete(&mut record.results);
     record.timing.seconds = seconds;
-    record.timing.rows = pairs
-        .iter()
-        .map(|(case, drawn)| {
-            let both = case.experiments.iter().zip(drawn.iter());
-            let seconds = both.flat_map(|(planned, drawn)| {
-                let time = planned.outcome.is_ok().then_some(drawn.seconds);
-                let rows = planned.outcome.as_ref().map_or(1, |r| r.prediction.channels.len());
-                std::iter::repeat_n(time, rows)
-            });
-            seconds.collect()
-        })
-        .collect();
+    for ((case, drawn), timing) in pairs.iter().zip(0..) {
+        let both = case.experiments.iter().zip(drawn.iter());
+        let rows = both.flat_map(|(planned, drawn)| {
+            let time = planned.outcome.is_ok().then_some(drawn.seconds);
+            let rows = planned.outcome.as_ref().map_or(1, |r| r.prediction.channels.len());
+            std::iter::repeat_n((time, drawn.is_reused), rows)
+        });
+        (record.timing.rows[timing], record.timing.reused[timing]) = rows.unzip();
+    }
     record
 }
 
@@ -117,6 +114,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         level: pack::word(Level::new()),
         seconds: 0.0,
         rows: cases.iter().map(|case| vec![None; case.rows.len()]).collect(),
+        reused: cases.iter().map(|case| vec![false; case.rows.len()]).collect(),
     };
     let levels = &plan.levels;
     let gate = Gate {
@@ -177,6 +175,7 @@ fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
             kernel: kernel.to_owned(),
             sharing: sharing(case, planned),
             same_as: same_as.clone(),
+            skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
             channel: channel.name.clone(),
             truth: Some(channel.truth.value),
             truth_error: Some(channel.truth.error),

@@ -4,10 +4,12 @@
 //! its experiments and shares out the error rate, [`run::draw`] draws them, and [`judge`] turns what
 //! was drawn into a [`Record`], which is all that reports see.
 
+pub mod addresses;
 pub mod baseline;
 pub mod bench;
 pub mod case;
 pub mod checks;
+pub mod counted;
 pub mod curves;
 pub mod draw;
 pub mod filter;
@@ -18,6 +20,7 @@ pub mod mutation;
 pub mod options;
 pub mod plan;
 pub mod record;
+pub mod reuse;
 pub mod run;
 pub mod scenario;
 pub mod self_test;

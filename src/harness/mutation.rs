@@ -1,7 +1,8 @@
 //! Known bugs in the place of honest estimators, on the experiments of a case.
 
+use super::addresses;
 use super::case::Case;
-use super::plan::{Plan, Planned, pilot_address};
+use super::plan::{Plan, Planned};
 use super::scenario::Scenario;
 use crate::estimators::{Experiment, Refusal, Setup};
 use crate::mutants::{About, Mutable, Target};
@@ -54,6 +55,6 @@ pub fn experiment(
     planned: &Planned,
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
-    let pilots = pilot_address(seed, case, planned.estimator);
+    let pilots = addresses::pilots(seed, case, planned.estimator);
     case.scenario.mutated(planned.estimator, planned.variation, pilots, about.name, walk)
 }

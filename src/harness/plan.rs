@@ -10,12 +10,14 @@
 
 use rayon::prelude::*;
 
+use super::addresses;
 use super::case::Case;
 use super::checks::{self, Kind, Question, Scalar, Subject};
 use super::options::Options;
 use super::scenario::{Names, Prepared, Ready, Variation};
 use crate::estimators::{DrawBuffer, Order, Refusal};
-use crate::rng::{Address, PILOT, Streams, name_hash};
+use crate::numeric::pack::WIDTH;
+use crate::rng::{Address, PILOT, Streams};
 use crate::stats::{gate, normal};
 
 /// Draws per block, always.
@@ -264,14 +266,17 @@ fn plan_experiment(
     let mut names = case.scenario.names(estimator, variation);
     // Two estimators may be called the same, as where each has a field of its own as control.
     let twins = (0..estimator).filter(|&e| case.scenario.names(e, variation) == names).count();
-    let address = address(options.seed, &case.name, &names, variation, twins);
+    let address = addresses::own(options.seed, &case.name, &names, variation, twins);
     if twins > 0 {
         names.estimator = format!("{} #{}", names.estimator, twins + 1);
     }
-    let pilots = pilot_address(options.seed, case, estimator);
+    let pilots = addresses::pilots(options.seed, case, estimator);
     let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
-    let shares = outcome.as_ref().is_ok_and(|ready| ready.experiment.shares_lookups());
-    let places = shares.then(|| places_address(options.seed, &case.name));
+    let places = outcome.as_ref().ok().and_then(|ready| {
+        let stretch = ready.experiment.shared_stretch()?;
+        let is_whole = ready.experiment.skipped() == 0.0;
+        Some(addresses::places(options.seed, &case.name, stretch, is_whole))
+    });
     Planned {
         estimator,
         variation,
@@ -318,16 +323,17 @@ impl Planned {
         let decides = |question: &Question| {
             matches!(question.kind, Kind::Scalar(_) | Kind::Law(_) | Kind::Inspection(_))
         };
-        if !questions.iter().any(decides) {
-            // Draws without chance say in one block what they would say in many.
-            subject.draws = subject.draws.min(BLOCK);
-            subject.fixed = subject.fixed.min(BLOCK);
+        let is_certain = !questions.iter().any(decides);
+        if is_certain {
+            // Draws without chance say in one pack what they would say in many.
+            subject.draws = subject.draws.min(WIDTH as u64);
+            subject.fixed = subject.draws;
             questions = checks::questions(&subject);
         }
         (self.draws, self.fixed) = (subject.draws, subject.fixed);
         // A budget of less than a block leaves nothing to go on with.
         let is_tight = options.budget.is_some() && self.draws < BLOCK;
-        let is_fixed = options.fixed || is_tight;
+        let is_fixed = options.fixed || is_tight || is_certain;
         self.horizon = if is_fixed { self.draws } else { horizon(self.draws) };
         self.questions = questions;
     }
@@ -368,32 +374,4 @@ fn needed(questions: &[Question], most: u64) -> u64 {
     });
     let needed = promised.fold(0.0, f64::max);
     if needed > 0.0 { needed.ceil().min(most as f64) as u64 } else { most }
-}
-
-/// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
-/// the theory's line and the experiments on it learn the same σ̂.
-#[must_use]
-pub fn pilot_address(seed: u64, case: &Case, estimator: usize) -> Address {
-    address(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
-}
-
-/// Where all order-free experiments of a case whose σ̂ is constant find the places of their
-/// collisions: they lie anywhere on the ray, whatever estimator, control and σ̂.
-fn places_address(seed: u64, case: &str) -> Address {
-    Address { seed, experiment: name_hash(&format!("{case}|places")), block: 0, lane: 0 }
-}
-
-/// The address of an experiment's streams: made of names, so that it keeps its random numbers when
-/// other experiments join or leave the run. `twins` come before it in the case under the same name.
-fn address(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
-    let Names { sampling, sampling_kind, control, .. } = names;
-    // What is the same by definition makes the same draws.
-    let estimator = names.alias.as_ref().unwrap_or(&names.estimator);
-    let sampling = sampling.map_or(String::new(), |value| value.to_string());
-    let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
-    let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
-    if twins > 0 {
-        name = format!("{name}|{twins}");
-    }
-    Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
 }

@@ -133,6 +133,9 @@ pub struct Row {
     /// How many experiments of the case, this one included, look the medium up once for all; `None`
     /// where each does for itself.
     pub sharing: Option<u64>,
+    /// The share of the ray's support on which σ̂ was made 0, because nothing is to be found there;
+    /// `None` where it is as the case has it.
+    pub skipped: Option<f64>,
     /// The channel's name, as in `T(5)`; empty where the value has one channel only.
     pub channel: String,
     /// How many draws the means, variances and z-scores of this row are of: a number fixed by the
@@ -390,4 +393,6 @@ pub struct Timing {
     /// Per case and row, the processor seconds of the drawing; the rows of one experiment share
     /// one figure. `None` where nothing was drawn.
     pub rows: Vec<Vec<Option<f64>>>,
+    /// Per case and row, whether the draws are those of an earlier run, and the seconds with them.
+    pub reused: Vec<Vec<bool>>,
 }

@@ -13,10 +13,12 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 use super::checks::Kind;
 use super::draw::{self, Answer, Block, larger};
 use super::plan::{BLOCK, Plan, Planned};
+use super::reuse::Kept;
 use crate::numeric::sum::Sum;
 use crate::stats::Tally;
 use crate::stats::gate::{Decision, Evidence, SUMS};
@@ -25,7 +27,7 @@ use crate::stats::gate::{Decision, Evidence, SUMS};
 const BATCH: usize = 256;
 
 /// What one experiment drew.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Drawn {
     /// How many draws all of its questions saw.
     pub draws: u64,
@@ -37,10 +39,13 @@ pub struct Drawn {
     pub totals: Vec<Total>,
     /// Processor seconds.
     pub seconds: f64,
+    /// Whether an earlier run drew it.
+    #[serde(skip)]
+    pub is_reused: bool,
 }
 
 /// What all blocks say to one question.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Total {
     /// Where the gate stands.
     Gate(Standing),
@@ -53,7 +58,7 @@ pub enum Total {
 }
 
 /// Where a question of the gate stands.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Standing {
     psi: [Sum; SUMS],
     y: Sum,
@@ -95,10 +100,15 @@ struct Front<'p> {
 
 /// Draws a plan; `progress` is told after each block how many draws it made.
 pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
+    draw_the_rest(plan, &Kept::default(), progress)
+}
+
+/// Draws what an earlier run has not drawn already.
+pub fn draw_the_rest(plan: &Plan, kept: &Kept, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     let begin = Instant::now();
     let expired =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
-    let mut fronts = fronts(plan);
+    let (mut cases, mut fronts) = begin_all(plan, kept);
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
     while !cut_by_time && fronts.iter().any(|front| !front.is_done) {
@@ -140,8 +150,6 @@ pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
             front.look(plan);
         }
     }
-    let mut cases: Vec<Vec<Drawn>> =
-        plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
     for front in fronts {
         cases[front.case][front.index] = front.drawn;
     }
@@ -169,25 +177,33 @@ fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
     }
 }
 
-fn fronts<'p>(plan: &'p Plan) -> Vec<Front<'p>> {
+/// What is drawn already, and a front for each experiment that is not.
+fn begin_all<'p>(plan: &'p Plan, kept: &Kept) -> (Vec<Vec<Drawn>>, Vec<Front<'p>>) {
+    let mut cases: Vec<Vec<Drawn>> =
+        plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
     let mut fronts = Vec::new();
     for (case, planned_case) in plan.cases.iter().enumerate() {
         for (index, planned) in planned_case.experiments.iter().enumerate() {
-            if planned.outcome.is_ok() && planned_case.twin(index).is_none() {
-                fronts.push(Front {
-                    case,
-                    index,
-                    planned,
-                    drawn: Drawn::new(planned),
-                    blocks: 0,
-                    look: 1,
-                    ahead: VecDeque::new(),
-                    is_done: false,
-                });
+            if planned.outcome.is_err() || planned_case.twin(index).is_some() {
+                continue;
             }
+            if let Some(drawn) = kept.drawn(plan, planned_case, planned) {
+                cases[case][index] = drawn;
+                continue;
+            }
+            fronts.push(Front {
+                case,
+                index,
+                planned,
+                drawn: Drawn::new(planned),
+                blocks: 0,
+                look: 1,
+                ahead: VecDeque::new(),
+                is_done: false,
+            });
         }
     }
-    fronts
+    (cases, fronts)
 }
 
 /// A block of an experiment, or of several that share their lookups.

@@ -215,6 +215,7 @@ impl<P: Mutable> Scenario<P> {
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
         let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
+        let setup = if self.written[index].entry.skips() { setup.skipping() } else { setup };
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
         if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {

@@ -5,7 +5,7 @@
 
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::Piecewise;
+use super::{Piecewise, piecewise};
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 
@@ -20,7 +20,7 @@ pub trait Course<S: Simd> {
     /// The mean free paths `1/σ̂` there.
     fn mean_free_path(&self) -> f64x8<S>;
 
-    /// These begin anew from the first knot.
+    /// These begin anew.
     fn restart(&mut self, which: mask64x8<S>);
 }
 
@@ -34,13 +34,13 @@ pub struct Even<S: Simd> {
 }
 
 impl<S: Simd> Even<S> {
-    /// At the first knot of a field with a single value.
+    /// At the beginning of the one stretch of a field.
     #[inline(always)]
     #[must_use]
-    pub fn new(simd: S, field: &Piecewise, value: f64) -> Self {
-        let begin = f64x8::splat(simd, field.knots[0]);
-        let end = f64x8::splat(simd, field.knots[1]);
-        Self { begin, end, path: f64x8::splat(simd, 1.0 / value), t: begin }
+    pub fn new(simd: S, field: piecewise::Even) -> Self {
+        let begin = f64x8::splat(simd, field.from);
+        let end = f64x8::splat(simd, field.to);
+        Self { begin, end, path: f64x8::splat(simd, 1.0 / field.value), t: begin }
     }
 }
 

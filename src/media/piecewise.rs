@@ -17,9 +17,21 @@ pub struct Piecewise {
     pub(super) left: Vec<f64>,
     pub(super) slope: Vec<f64>,
     pub(super) depth: Vec<f64>,
+    even: Option<Even>,
     search: Search,
     /// Knot, left and slope of each piece, for lookups; the other columns are empty.
     rows: Vec<Row>,
+}
+
+/// The one stretch on which a field is not zero, where it has one value there.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Even {
+    /// The value; zero only where the whole field is.
+    pub value: f64,
+    /// Where the stretch begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
 }
 
 /// Where a walk through a [`Piecewise`] field stands.
@@ -71,7 +83,8 @@ impl Piecewise {
         let row =
             |(i, &knot): (usize, &f64)| Row([knot, left[i], slope[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
-        Self { knots: knots.to_vec(), left, slope, depth, search: Search::new(knots), rows }
+        let even = even(knots, &left, &slope);
+        Self { knots: knots.to_vec(), left, slope, depth, even, search: Search::new(knots), rows }
     }
 
     /// The same field restricted to, or continued over, a span.
@@ -97,6 +110,27 @@ impl Piecewise {
         Self::pieces(&knots, left, slope)
     }
 
+    /// The same field, but zero on some stretches, which ascend and do not meet.
+    #[must_use]
+    pub fn zero_on(&self, stretches: &[Span]) -> Self {
+        let (first, last) = (self.knots[0], self.knots[self.left.len()]);
+        let ends = stretches.iter().flat_map(|s| [s.from, s.to]);
+        let mut knots: Vec<f64> =
+            self.knots.iter().copied().chain(ends.filter(|&t| first < t && t < last)).collect();
+        knots.sort_by(f64::total_cmp);
+        knots.dedup();
+        let piece = |ends: &[f64]| {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            if stretches.iter().any(|s| s.contains_inside(middle)) {
+                return (0.0, 0.0);
+            }
+            let (_, piece) = self.piece_at(middle);
+            (self.line(piece, ends[0]), self.slope[piece])
+        };
+        let (left, slope) = knots.windows(2).map(piece).unzip();
+        Self::pieces(&knots, left, slope)
+    }
+
     /// The same field times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
@@ -115,6 +149,14 @@ impl Piecewise {
     #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
+    }
+
+    /// The stretch outside of which the field is zero and on which it has one value, if it is so
+    /// simple.
+    #[must_use]
+    #[inline]
+    pub fn even(&self) -> Option<Even> {
+        self.even
     }
 
     /// How many pieces there are.
@@ -185,11 +227,11 @@ impl Piecewise {
         }
     }
 
-    /// A walk from the first knot.
+    /// A walk from the first knot, or from where a field begins that is [`Piecewise::even`].
     #[must_use]
     #[inline]
     pub fn begin(&self) -> Cursor {
-        Cursor { t: self.knots[0], piece: 0 }
+        Cursor { t: self.even.map_or(self.knots[0], |even| even.from), piece: 0 }
     }
 
     /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
@@ -200,11 +242,9 @@ impl Piecewise {
     /// ```
     #[inline(always)]
     pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        if let [value] = self.left[..]
-            && self.slope[0] == 0.0
-        {
-            cursor.t = Lane::times_plus(depth, 1.0 / value, cursor.t);
-            return (cursor.t < self.knots[1]).then_some(value);
+        if let Some(even) = self.even {
+            cursor.t = Lane::times_plus(depth, 1.0 / even.value, cursor.t);
+            return (cursor.t < even.to).then_some(even.value);
         }
         self.fly_over(cursor, depth)
     }
@@ -227,6 +267,18 @@ impl Piecewise {
         }
         None
     }
+}
+
+fn even(knots: &[f64], left: &[f64], slope: &[f64]) -> Option<Even> {
+    let is_zero = |i: &usize| left[*i] == 0.0 && slope[*i] == 0.0;
+    let mut pieces = (0..left.len()).filter(|i| !is_zero(i));
+    let piece = match (pieces.next(), pieces.next()) {
+        (None, _) => return Some(Even { value: 0.0, from: knots[0], to: knots[left.len()] }),
+        (Some(piece), None) => piece,
+        _ => return None,
+    };
+    let value = left[piece];
+    (slope[piece] == 0.0).then(|| Even { value, from: knots[piece], to: knots[piece + 1] })
 }
 
 impl Extinction for Piecewise {
@@ -301,6 +353,31 @@ mod tests {
         let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]);
         let s = steps.free_flight(Span::new(0.0, 3.0), 1.5).expect("inside");
         assert!((s - 2.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_flight_begins_where_an_even_field_does() {
+        let field = Piecewise::constant(2.0, Span::new(0.0, 5.0));
+        let field = field.zero_on(&[Span::new(0.0, 1.0), Span::new(4.0, 5.0)]);
+        assert_eq!(field.even(), Some(Even { value: 2.0, from: 1.0, to: 4.0 }));
+        assert_eq!((field.value(0.5), field.value(1.0), field.value(4.5)), (0.0, 2.0, 0.0));
+        let mut cursor = field.begin();
+        assert_eq!((field.fly(&mut cursor, 1.0), cursor.t), (Some(2.0), 1.5));
+        assert_eq!(field.fly(&mut cursor, 5.1), None);
+        let nothing = field.zero_on(&[Span::new(0.0, 5.0)]);
+        assert_eq!(nothing.fly(&mut nothing.begin(), 1e-9), None);
+    }
+
+    #[test]
+    fn a_gap_leaves_the_rest_as_it_is() {
+        let (whole, gap) = (lines(), Span::new(0.7, 2.7));
+        let field = whole.zero_on(&[gap]);
+        assert_eq!(field.even(), None);
+        for step in 0..40 {
+            let t = 0.1 * f64::from(step) + 0.05;
+            let expected = if gap.contains_inside(t) { 0.0 } else { whole.value(t) };
+            assert!((field.value(t) - expected).abs() < 1e-15, "at {t}");
+        }
     }
 
     #[test]

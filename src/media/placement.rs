@@ -5,6 +5,7 @@
 //! ```
 
 use super::Piecewise;
+use super::piecewise::Even;
 use super::search::Search;
 use crate::numeric::{Lane, Row};
 
@@ -28,8 +29,7 @@ impl<'a> Placement<'a> {
     #[must_use]
     pub fn new(field: &'a Piecewise) -> Self {
         let depth = field.depth[field.depth.len() - 1];
-        let shape = if let Some(value) = field.single_value() {
-            let (from, to) = (field.knots[0], field.knots[1]);
+        let shape = if let Some(Even { value, from, to }) = field.even() {
             Shape::Even { from, length: to - from, to, mean_free_path: 1.0 / value }
         } else {
             let row = |i: usize| {
@@ -101,6 +101,7 @@ mod tests {
             Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.0, 1.5, 0.4, 0.9]),
             Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
             Piecewise::steps(&many, &values),
+            Piecewise::steps(&[-1.0, 0.0, 0.0625, 3.0], &[0.0, 1.7, 0.0]),
         ];
         for field in fields {
             let support = Span::new(field.knots()[0], field.knots()[field.knots().len() - 1]);

@@ -1,5 +1,7 @@
 //! Sums that do not lose their small terms.
 
+use serde::{Deserialize, Serialize};
+
 /// A running sum with its rounding error kept beside it.
 ///
 /// ```text
@@ -8,7 +10,7 @@
 ///
 /// Source: A. Neumaier, *Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen*,
 /// ZAMM 54 (1974), 39–51.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sum {
     sum: f64,
     correction: f64,

@@ -20,6 +20,8 @@ pub struct JoinedRow<'a> {
     pub seed: u64,
     /// Processor seconds of the experiment's drawing.
     pub seconds: Option<f64>,
+    /// Whether an earlier run drew it.
+    pub is_reused: bool,
 }
 
 impl JoinedRow<'_> {
@@ -39,7 +41,9 @@ pub fn joined(record: &Record) -> Vec<JoinedRow<'_>> {
     for (c, case) in record.results.cases.iter().enumerate() {
         for (r, row) in case.rows.iter().enumerate() {
             let seconds = record.timing.rows.get(c).and_then(|rows| *rows.get(r)?);
-            rows.push(JoinedRow { case, row, seed, seconds });
+            let reused = record.timing.reused.get(c).and_then(|rows| rows.get(r));
+            let is_reused = reused.copied().unwrap_or_default();
+            rows.push(JoinedRow { case, row, seed, seconds, is_reused });
         }
     }
     rows
@@ -154,6 +158,7 @@ const VERDICTS: &[Column] = columns! {
     kernel = |joined| Text(joined.row.kernel.clone());
     same_as = |joined| Text(joined.row.same_as.clone());
     sharing = |joined| Count(joined.row.sharing);
+    skipped = |joined| Number(joined.row.skipped);
     loss_1 = |joined| Number(joined.row.losses.map(|losses| losses[0]));
     loss_2 = |joined| Number(joined.row.losses.map(|losses| losses[1]));
     loss_3 = |joined| Number(joined.row.losses.map(|losses| losses[2]));
@@ -166,6 +171,10 @@ const VERDICTS: &[Column] = columns! {
     log_unit = |joined| Number(joined.row.log_unit);
 };
 
+const KEPT: &[Column] = columns! { timed
+    reused = |joined| Word(joined.is_reused.then_some("yes"));
+};
+
 /// What JSON has beside the columns.
 const LISTS: &[Column] = columns! {
     lookups_pmf = |joined| List(joined.row.lookups_pmf.clone());
@@ -173,7 +182,7 @@ const LISTS: &[Column] = columns! {
 
 /// The columns, in the order in which files have them.
 pub fn columns() -> impl Iterator<Item = &'static Column> + Clone {
-    RESULTS.iter().chain(TIMED).chain(VERDICTS)
+    RESULTS.iter().chain(TIMED).chain(VERDICTS).chain(KEPT)
 }
 
 /// The rows of a record as CSV, with a first line of names.

@@ -146,8 +146,14 @@ fn mix(mut z: u64) -> u64 {
 /// FNV-1a of a name, mixed: an experiment keeps its streams when others join or leave the run.
 #[must_use]
 pub fn name_hash(name: &str) -> u64 {
-    let fnv = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
-    mix(name.bytes().fold(0xcbf2_9ce4_8422_2325, fnv))
+    hash(name.as_bytes())
+}
+
+/// A 64-bit hash of any bytes.
+#[must_use]
+pub fn hash(bytes: &[u8]) -> u64 {
+    let fnv = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    mix(bytes.iter().fold(0xcbf2_9ce4_8422_2325, fnv))
 }
 
 /// Uniform in `[0, 1)`, all 53 bits: for decisions, `unit(rng) < p` has probability `p`.

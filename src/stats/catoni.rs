@@ -13,7 +13,10 @@
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
 
-use fearless_simd::{Level, Simd, dispatch};
+use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+
+use crate::numeric::Lane;
+use crate::numeric::pack::{self, Task, WIDTH};
 
 const LANES: usize = 8;
 /// Draws between two splits of the exponents: eight factors to a lane, each below 1e38.
@@ -21,13 +24,14 @@ const FLUSH: usize = 64;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const INFINITE: i64 = 0x7ff;
+/// Beyond this only the square counts, and would overflow.
+const LARGE: f64 = 1e100;
 
 /// ψ itself.
 #[must_use]
 pub fn psi(t: f64) -> f64 {
     let size = t.abs();
-    // Beyond 1e100 only the square counts, and would overflow.
-    let ln = if size > 1e100 {
+    let ln = if size > LARGE {
         2.0 * size.ln() - std::f64::consts::LN_2
     } else {
         (size * (1.0 + 0.5 * size)).ln_1p()
@@ -78,6 +82,12 @@ impl<const N: usize> PsiSums<N> {
         ));
     }
 
+    /// Adds draws that come so many times each.
+    pub fn absorb_counted(&mut self, y: &[f64], times: &[f64], arguments: &[Argument; N]) {
+        let products = &mut self.products;
+        pack::on(Level::new(), Counted { products, y, times, arguments });
+    }
+
     /// The sums.
     #[must_use]
     pub fn totals(&self) -> [f64; N] {
@@ -88,6 +98,45 @@ impl<const N: usize> PsiSums<N> {
             mantissas + exponents as f64 * std::f64::consts::LN_2 + product.large
         })
     }
+}
+
+/// Draws with how often each comes, for all sums.
+struct Counted<'a, const N: usize> {
+    products: &'a mut [Product; N],
+    y: &'a [f64],
+    times: &'a [f64],
+    arguments: &'a [Argument; N],
+}
+
+impl<const N: usize> Task for Counted<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let (packs, rest) = self.y.as_chunks::<WIDTH>();
+        let (times, last_times) = self.times.as_chunks::<WIDTH>();
+        for (product, argument) in self.products.iter_mut().zip(self.arguments) {
+            let mut sum = f64x8::splat(simd, 0.0);
+            for (y, times) in packs.iter().zip(times) {
+                sum += f64x8::from_slice(simd, times) * terms(f64x8::from_slice(simd, y), argument);
+            }
+            let lanes: f64 = sum.as_slice().iter().sum();
+            let rest = rest.iter().zip(last_times);
+            product.large += lanes + rest.map(|(&y, n)| n * terms(y, argument)).sum::<f64>();
+        }
+    }
+}
+
+/// `ψ(a y + b)` by this crate's own logarithm.
+#[inline(always)]
+fn terms<L: Lane>(y: L, argument: &Argument) -> L {
+    let t = y * argument.slope + argument.shift;
+    let size = t.size();
+    let ln = ((size * 0.5 + 1.0) * size + 1.0).ln();
+    let near = L::select(t.below(t.each(0.0)), -ln, ln);
+    // What is no number, and what is too large for its square, goes the slow way.
+    let is_small = size.at_most(t.each(LARGE));
+    L::select(is_small, near, t.map(|t| if t.abs() <= LARGE { 0.0 } else { psi(t) }))
 }
 
 #[inline(always)]
@@ -175,6 +224,33 @@ mod tests {
         agree(&[0.7]);
         agree(&(0..1000).map(|i| (f64::from(i) * 0.37).sin() * 2.0).collect::<Vec<_>>());
         agree(&(0..64).map(|i| 10f64.powi(i - 32)).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn counted_draws_are_the_draws_themselves() {
+        let y: Vec<f64> = (0..37).map(|i| (f64::from(i) * 0.37).sin() * 2.0).collect();
+        let far = [1e99, -1e101, 1e300, 0.0, 1e-300, -1e-9];
+        for y in [&y[..], &far, &[]] {
+            let times: Vec<u32> = (0..5).cycle().map(|n| n + 1).take(y.len()).collect();
+            let counted_times: Vec<f64> = times.iter().map(|&n| f64::from(n)).collect();
+            let (mut counted, mut one_by_one) = (PsiSums::<3>::default(), PsiSums::<3>::default());
+            counted.absorb_counted(y, &counted_times, &ARGUMENTS);
+            for (&y, &times) in y.iter().zip(&times) {
+                for _ in 0..times {
+                    one_by_one.absorb(&[y], &ARGUMENTS);
+                }
+            }
+            for (a, b) in counted.totals().iter().zip(one_by_one.totals()) {
+                assert!((a - b).abs() <= 1e-13 * (1.0 + b.abs()), "{a} {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_counted_draw_that_is_no_number_is_not_lost() {
+        let mut sums = PsiSums::<3>::default();
+        sums.absorb_counted(&[0.5, f64::NAN], &[3.0, 1.0], &ARGUMENTS);
+        assert!(sums.totals().iter().all(|sum| sum.is_nan()));
     }
 
     #[test]

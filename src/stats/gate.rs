@@ -21,6 +21,8 @@
 //! Stochastic Processes and their Applications 163 (2023); J. Ville, *Étude critique de la notion
 //! de collectif* (1939).
 
+use serde::{Deserialize, Serialize};
+
 use super::catoni::{Argument, PsiSums};
 
 /// How many sums of ψ a scalar takes.
@@ -55,7 +57,7 @@ pub struct Design {
 }
 
 /// The evidence at a look.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Evidence {
     /// ln E, against a correct y.
     pub ln_e: f64,
@@ -64,7 +66,7 @@ pub struct Evidence {
 }
 
 /// What the evidence says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Decision {
     /// Not yet enough.
     Open,

@@ -3,6 +3,7 @@
 pub mod anderson_darling;
 pub mod binomial;
 pub mod catoni;
+pub mod census;
 pub mod chi_square;
 pub mod correlation;
 pub mod gate;
@@ -12,4 +13,5 @@ pub mod reflection;
 pub mod tally;
 pub mod ties;
 
+pub use census::Census;
 pub use tally::{Moments2, Tally};

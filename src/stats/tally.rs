@@ -1,5 +1,8 @@
 //! Sums of draws, block by block.
 
+use serde::{Deserialize, Serialize};
+
+use super::Census;
 use crate::numeric::sum::Sum;
 
 /// The sums side by side.
@@ -10,7 +13,7 @@ const LANES: usize = 8;
 /// The shift is the predicted mean, so that a small spread on a large mean loses no digits. Within
 /// a block the sums are plain; blocks are merged in the order of their addresses with compensated
 /// sums, so that the result does not depend on who drew which block.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tally {
     /// How many draws.
     pub draws: u64,
@@ -58,6 +61,22 @@ impl Tally {
         tally
     }
 
+    /// The same of values that come so many times each.
+    #[must_use]
+    pub fn counted<T: Copy + Into<f64>>(census: &Census<T>, shift: f64, scale: f64) -> Self {
+        let mut tally = Self::default();
+        for (&value, &times) in census.values.iter().zip(&census.times) {
+            let y = (value.into() - shift) / scale;
+            tally.sum.add(times * y);
+            tally.squares.add(times * y * y);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+            let draws = times as u64;
+            tally.draws += draws;
+            tally.not_finite += if value.into().is_finite() { 0 } else { draws };
+        }
+        tally
+    }
+
     /// Adds the sums of the following block.
     pub fn merge(&mut self, later: &Self) {
         self.draws += later.draws;
@@ -101,6 +120,19 @@ mod tests {
         assert!(moments.mean.abs() < 1e-12);
         // The variance of 0 … n − 1 is n(n + 1)/12.
         assert!((moments.variance.expect("two draws") - 1000.0 * 1001.0 / 12.0).abs() < 1e-8);
+    }
+
+    #[test]
+    fn counted_values_are_the_values_themselves() {
+        let values: Vec<f64> = (0..999).map(|i| f64::from(i % 7) * 0.3 - 1.0).collect();
+        let census = Census::<f64>::of(&values).expect("few");
+        let (all, counted) = (Tally::of(&values, 0.1, 2.0), Tally::counted(&census, 0.1, 2.0));
+        assert_eq!((counted.draws, counted.not_finite), (999, 0));
+        let (a, b) = (all.moments().expect("draws"), counted.moments().expect("draws"));
+        assert!((a.mean - b.mean).abs() < 1e-14);
+        assert!((a.variance.expect("many") - b.variance.expect("many")).abs() < 1e-13);
+        let census = Census::<f64>::of(&[1.0, f64::NAN, f64::NAN]).expect("few");
+        assert_eq!(Tally::counted(&census, 0.0, 1.0).not_finite, 2);
     }
 
     #[test]

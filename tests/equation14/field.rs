@@ -73,7 +73,7 @@ pub fn homogeneous() -> Field {
 }
 
 pub fn layers() -> Field {
-    steps(&[0.0, 2.0, 3.0, 6.0, 6.5, 10.0], &[0.1, 1.0, 0.4, 0.0, 0.25])
+    steps(&[0.0, 2.0, 3.0, 6.0, 7.0, 10.0], &[0.1, 1.0, 0.4, 0.0, 0.25])
 }
 
 pub fn hills() -> Field {

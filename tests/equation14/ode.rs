@@ -20,16 +20,22 @@ type State = [f64; 7];
 /// ```text
 /// c₂ = M₂ − 1,  c₃ = M₃ − 3M₂ + 2,  c₄ = M₄ − 4M₃ + 6M₂ − 3
 /// ```
-fn slope(law: Law, scene: &Scene, t: f64, inside: f64, y: &State) -> State {
-    let (medium, sampling, mut control) = scene.at(t, inside);
-    let (rule, killing) = match law {
+///
+/// Products have no collisions where medium and control are zero, nor anywhere if they are the same
+/// everywhere (`nothing_left`).
+fn slope(law: Law, nothing_left: bool, scene: &Scene, t: f64, inside: f64, y: &State) -> State {
+    let (medium, mut sampling, mut control) = scene.at(t, inside);
+    let (mut r, rule, killing) = match law {
         Law::Product { rule, controlled } => {
             control = if controlled { control } else { 0.0 };
-            (rule, 0.0)
+            ((medium - control) / sampling, rule, 0.0)
         }
-        _ => (Rule::Null, control),
+        _ => ((medium - control) / sampling, Rule::Null, control),
     };
-    let r = (medium - control) / sampling;
+    let is_product = matches!(law, Law::Product { .. });
+    if is_product && (nothing_left || (medium == 0.0 && control == 0.0)) {
+        (sampling, r) = (0.0, 0.0);
+    }
     let lambda = |k: i32| {
         // A sampled control kills whatever k is; an integrated one multiplies X.
         let integrated = if killing == 0.0 { f64::from(k) * control } else { killing };
@@ -52,12 +58,14 @@ fn slope(law: Law, scene: &Scene, t: f64, inside: f64, y: &State) -> State {
 }
 
 pub fn solve(law: Law, scene: &Scene) -> Solution {
+    let controlled = matches!(law, Law::Product { controlled: true, .. });
+    let nothing_left = scene.ranges(controlled)[0] == [0.0, 0.0];
     let walk = |scale: &State, local: f64| {
         let mut y = [0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.0];
         for [from, to] in scene.pieces() {
             let inside = 0.5 * (from + to);
             y = dormand_prince([from, to], y, (scale, local), |t, y| {
-                slope(law, scene, t, inside, y)
+                slope(law, nothing_left, scene, t, inside, y)
             });
         }
         y

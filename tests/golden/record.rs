@@ -315,9 +315,10 @@ pub fn record() -> Record {
     let mut first = vec![Some(0.25); 7];
     first[0] = None;
     let rows = vec![first, vec![Some(0.5); 4]];
+    let reused = vec![vec![false; 7], vec![true; 4]];
     Record {
         results,
-        timing: Timing { threads: 2, level: "avx2".into(), seconds: 2.25, rows },
+        timing: Timing { threads: 2, level: "avx2".into(), seconds: 2.25, rows, reused },
         comparison: Some(comparison()),
     }
 }

@@ -27,6 +27,7 @@ pub struct Woodcock;
 
 impl Estimator<FreeFlight> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const SKIPS: bool = true;
     const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {

@@ -30,6 +30,7 @@ pub struct LocalMajorant;
 
 impl Estimator<Transmittance> for LocalMajorant {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const SKIPS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)

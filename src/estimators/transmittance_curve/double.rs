@@ -49,6 +49,7 @@ pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream
 
 impl Estimator<TransmittanceCurve> for DoubleCurve {
     const INPUTS: Inputs = Inputs::BOTH;
+    const SKIPS: bool = true;
     const KEEPS_BOOKS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {

@@ -5,7 +5,7 @@
 //! is none of them is strange: a single one fails the check where the list is complete.
 
 use super::{Ask, Check, Kind, Law, Subject};
-use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -46,10 +46,14 @@ impl Law for Values {
         self.value.len() + 1
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
         let strange = self.value.len();
-        for &x in &draws.values[0] {
-            sums[self.find(x).unwrap_or(strange)] += 1.0;
+        let mut count = |x: f64, times| sums[self.find(x).unwrap_or(strange)] += times;
+        match &draws.values[0] {
+            Some(census) => {
+                census.values.iter().zip(&census.times).for_each(|(&x, &n)| count(x, n));
+            }
+            None => draws.draws.values[0].iter().for_each(|&x| count(x, 1.0)),
         }
     }
 

@@ -8,7 +8,7 @@
 //! It applies where theory knows the law and at least two classes expect enough draws.
 
 use super::{Ask, Check, Kind, Law, Subject};
-use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::stats::chi_square;
 
 /// The check of the lookups' law.
@@ -23,10 +23,14 @@ impl Law for Classes {
         self.probability.len() + 1
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
         let beyond = self.probability.len();
-        for &lookups in &draws.lookups {
-            sums[(lookups as usize).min(beyond)] += 1.0;
+        let mut count = |lookups: u32, times| sums[(lookups as usize).min(beyond)] += times;
+        match &draws.lookups {
+            Some(census) => {
+                census.values.iter().zip(&census.times).for_each(|(&m, &n)| count(m, n));
+            }
+            None => draws.draws.lookups.iter().for_each(|&m| count(m, 1.0)),
         }
     }
 

@@ -8,7 +8,7 @@
 //! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Known, Scalar, Subject, Wanted};
+use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 use crate::theory::prediction::Covariance as Predicted;
 
@@ -58,7 +58,7 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
                     (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
                 }));
             };
-        Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+        Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Draw(Box::new(observe))))
     } else {
         Kind::Untestable("its variance overflows".into())
     };

@@ -12,8 +12,9 @@
 //! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, whose increments over disjoint
 //! stretches are independent; the supremum is the reflection principle of Brownian motion.
 
-use super::{Ask, Check, Kind, Known, Law, Scalar, Subject, Wanted, rounding_of};
+use super::{Ask, Check, Kind, Known, Law, Observe, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::stats::{chi_square, reflection};
 use crate::theory::Increment;
 
@@ -59,11 +60,11 @@ impl Law for Increments {
         self.scale.len()
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
-        for i in 0..draws.lookups.len() {
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+        for i in 0..draws.draws.lookups.len() {
             let mut before = 1.0;
             for ((&j, scale), sum) in self.at.iter().zip(&self.scale).zip(&mut *sums) {
-                let now = draws.values[j][i] * scale;
+                let now = draws.draws.values[j][i] * scale;
                 *sum += now - before;
                 before = now;
             }
@@ -130,5 +131,5 @@ fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Ki
     let Increment { variance, error, .. } = *increment;
     let known = Known { variance, error, floor: rounding_of(subject) };
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
-    Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+    Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Draw(Box::new(observe))))
 }

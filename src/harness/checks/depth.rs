@@ -13,7 +13,7 @@
 
 use super::distances::Classes;
 use super::{Ask, Check, Kind, Law, Subject};
-use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::stats::anderson_darling;
 
 /// The check of the depth.
@@ -26,8 +26,8 @@ impl Law for Empirical {
         self.0.len() + 1
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
-        self.0.count(draws, sums);
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+        self.0.count(draws.draws, sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {

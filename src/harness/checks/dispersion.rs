@@ -10,8 +10,9 @@
 
 use super::mean::is_faint;
 use super::{Ask, Check, Kind, Law, Subject};
-use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::harness::plan::BLOCK;
+use crate::numeric::sum::sum_in_lanes;
 use crate::stats::chi_square;
 
 /// The fewest blocks that make a test.
@@ -32,9 +33,13 @@ impl Law for BlockMeans {
         2
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
-        let last = draws.values.last().map_or(&[][..], Vec::as_slice);
-        sums[0] += last.iter().map(|x| (x - self.mean) * self.scale).sum::<f64>();
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+        let y = |x: f64| (x - self.mean) * self.scale;
+        sums[0] += match (draws.values.last(), draws.draws.values.last()) {
+            (Some(Some(census)), _) => census.sum(|&x| y(x)),
+            (_, Some(values)) => sum_in_lanes(values, y),
+            (_, None) => 0.0,
+        };
     }
 
     fn close(&self, draws: usize, sums: &mut [f64]) {

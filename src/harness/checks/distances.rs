@@ -7,6 +7,7 @@
 
 use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -61,8 +62,8 @@ impl Law for Classes {
         self.len() + 1
     }
 
-    fn add(&self, draws: &DrawBuffer, _: usize, sums: &mut [f64]) {
-        self.count(draws, sums);
+    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+        self.count(draws.draws, sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {

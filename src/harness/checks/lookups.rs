@@ -7,7 +7,7 @@
 //! It sees wrong free flights and wrong endings that the mean hides, and much sooner. A number that
 //! theory says is always the same must be met by every draw.
 
-use super::{Always, Ask, Check, Kind, Known, Scalar, Subject, Wanted};
+use super::{Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 
 /// The largest relative error of the lookups that is still worth a promise.
@@ -26,11 +26,11 @@ impl Check for Lookups {
             let variance = law.variance / (mean * mean);
             let known = Known { variance, error: ERROR, floor: ERROR };
             let wanted = Wanted { tolerance: subject.tolerance.lookups, cap: CAP };
-            let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
+            let observe = move |counts: &[u32], y: &mut Vec<f64>| {
                 let scale = 1.0 / mean;
-                y.extend(draws.lookups.iter().map(|&m| f64::from(m) * scale - 1.0));
+                y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
             };
-            Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+            Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Lookups(Box::new(observe))))
         } else {
             let largest = move |draws: &DrawBuffer| {
                 let counts = draws.lookups.iter();

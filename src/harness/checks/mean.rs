@@ -9,7 +9,7 @@
 //! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. A case that declares an experiment biased passes only if the bias is shown; where
 //! theory has no variance for it, that of pilot draws is used, doubled.
 
-use super::{Always, Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
+use super::{Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::theory::Channel;
 
@@ -76,9 +76,10 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     if known.variance == 0.0 {
         return Kind::Untestable("all pilot draws are the same, which tells nothing here".into());
     }
-    let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
-        y.extend(draws.values[index].iter().map(|x| (x - truth) * scale));
+    let observe = move |values: &[f64], y: &mut Vec<f64>| {
+        y.extend(values.iter().map(|x| (x - truth) * scale));
     };
+    let observe = Observe::Value(index, Box::new(observe));
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
-    Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe)))
+    Kind::Scalar(Scalar::new(subject, known, wanted, observe))
 }

@@ -7,6 +7,7 @@
 //! the streams of random numbers are looked at themselves.
 
 use super::case::Tolerance;
+use super::counted::Counted;
 use crate::catalogue::Catalogue;
 use crate::estimators::{DrawBuffer, Experiment};
 use crate::rng::Streams;
@@ -64,13 +65,36 @@ pub enum Kind {
     Untestable(String),
 }
 
-/// Replaces the second argument by a y for every draw of the buffer.
-pub type Observe = Box<dyn Fn(&DrawBuffer, &mut Vec<f64>) + Send + Sync>;
+/// Adds a y for each of the draws to the second argument.
+pub type Observer<T> = Box<dyn Fn(&T, &mut Vec<f64>) + Send + Sync>;
+
+/// How a y comes from a draw.
+pub enum Observe {
+    /// From the value of one channel.
+    Value(usize, Observer<[f64]>),
+    /// From the number of lookups.
+    Lookups(Observer<[u32]>),
+    /// From the draw as a whole.
+    Draw(Observer<DrawBuffer>),
+}
+
+impl Observe {
+    /// A y for each draw of a buffer.
+    pub fn each(&self, draws: &DrawBuffer, y: &mut Vec<f64>) {
+        match self {
+            Self::Value(channel, observer) => observer(&draws.values[*channel], y),
+            Self::Lookups(observer) => observer(&draws.lookups, y),
+            Self::Draw(observer) => observer(draws, y),
+        }
+    }
+}
 
 /// A quantity y of each draw that has mean 0 and a known variance when all is well.
 pub struct Scalar {
     /// y.
     pub observe: Observe,
+    /// A number added to every y: 0, but where a bias is put in on purpose.
+    pub bias: f64,
     /// What is asked of it.
     pub design: Design,
     /// How many draws the question is planned for.
@@ -121,7 +145,7 @@ impl Scalar {
             (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
         let least = needs(Design::new(variance, widest, known.floor).tolerance);
-        Self { observe, design, draws: needs(design.tolerance), least, underpowered }
+        Self { observe, bias: 0.0, design, draws: needs(design.tolerance), least, underpowered }
     }
 }
 
@@ -132,7 +156,7 @@ pub trait Law: Send + Sync {
 
     /// Adds the draws of a buffer, of which the first is the block's draw number `first`, to the
     /// sums of the block.
-    fn add(&self, draws: &DrawBuffer, first: usize, sums: &mut [f64]);
+    fn add(&self, draws: &Counted, first: usize, sums: &mut [f64]);
 
     /// Turns the sums of a block of `draws` draws into what is summed over blocks.
     fn close(&self, draws: usize, sums: &mut [f64]) {

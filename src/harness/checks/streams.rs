@@ -12,7 +12,7 @@
 
 use super::mean::is_faint;
 use super::{Ask, Check, Kind, Law, Subject};
-use crate::estimators::DrawBuffer;
+use crate::harness::counted::Counted;
 use crate::harness::plan::BLOCK;
 use crate::stats::correlation;
 
@@ -39,8 +39,8 @@ impl Law for IndexSums {
         FIRST + 1
     }
 
-    fn add(&self, draws: &DrawBuffer, first: usize, sums: &mut [f64]) {
-        let Some(values) = draws.values.last() else { return };
+    fn add(&self, draws: &Counted, first: usize, sums: &mut [f64]) {
+        let Some(values) = draws.draws.values.last() else { return };
         let places = sums[..FIRST].iter_mut().skip(first);
         for (sum, x) in places.zip(values) {
             *sum += (x - self.mean) * self.scale;

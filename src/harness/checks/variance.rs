@@ -10,8 +10,7 @@
 //! values, and of experiments that a case declares biased.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
-use crate::estimators::DrawBuffer;
+use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, rounding_of};
 use crate::theory::Channel;
 
 /// The largest relative error of the variance that is still worth a promise.
@@ -52,12 +51,13 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     let error = moments.error * (1.0 + 3.0 * kurtosis / (kurtosis - 1.0));
     let known = Known { variance: kurtosis - 1.0, error, floor };
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
-    let observe = move |draws: &DrawBuffer, y: &mut Vec<f64>| {
-        y.extend(draws.values[index].iter().map(|x| {
+    let observe = move |values: &[f64], y: &mut Vec<f64>| {
+        y.extend(values.iter().map(|x| {
             let deviation = (x - mean) * scale;
             deviation * deviation - 1.0
         }));
     };
+    let observe = Observe::Value(index, Box::new(observe));
     let wanted = Wanted { tolerance: subject.tolerance.variance, cap: CAP };
-    Some(Kind::Scalar(Scalar::new(subject, known, wanted, Box::new(observe))))
+    Some(Kind::Scalar(Scalar::new(subject, known, wanted, observe)))
 }

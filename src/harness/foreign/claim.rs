@@ -1,8 +1,8 @@
 //! What is claimed of another program's draws: by numbers, or by theory for an experiment of a case.
 
+use super::super::addresses;
 use super::super::case::Case;
 use super::super::checks;
-use super::super::plan::pilot_address;
 use super::super::scenario::{Ready, Variation};
 
 /// What rounding may add to each draw, relative to the truth, where the caller does not say: a
@@ -183,7 +183,7 @@ impl Claim {
     pub fn of_case(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
         let (index, label) = find(case, choice.estimator)?;
         let variation = variation(case, index, &label, choice.swept)?;
-        let pilots = pilot_address(choice.seed, case, index);
+        let pilots = addresses::pilots(choice.seed, case, index);
         let prepared = case.scenario.prepare(index, variation, pilots);
         let Ready { prediction, .. } = prepared.outcome.map_err(|refusal| {
             let why = refusal.to_string();

@@ -56,7 +56,10 @@ const MOMENTS: &[Spec] = &[
     ("n(2)", true, 2, |row| digits(row.rare_event_size, 3)),
 ];
 
-const PLAN: &[Spec] = &[("lookups", true, 2, |row| digits(row.predicted_lookups, 4))];
+const PLAN: &[Spec] = &[
+    ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    ("skipped", true, 3, |row| row.skipped.map(percent).unwrap_or_default()),
+];
 
 /// The columns of a case, empty ones and all.
 #[must_use]

@@ -1,0 +1,37 @@
+//! Where experiments find their random numbers: addresses made of names.
+
+use super::case::Case;
+use super::scenario::{Names, Variation};
+use crate::rng::{Address, name_hash};
+
+/// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
+/// the theory's line and the experiments on it learn the same σ̂.
+#[must_use]
+pub fn pilots(seed: u64, case: &Case, estimator: usize) -> Address {
+    own(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
+}
+
+/// Where all order-free experiments of a case whose σ̂ is constant on the same stretch find the places
+/// of their collisions: they lie anywhere on it, whatever estimator, control and σ̂.
+#[must_use]
+pub fn places(seed: u64, case: &str, [from, to]: [f64; 2], is_whole: bool) -> Address {
+    let stretch = if is_whole { String::new() } else { format!("|{from}|{to}") };
+    let experiment = name_hash(&format!("{case}|places{stretch}"));
+    Address { seed, experiment, block: 0, lane: 0 }
+}
+
+/// The address of an experiment's streams: made of names, so that it keeps its random numbers when
+/// other experiments join or leave the run. `twins` come before it in the case under the same name.
+#[must_use]
+pub fn own(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
+    let Names { sampling, sampling_kind, control, .. } = names;
+    // What is the same by definition makes the same draws.
+    let estimator = names.alias.as_ref().unwrap_or(&names.estimator);
+    let sampling = sampling.map_or(String::new(), |value| value.to_string());
+    let swept = variation.map_or(String::new(), |(what, x)| format!("{}={x}", what.key()));
+    let mut name = format!("{case}|{estimator}|{sampling}|{sampling_kind}|{control}|{swept}");
+    if twins > 0 {
+        name = format!("{name}|{twins}");
+    }
+    Address { seed, experiment: name_hash(&name), block: 0, lane: 0 }
+}

@@ -1,0 +1,109 @@
+//! A buffer of draws, counted where they take few values.
+//!
+//! Walks that end as 0 or 1, products of equal factors, and the numbers of lookups of most
+//! experiments take far fewer values than there are draws. What a question asks of them is then asked
+//! once for each value.
+
+use super::checks::Observe;
+use crate::estimators::DrawBuffer;
+use crate::stats::{Census, Tally};
+
+/// Draws, with what is known of their values.
+pub struct Counted<'a> {
+    /// The draws.
+    pub draws: &'a DrawBuffer,
+    /// Per channel its values, where they are few.
+    pub values: Vec<Option<Census<f64>>>,
+    /// The numbers of lookups, where they are few.
+    pub lookups: Option<Census<u32>>,
+}
+
+impl<'a> Counted<'a> {
+    /// Counts what can be counted.
+    #[must_use]
+    pub fn new(draws: &'a DrawBuffer) -> Self {
+        let values = draws.values.iter().map(|values| Census::<f64>::of(values)).collect();
+        Self { draws, values, lookups: Census::<u32>::of(&draws.lookups) }
+    }
+
+    /// Replaces `y` by what is observed of each value, and answers how often each comes; `None` where
+    /// it is of each draw.
+    #[must_use]
+    pub fn observe(&self, observe: &Observe, y: &mut Vec<f64>) -> Option<&[f64]> {
+        y.clear();
+        match observe {
+            Observe::Value(channel, observer) => {
+                let census = self.values[*channel].as_ref();
+                observer(census.map_or(&self.draws.values[*channel], |c| &c.values), y);
+                census.map(|census| &census.times[..])
+            }
+            Observe::Lookups(observer) => {
+                let census = self.lookups.as_ref();
+                observer(census.map_or(&self.draws.lookups, |c| &c.values), y);
+                census.map(|census| &census.times[..])
+            }
+            Observe::Draw(observer) => {
+                observer(self.draws, y);
+                None
+            }
+        }
+    }
+
+    /// The tally of a channel.
+    #[must_use]
+    pub fn tally(&self, channel: usize, shift: f64, scale: f64) -> Tally {
+        match &self.values[channel] {
+            Some(census) => Tally::counted(census, shift, scale),
+            None => Tally::of(&self.draws.values[channel], shift, scale),
+        }
+    }
+
+    /// The tally of the lookups about their expected number.
+    #[must_use]
+    pub fn tally_of_lookups(&self, expected: f64) -> Tally {
+        if let Some(census) = &self.lookups {
+            return Tally::counted(census, expected, 1.0);
+        }
+        let counts: Vec<f64> = self.draws.lookups.iter().map(|&n| f64::from(n)).collect();
+        Tally::of(&counts, expected, 1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimators::Draw;
+
+    fn buffer(value: impl Fn(u32) -> f64) -> DrawBuffer {
+        let mut buffer = DrawBuffer::new(1);
+        (0..500).for_each(|i| buffer.push(&Draw::free([value(i)], i % 5)));
+        buffer
+    }
+
+    /// The sum of the y's, whichever way they come.
+    fn sum(counted: &Counted, observe: &Observe) -> (bool, f64) {
+        let mut y = Vec::new();
+        match counted.observe(observe, &mut y) {
+            Some(times) => (true, y.iter().zip(times).map(|(y, n)| y * n).sum()),
+            None => (false, y.iter().sum()),
+        }
+    }
+
+    #[test]
+    fn few_values_and_many_give_the_same_sums() {
+        let (few, many) = (buffer(|i| f64::from(i % 3)), buffer(|i| f64::from(i).sqrt()));
+        let value = Observe::Value(0, Box::new(|x, y| y.extend(x.iter().map(|x| x + 1.0))));
+        let lookups =
+            Observe::Lookups(Box::new(|n, y| y.extend(n.iter().map(|&n| f64::from(n) - 1.0))));
+        let draw = Observe::Draw(Box::new(|draws, y| y.extend(&draws.values[0])));
+        let counted = Counted::new(&few);
+        assert_eq!(sum(&counted, &value), (true, 999.0));
+        assert_eq!(sum(&counted, &lookups), (true, 500.0));
+        assert_eq!(sum(&counted, &draw), (false, 499.0));
+        assert_eq!(counted.tally(0, 0.0, 1.0).moments().map(|m| m.mean), Some(499.0 / 500.0));
+        assert_eq!(counted.tally_of_lookups(2.0).moments().map(|m| m.mean), Some(0.0));
+        let counted = Counted::new(&many);
+        let plain: f64 = many.values[0].iter().map(|x| x + 1.0).sum();
+        assert_eq!(sum(&counted, &value), (false, plain));
+    }
+}

@@ -1,0 +1,164 @@
+//! What a scene does not need is skipped, and no number changes by it.
+
+mod common;
+
+use common::{case, options};
+use trueflight::estimators::DrawBuffer;
+use trueflight::harness::reuse::Kept;
+use trueflight::harness::{Case, Plan, judge, run};
+
+/// The first draws of the first experiment of a case, from the same streams whatever its name.
+fn first_draws(text: &str) -> (DrawBuffer, f64) {
+    let cases = [case("skips", text)];
+    let plan = Plan::new(&cases, &options(1, 4096));
+    let planned = &plan.cases[0].experiments[0];
+    let ready = planned.outcome.as_ref().expect("not refused");
+    let streams = plan.cases[0].experiments[0].address;
+    let mut streams = trueflight::rng::Address { experiment: 7, ..streams }.streams();
+    let mut buffer = DrawBuffer::new(1);
+    ready.experiment.fill(&mut streams, 4096, &mut buffer);
+    (buffer, ready.experiment.skipped())
+}
+
+fn assert_same(a: &DrawBuffer, b: &DrawBuffer) {
+    assert_eq!(a.values, b.values);
+    assert_eq!(a.lookups, b.lookups);
+}
+
+const GAP: &str = "medium.piecewise-constant = { breaks = [0, 1, 3, 4], values = [0.5, 0, 1.5] }
+    span = [0, 4]";
+
+fn problem(medium: &str, estimator: &str) -> String {
+    format!("title = \"t\"\n[problem.transmittance]\n{medium}\nestimators = [{estimator}]\n")
+}
+
+#[test]
+fn a_gap_is_flown_over_as_if_sampling_were_zero_there() {
+    for (name, settings) in [("ratio", ""), ("woodcock", ""), ("single", "rule = \"clamped\", ")] {
+        for kernel in ["ordered", "order-free"] {
+            let entry = |sampling: &str| {
+                format!("{{ {name} = {{ {settings}{sampling}, kernel = \"{kernel}\" }} }}")
+            };
+            let constant = entry("sampling.constant = { value = 2 }");
+            let zero = entry(
+                "sampling.piecewise-constant = { breaks = [0, 1, 3, 4], values = [2, 0, 2] }",
+            );
+            let (skipping, skipped) = first_draws(&problem(GAP, &constant));
+            let (explicit, nothing) = first_draws(&problem(GAP, &zero));
+            assert_eq!((skipped, nothing), (0.5, 0.0), "{name}");
+            assert_same(&skipping, &explicit);
+        }
+    }
+}
+
+#[test]
+fn a_ray_is_clipped_to_where_the_field_begins_and_ends() {
+    let wide = "medium.piecewise-linear = { knots = [0, 2, 2.5, 3, 9], values = [0, 0, 1, 0, 0] }
+        span = [0, 9]";
+    let narrow = "medium.piecewise-linear = { knots = [2, 2.5, 3], values = [0, 1, 0] }
+        span = [2, 3]";
+    for kernel in ["ordered", "order-free"] {
+        let ratio = format!(
+            "{{ ratio = {{ sampling.constant = {{ value = 1.5 }}, kernel = \"{kernel}\" }} }}"
+        );
+        let (clipped, skipped) = first_draws(&problem(wide, &ratio));
+        let (whole, nothing) = first_draws(&problem(narrow, &ratio));
+        assert!((skipped - 8.0 / 9.0).abs() < 1e-15 && nothing == 0.0);
+        assert_same(&clipped, &whole);
+    }
+}
+
+#[test]
+fn a_short_gap_is_not_worth_a_piece() {
+    let medium = "medium.piecewise-constant = { breaks = [0, 1, 1.01, 4], values = [0.5, 0, 1.5] }
+        span = [0, 4]";
+    let ratio = "{ ratio = { sampling.constant = { value = 2 } } }";
+    assert_eq!(first_draws(&problem(medium, ratio)).1, 0.0);
+}
+
+#[test]
+fn estimators_that_use_sampling_for_more_than_collisions_keep_it() {
+    let next_flight = "{ next-flight = { sampling.constant = { value = 2 } } }";
+    assert_eq!(first_draws(&problem(GAP, next_flight)).1, 0.0);
+}
+
+#[test]
+fn a_residual_of_zero_is_answered_without_collisions() {
+    let text = problem(
+        "volume.eq21 = {}
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20.0 }",
+        "{ double = { control.field.volume.eq21 = {}, sampling.constant = { value = 1 } } }",
+    );
+    let cases = [case("zero", &text)];
+    let plan = Plan::new(&cases, &options(1, 1_000_000));
+    let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let row = &record.results.cases[0].rows[0];
+    assert_eq!((row.skipped, row.draws, row.drawn), (Some(1.0), Some(8), Some(8)));
+    assert_eq!((row.lookups_per_draw, row.variance), (Some(0.0), Some(0.0)));
+    assert!((row.mean.expect("drawn") / row.truth.expect("known") - 1.0).abs() < 1e-14);
+    assert_eq!(row.verdict.map(|verdict| verdict.word()), Some("pass"));
+}
+
+fn cases(title: &str) -> [Case; 1] {
+    let text = "[problem.transmittance]
+        medium.piecewise-constant = { breaks = [0, 1, 3], values = [0.5, 1.2] }
+        span = [0, 3]
+        sampling.constant = { value = 1.5 }
+        estimators = [{ ratio = {} }, { woodcock = {} }]";
+    [case("kept", &format!("title = \"{title}\"\n{text}"))]
+}
+
+#[test]
+fn what_has_not_changed_is_reused_and_no_number_changes() {
+    let (cases, options) = (cases("t"), options(3, 200_000));
+    let plan = Plan::new(&cases, &options);
+    let mut kept = Kept::new("program");
+    let first = run::draw_the_rest(&plan, &kept, &|_| {});
+    assert_eq!(kept.count(&plan), [0, 2]);
+    kept.keep(&plan, &first);
+    let read = Kept::read(&kept.bytes().expect("encodes"), "program");
+    assert_eq!(read, kept);
+    assert_eq!(read.count(&plan), [2, 2]);
+    let second = run::draw_the_rest(&plan, &read, &|_| panic!("nothing is drawn"));
+    assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
+    let json = |draws| {
+        let record = judge::judged(&plan, draws, 0.0);
+        serde_json::to_string(&record.results).expect("encodes")
+    };
+    assert_eq!(json(&first), json(&second));
+}
+
+#[test]
+fn what_has_changed_is_drawn_anew() {
+    let (same, other) = (cases("t"), cases("another"));
+    let options = options(3, 200_000);
+    let plan = Plan::new(&same, &options);
+    let mut kept = Kept::new("program");
+    kept.keep(&plan, &run::draw(&plan, &|_| {}));
+    let bytes = kept.bytes().expect("encodes");
+    assert_eq!(Kept::read(&bytes, "another program").count(&plan), [0, 2]);
+    assert_eq!(Kept::read(&bytes[..bytes.len() - 1], "program").count(&plan), [0, 2]);
+    assert_eq!(Kept::read(&[], "program").count(&plan), [0, 2]);
+    let mut spoilt = bytes.clone();
+    spoilt[100] ^= 1;
+    assert_eq!(Kept::read(&spoilt, "program").count(&plan), [0, 2]);
+    assert_eq!(kept.count(&Plan::new(&other, &options)), [0, 2]);
+    for changed in [
+        trueflight::harness::Options { seed: 4, ..options.clone() },
+        trueflight::harness::Options { alpha: 1e-5, ..options.clone() },
+        trueflight::harness::Options { fixed: true, ..options.clone() },
+        common::options(3, 300_000),
+    ] {
+        assert_eq!(kept.count(&Plan::new(&same, &changed))[0], 0);
+    }
+}
+
+#[test]
+fn draws_that_a_limit_cut_short_are_not_kept() {
+    let (cases, options) = (cases("t"), options(3, 200_000));
+    let plan = Plan::new(&cases, &options);
+    let mut kept = Kept::new("program");
+    let cut = run::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
+    kept.keep(&plan, &cut);
+    assert_eq!(kept.count(&plan), [0, 2]);
+}
