@@ -73,8 +73,11 @@ fn eq21(name: &str, estimators: &str) -> Case {
 
 fn main() {
     let both = "{ ratio = {} }, { double = {} }";
-    let free = "{ ratio.kernel = \"order-free\" }, { woodcock.kernel = \"order-free\" }";
-    let alone = |name: &str| format!("{{ {name}.kernel = \"order-free\" }}");
+    let sampling = ["0.6", "0.8", "1", "1.2", "1.5", "2", "2.5", "3"];
+    let one = |x: &str| {
+        format!("{{ ratio = {{ kernel = \"order-free\", sampling.constant.value = {x} }} }}")
+    };
+    let sweep = sampling.map(one).join(", ");
     let pairs = [
         Pair {
             name: "a ray clipped to where the field is (1 of 4)",
@@ -97,13 +100,13 @@ fn main() {
             whole: vec![eq21("ratio", "{ ratio = {} }"), eq21("double", "{ double = {} }")],
         },
         Pair {
-            name: "two order-free experiments share lookups",
-            skipping: vec![eq21("free", free)],
-            whole: vec![eq21("ratio", &alone("ratio")), eq21("woodcock", &alone("woodcock"))],
+            name: "eight order-free experiments share lookups",
+            skipping: vec![eq21("sweep", &sweep)],
+            whole: sampling.map(|x| eq21(x, &one(x))).into(),
         },
     ];
-    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
-    one.install(|| {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    pool.install(|| {
         println!("{:<46} {:>9} {:>9} {:>8}", "", "ns, with", "without", "ratio");
         for pair in &pairs {
             let plans = [&pair.skipping, &pair.whole].map(|cases| plan(cases));

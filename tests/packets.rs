@@ -18,7 +18,7 @@ use trueflight::numeric::pack::fuses;
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
 
 /// The media that the shipped cases do not combine with every estimator, σ̂ and control.
-const MEDIA: [(&str, &str); 12] = [
+const MEDIA: [(&str, &str); 13] = [
     ("constant", "medium.constant.extinction = 0.7\nspan = [1, 4]"),
     (
         "steps",
@@ -60,6 +60,12 @@ const MEDIA: [(&str, &str); 12] = [
                       2, 2.5, 3, 4],
             values = [1, 0, 1, 0.5, 1.2, 0, 1, 0.7, 0.4, 1.4, 1, 0.2, 0, 1, 1, 0.4, 1.3, 0.1, 0.9] }
         span = [0, 4]",
+    ),
+    (
+        "gaps",
+        "medium.piecewise-constant = { breaks = [0, 1, 1.5, 2, 3, 4, 5],
+                                       values = [0, 0.7, 1.1, 0, 0.5, 0] }
+        span = [0, 5]",
     ),
     (
         "cubic-noise",

@@ -4,6 +4,7 @@ mod common;
 
 use common::{case, options};
 use trueflight::estimators::DrawBuffer;
+use trueflight::harness::record::Verdict;
 use trueflight::harness::reuse::Kept;
 use trueflight::harness::{Case, Plan, judge, run};
 
@@ -96,7 +97,7 @@ fn a_residual_of_zero_is_answered_without_collisions() {
     assert_eq!((row.skipped, row.draws, row.drawn), (Some(1.0), Some(8), Some(8)));
     assert_eq!((row.lookups_per_draw, row.variance), (Some(0.0), Some(0.0)));
     assert!((row.mean.expect("drawn") / row.truth.expect("known") - 1.0).abs() < 1e-14);
-    assert_eq!(row.verdict.map(|verdict| verdict.word()), Some("pass"));
+    assert_eq!(row.verdict.map(Verdict::word), Some("pass"));
 }
 
 fn cases(title: &str) -> [Case; 1] {

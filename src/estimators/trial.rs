@@ -6,6 +6,7 @@ use super::layers;
 use super::packet::Request;
 use super::walkers::{self, Walkers};
 use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
+use crate::media::even::Even;
 use crate::media::{FreeFlight, Placement, Visitor};
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
@@ -131,9 +132,10 @@ pub trait Experiment: Send + Sync {
         0.0
     }
 
-    /// The stretch on which any place is as likely as any other to be that of a collision: experiments
-    /// on the same stretch of the same medium can share their lookups. `None` where that cannot be.
-    fn shared_stretch(&self) -> Option<[f64; 2]> {
+    /// Where on the ray any place is as likely as any other to be that of a collision, in words that are
+    /// empty for the whole support: experiments with the same places on the same medium can share
+    /// their lookups. `None` where that cannot be.
+    fn even_places(&self) -> Option<String> {
         None
     }
 
@@ -264,9 +266,11 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         self.setup.skipped
     }
 
-    fn shared_stretch(&self) -> Option<[f64; 2]> {
-        let even = self.setup.sampling.even().filter(|_| self.order == Order::Free);
-        even.map(|even| [even.from, even.to])
+    fn even_places(&self) -> Option<String> {
+        let even = self.setup.sampling.even().filter(|_| self.order == Order::Free)?;
+        let is_whole = self.setup.sampling.single_value().is_some();
+        let Even { from, to, gaps, .. } = even;
+        Some(if is_whole { String::new() } else { format!("|{from}|{to}|{gaps:?}") })
     }
 
     fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {

@@ -11,12 +11,11 @@ pub fn pilots(seed: u64, case: &Case, estimator: usize) -> Address {
     own(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
 }
 
-/// Where all order-free experiments of a case whose σ̂ is constant on the same stretch find the places
-/// of their collisions: they lie anywhere on it, whatever estimator, control and σ̂.
+/// Where order-free experiments of a case find the places of their collisions, if these are as likely
+/// anywhere in the same places: whatever the estimator, the control and σ̂.
 #[must_use]
-pub fn places(seed: u64, case: &str, [from, to]: [f64; 2], is_whole: bool) -> Address {
-    let stretch = if is_whole { String::new() } else { format!("|{from}|{to}") };
-    let experiment = name_hash(&format!("{case}|places{stretch}"));
+pub fn places(seed: u64, case: &str, even_places: &str) -> Address {
+    let experiment = name_hash(&format!("{case}|places{even_places}"));
     Address { seed, experiment, block: 0, lane: 0 }
 }
 

@@ -272,11 +272,8 @@ fn plan_experiment(
     }
     let pilots = addresses::pilots(options.seed, case, estimator);
     let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
-    let places = outcome.as_ref().ok().and_then(|ready| {
-        let stretch = ready.experiment.shared_stretch()?;
-        let is_whole = ready.experiment.skipped() == 0.0;
-        Some(addresses::places(options.seed, &case.name, stretch, is_whole))
-    });
+    let places = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
+    let places = places.map(|places| addresses::places(options.seed, &case.name, &places));
     Planned {
         estimator,
         variation,

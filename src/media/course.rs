@@ -5,7 +5,7 @@
 
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::{Piecewise, piecewise};
+use super::{Piecewise, even};
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 
@@ -24,36 +24,38 @@ pub trait Course<S: Simd> {
     fn restart(&mut self, which: mask64x8<S>);
 }
 
-/// Through one constant value.
+/// Through one value, but for gaps.
 #[derive(Clone, Copy)]
-pub struct Even<S: Simd> {
+pub struct Even<'a, S: Simd> {
+    field: &'a even::Even,
     begin: f64x8<S>,
     end: f64x8<S>,
     path: f64x8<S>,
-    t: f64x8<S>,
+    way: f64x8<S>,
 }
 
-impl<S: Simd> Even<S> {
-    /// At the beginning of the one stretch of a field.
+impl<'a, S: Simd> Even<'a, S> {
+    /// At the beginning of a field.
     #[inline(always)]
     #[must_use]
-    pub fn new(simd: S, field: piecewise::Even) -> Self {
+    pub fn new(simd: S, field: &'a even::Even) -> Self {
         let begin = f64x8::splat(simd, field.from);
         let end = f64x8::splat(simd, field.to);
-        Self { begin, end, path: f64x8::splat(simd, 1.0 / field.value), t: begin }
+        let path = f64x8::splat(simd, 1.0 / field.value);
+        Self { field, begin, end, path, way: begin }
     }
 }
 
-impl<S: Simd> Course<S> for Even<S> {
+impl<S: Simd> Course<S> for Even<'_, S> {
     #[inline(always)]
     fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S> {
-        self.t = depth.times_plus(self.path, self.t);
-        self.t.below(self.end)
+        self.way = depth.times_plus(self.path, self.way);
+        self.way.below(self.end)
     }
 
     #[inline(always)]
     fn reached(&self) -> f64x8<S> {
-        self.t
+        self.field.spread(self.way)
     }
 
     #[inline(always)]
@@ -63,7 +65,7 @@ impl<S: Simd> Course<S> for Even<S> {
 
     #[inline(always)]
     fn restart(&mut self, which: mask64x8<S>) {
-        self.t = Lane::select(which, self.begin, self.t);
+        self.way = Lane::select(which, self.begin, self.way);
     }
 }
 

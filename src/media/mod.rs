@@ -12,6 +12,7 @@ pub mod cells;
 pub mod control;
 pub mod course;
 pub mod cubics;
+pub mod even;
 pub mod grid_file;
 pub mod lattice;
 pub mod medium;

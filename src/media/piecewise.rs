@@ -1,5 +1,6 @@
 //! Straight pieces: the shape of every sampling extinction and of most controls.
 
+use super::even::Even;
 use super::search::Search;
 use super::{Extinction, FreeFlight, OpticalDepth};
 use crate::numeric::{Known, Lane, Row, Span, sum::Sum};
@@ -23,22 +24,13 @@ pub struct Piecewise {
     rows: Vec<Row>,
 }
 
-/// The one stretch on which a field is not zero, where it has one value there.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Even {
-    /// The value; zero only where the whole field is.
-    pub value: f64,
-    /// Where the stretch begins.
-    pub from: f64,
-    /// Where it ends.
-    pub to: f64,
-}
-
 /// Where a walk through a [`Piecewise`] field stands.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cursor {
     /// The distance reached.
     pub t: f64,
+    /// The same without gaps, in a field that is [`Piecewise::even`].
+    way: f64,
     piece: usize,
 }
 
@@ -83,7 +75,7 @@ impl Piecewise {
         let row =
             |(i, &knot): (usize, &f64)| Row([knot, left[i], slope[i], 0.0, 0.0, 0.0, 0.0, 0.0]);
         let rows = knots[..left.len()].iter().enumerate().map(row).collect();
-        let even = even(knots, &left, &slope);
+        let even = Even::of(knots, &left, &slope);
         Self { knots: knots.to_vec(), left, slope, depth, even, search: Search::new(knots), rows }
     }
 
@@ -151,12 +143,11 @@ impl Piecewise {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
     }
 
-    /// The stretch outside of which the field is zero and on which it has one value, if it is so
-    /// simple.
+    /// The field's one value other than zero, if it is so simple.
     #[must_use]
     #[inline]
-    pub fn even(&self) -> Option<Even> {
-        self.even
+    pub fn even(&self) -> Option<&Even> {
+        self.even.as_ref()
     }
 
     /// How many pieces there are.
@@ -231,7 +222,8 @@ impl Piecewise {
     #[must_use]
     #[inline]
     pub fn begin(&self) -> Cursor {
-        Cursor { t: self.even.map_or(self.knots[0], |even| even.from), piece: 0 }
+        let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);
+        Cursor { t, way: t, piece: 0 }
     }
 
     /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
@@ -242,9 +234,10 @@ impl Piecewise {
     /// ```
     #[inline(always)]
     pub fn fly(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        if let Some(even) = self.even {
-            cursor.t = Lane::times_plus(depth, 1.0 / even.value, cursor.t);
-            return (cursor.t < even.to).then_some(even.value);
+        if let Some(even) = &self.even {
+            cursor.way = Lane::times_plus(depth, 1.0 / even.value, cursor.way);
+            cursor.t = even.spread(cursor.way);
+            return (cursor.way < even.to).then_some(even.value);
         }
         self.fly_over(cursor, depth)
     }
@@ -267,18 +260,6 @@ impl Piecewise {
         }
         None
     }
-}
-
-fn even(knots: &[f64], left: &[f64], slope: &[f64]) -> Option<Even> {
-    let is_zero = |i: &usize| left[*i] == 0.0 && slope[*i] == 0.0;
-    let mut pieces = (0..left.len()).filter(|i| !is_zero(i));
-    let piece = match (pieces.next(), pieces.next()) {
-        (None, _) => return Some(Even { value: 0.0, from: knots[0], to: knots[left.len()] }),
-        (Some(piece), None) => piece,
-        _ => return None,
-    };
-    let value = left[piece];
-    (slope[piece] == 0.0).then(|| Even { value, from: knots[piece], to: knots[piece + 1] })
 }
 
 impl Extinction for Piecewise {
@@ -359,7 +340,8 @@ mod tests {
     fn a_flight_begins_where_an_even_field_does() {
         let field = Piecewise::constant(2.0, Span::new(0.0, 5.0));
         let field = field.zero_on(&[Span::new(0.0, 1.0), Span::new(4.0, 5.0)]);
-        assert_eq!(field.even(), Some(Even { value: 2.0, from: 1.0, to: 4.0 }));
+        let even = Even { value: 2.0, from: 1.0, to: 4.0, gaps: Vec::new() };
+        assert_eq!(field.even(), Some(&even));
         assert_eq!((field.value(0.5), field.value(1.0), field.value(4.5)), (0.0, 2.0, 0.0));
         let mut cursor = field.begin();
         assert_eq!((field.fly(&mut cursor, 1.0), cursor.t), (Some(2.0), 1.5));
@@ -369,10 +351,29 @@ mod tests {
     }
 
     #[test]
+    fn gaps_take_none_of_the_way() {
+        let values = [0.0, 3.0, 3.0, 0.0, 0.0, 3.0, 0.0, 3.0, 0.0];
+        let field = Piecewise::steps(&[0.0, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 7.0, 8.0, 9.0], &values);
+        let gaps = vec![[2.0, 2.0], [4.0, 1.0]];
+        assert_eq!(field.even(), Some(&Even { value: 3.0, from: 1.0, to: 5.0, gaps }));
+        for step in 1..120 {
+            let depth = 0.1 * f64::from(step) + 0.01;
+            let mut cursor = field.begin();
+            let flown = field.fly(&mut cursor, depth).map(|_| cursor.t);
+            let over = field.fly_over(&mut field.begin(), depth).is_some();
+            assert_eq!(flown.is_some(), over);
+            if let Some(t) = flown {
+                let back = field.optical_depth(Span::new(0.0, t)).value;
+                assert!((back - depth).abs() < 1e-14, "{t}");
+            }
+        }
+    }
+
+    #[test]
     fn a_gap_leaves_the_rest_as_it_is() {
         let (whole, gap) = (lines(), Span::new(0.7, 2.7));
         let field = whole.zero_on(&[gap]);
-        assert_eq!(field.even(), None);
+        assert!(field.even().is_none());
         for step in 0..40 {
             let t = 0.1 * f64::from(step) + 0.05;
             let expected = if gap.contains_inside(t) { 0.0 } else { whole.value(t) };

@@ -5,7 +5,7 @@
 //! ```
 
 use super::Piecewise;
-use super::piecewise::Even;
+use super::even::Even;
 use super::search::Search;
 use crate::numeric::{Lane, Row};
 
@@ -18,8 +18,8 @@ pub struct Placement<'a> {
 
 #[derive(Debug, Clone)]
 enum Shape<'a> {
-    /// One value.
-    Even { from: f64, length: f64, to: f64, mean_free_path: f64 },
+    /// One value, but for gaps; the length of the way.
+    Even { even: &'a Even, length: f64, mean_free_path: f64 },
     /// The piece that holds an optical depth; its knot, first value and slope, and the depth before.
     Pieces { search: Search, rows: Vec<Row>, field: &'a Piecewise },
 }
@@ -29,8 +29,9 @@ impl<'a> Placement<'a> {
     #[must_use]
     pub fn new(field: &'a Piecewise) -> Self {
         let depth = field.depth[field.depth.len() - 1];
-        let shape = if let Some(Even { value, from, to }) = field.even() {
-            Shape::Even { from, length: to - from, to, mean_free_path: 1.0 / value }
+        let shape = if let Some(even) = field.even() {
+            let (length, mean_free_path) = (even.to - even.from, 1.0 / even.value);
+            Shape::Even { even, length, mean_free_path }
         } else {
             let row = |i: usize| {
                 let columns = [field.knots[i], field.left[i], field.slope[i], field.depth[i]];
@@ -67,9 +68,10 @@ impl<'a> Placement<'a> {
     #[must_use]
     pub fn at<L: Lane>(&self, uniform: L) -> (L, L) {
         match &self.shape {
-            &Shape::Even { from, length, to, mean_free_path } => {
-                let t = uniform.times_plus(uniform.each(length), uniform.each(from));
-                (t.or_less(t.each(to)), t.each(mean_free_path))
+            &Shape::Even { even, length, mean_free_path } => {
+                let way = uniform.times_plus(uniform.each(length), uniform.each(even.from));
+                let way = way.or_less(way.each(even.to));
+                (even.spread(way), way.each(mean_free_path))
             }
             Shape::Pieces { search, rows, field } => {
                 let depth = uniform * self.depth;
@@ -102,6 +104,7 @@ mod tests {
             Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
             Piecewise::steps(&many, &values),
             Piecewise::steps(&[-1.0, 0.0, 0.0625, 3.0], &[0.0, 1.7, 0.0]),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0, 5.0, 6.0], &[1.0, 0.0, 2.0, 0.0, 1.0]),
         ];
         for field in fields {
             let support = Span::new(field.knots()[0], field.knots()[field.knots().len() - 1]);
