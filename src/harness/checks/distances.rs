@@ -14,6 +14,9 @@ use crate::theory;
 /// The number of bins.
 const BINS: usize = 20;
 
+/// Cells of the guide per class.
+const CELLS: usize = 4;
+
 /// The check of the distances.
 pub struct Distances;
 
@@ -21,6 +24,12 @@ pub struct Distances;
 pub struct Classes {
     /// The upper ends of all classes but the last.
     ends: Vec<f64>,
+    /// Equal cells from the first end to the last: how many ends surely lie before each.
+    guide: Vec<usize>,
+    /// Where the cells begin.
+    first: f64,
+    /// How many there are in a length of 1.
+    scale: f64,
     /// The distance of the rays that escape.
     escape: f64,
     /// The probability of that.
@@ -35,8 +44,31 @@ impl Classes {
             return None;
         };
         let step = (bins.len() + 1) / wanted.min(bins.len() + 1);
-        let ends = bins.iter().skip(step - 1).step_by(step).copied().collect();
-        Some(Self { ends, escape: *end, escapes: *escape })
+        let ends: Vec<f64> = bins.iter().skip(step - 1).step_by(step).copied().collect();
+        Some(Self::new(ends, *end, *escape))
+    }
+
+    fn new(ends: Vec<f64>, escape: f64, escapes: f64) -> Self {
+        let first = ends.first().copied().unwrap_or_default();
+        let length = ends.last().map_or(0.0, |last| last - first);
+        let cells = CELLS * ends.len();
+        let width = length / cells.max(1) as f64;
+        // A distance that rounding puts one cell too far still finds its class ahead.
+        let before = |cell: usize| first + width * (cell as f64 - 2.0);
+        let guide = (0..=cells + 1).map(|cell| ends.partition_point(|&end| end < before(cell)));
+        let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
+        Self { guide: guide.collect(), first, scale, ends, escape, escapes }
+    }
+
+    /// The class of a distance before the escape: how many ends are not beyond it.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a negative one is cell 0
+    fn class(&self, s: f64) -> usize {
+        let cell = ((s - self.first) * self.scale + 1.0) as usize;
+        let mut class = self.guide[cell.min(self.guide.len() - 1)];
+        while self.ends.get(class).is_some_and(|&end| end <= s) {
+            class += 1;
+        }
+        class
     }
 
     /// How many classes, escape not counted.
@@ -47,11 +79,7 @@ impl Classes {
     /// Counts draws: the classes in order, then the rays that escape.
     pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
         for &s in &draws.values[0] {
-            let class = if s >= self.escape {
-                self.len()
-            } else {
-                self.ends.partition_point(|&end| end <= s)
-            };
+            let class = if s >= self.escape { self.len() } else { self.class(s) };
             sums[class] += 1.0;
         }
     }
@@ -78,5 +106,25 @@ impl Check for Distances {
         let classes = Classes::of(subject, BINS).filter(|_| !subject.expect_biased);
         let kind = classes.map(|classes| Kind::Law(Box::new(classes)));
         kind.map(|kind| Ask::whole("the law of the distances", kind)).into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_guide_finds_the_class_that_a_search_finds() {
+        let cubes: Vec<f64> = (1..200).map(|i| 3.0 + (0.01 * f64::from(i)).powi(3)).collect();
+        let even: Vec<f64> = (1..20).map(|i| 0.1 * f64::from(i)).collect();
+        for ends in [cubes, even, vec![4.0], vec![1.0, 1.0 + f64::EPSILON], Vec::new()] {
+            let classes = Classes::new(ends.clone(), 20.0, 0.1);
+            let near = ends.iter().flat_map(|&end| [end, end.next_down(), end.next_up()]);
+            let far = (0..4000).map(|i| 0.003 * f64::from(i) - 1.0);
+            for s in near.chain(far) {
+                let expected = ends.partition_point(|&end| end <= s);
+                assert_eq!(classes.class(s), expected, "{s} in {} classes", ends.len());
+            }
+        }
     }
 }
