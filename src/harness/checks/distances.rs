@@ -8,6 +8,7 @@
 use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
 use crate::harness::counted::Counted;
+use crate::numeric::pack::in_fused_code;
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -15,7 +16,9 @@ use crate::theory;
 const BINS: usize = 20;
 
 /// Cells of the guide per class.
-const CELLS: usize = 4;
+const CELLS: usize = 16;
+/// So few ends need no guide.
+const FEW: usize = 32;
 
 /// The check of the distances.
 pub struct Distances;
@@ -78,7 +81,22 @@ impl Classes {
 
     /// Counts draws: the classes in order, then the rays that escape.
     pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
-        for &s in &draws.values[0] {
+        let values = &draws.values[0];
+        if self.ends.len() <= FEW {
+            // All draws against one end after the other, so that no branch hangs on chance.
+            let mut reached = values.len();
+            for (class, &end) in self.ends.iter().chain([&self.escape]).enumerate() {
+                let beyond = in_fused_code(
+                    #[inline(always)]
+                    || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
+                );
+                sums[class] += (reached - beyond) as f64;
+                reached = beyond;
+            }
+            sums[self.len()] += reached as f64;
+            return;
+        }
+        for &s in values {
             let class = if s >= self.escape { self.len() } else { self.class(s) };
             sums[class] += 1.0;
         }
@@ -112,6 +130,23 @@ impl Check for Distances {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn few_classes_and_many_count_alike() {
+        let mut draws = DrawBuffer::new(1);
+        draws.values[0] = (0..4096).map(|i| f64::from(i * i % 1009) * 0.005).collect();
+        let ends: Vec<f64> = (1..64).map(|i| 0.05 * f64::from(i)).collect();
+        let few: Vec<f64> = ends.iter().skip(1).step_by(2).copied().collect();
+        let (fine, coarse) = (Classes::new(ends, 4.5, 0.1), Classes::new(few, 4.5, 0.1));
+        let (mut many, mut few) = (vec![0.0; 65], vec![0.0; 33]);
+        fine.count(&draws, &mut many);
+        coarse.count(&draws, &mut few);
+        assert_eq!(few.iter().sum::<f64>(), 4096.0);
+        assert_eq!(few[32], many[64]);
+        for (class, count) in few[..32].iter().enumerate() {
+            assert_eq!(*count, many[2 * class] + many[2 * class + 1], "class {class}");
+        }
+    }
 
     #[test]
     fn the_guide_finds_the_class_that_a_search_finds() {
