@@ -42,8 +42,7 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance-curve/noise-figure-5",
     "transmittance-curve/magnet",
     "rod/three-rules-a0.7",
-    "rod/layers-with-gap",
-    "rod/constant-albedo",
+    "rod/roulette",
     "rod/magnet",
 ];
 

@@ -11,7 +11,7 @@
 //! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
 //! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
 //! | `albedo` | a in [0, 1]: a number, or a field, see below | required unless swept |
-//! | `forward` | p_f in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
+//! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
 //! | `absorbed` | whether the absorbed energy is a channel, scored at every collision: Σ w r (1 − a) | false |
 //! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
@@ -23,7 +23,7 @@
 //! first and the last value go on. In empty space the particle flies on, so that only the part of a
 //! ray inside the field's bounds is the rod.
 //!
-//! The answer is exact. Where a and p_f are constant it is a closed form that depends on the optical
+//! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
 //! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. Of `a = 1`
 //! nothing is absorbed: that channel, and any other whose answer is 0, is refused.
 //!
@@ -112,7 +112,7 @@ impl Rod {
         &self.albedo
     }
 
-    /// p_f, as a function of the distance.
+    /// `p_f`, as a function of the distance.
     #[must_use]
     pub fn forward(&self) -> &Piecewise {
         &self.forward

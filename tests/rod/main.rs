@@ -28,9 +28,8 @@ fn numbers(entry: &Value) -> Vec<f64> {
 
 /// What a plan says of a rod with one estimator.
 fn planned(rod: &str, estimator: &str) -> Vec<Row> {
-    let text = format!(
-        "title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]"
-    );
+    let text =
+        format!("title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]");
     let cases = [case("test", &text)];
     let record = judge::planned(&Plan::new(&cases, &options(1, 100_000)));
     record.results.cases.into_iter().flat_map(|case| case.rows).collect()
@@ -60,7 +59,8 @@ fn closed_forms_are_met() {
             ),
         ];
         for medium in media {
-            let rod = format!("{medium}\nalbedo = {a}\nforward = {pf}\nsampling.constant.value = 4");
+            let rod =
+                format!("{medium}\nalbedo = {a}\nforward = {pf}\nsampling.constant.value = 4");
             for ((name, value), expected) in truths(&rod).iter().zip(&expected) {
                 let what = format!("{name} of {}", entry["params"]);
                 wrong.extend(differs(&what, *value, *expected, 1e-14));
@@ -116,8 +116,7 @@ fn orders_of_scattering_are_met() {
         "medium.constant.extinction = 2\nspan = [0, 1]\nalbedo = 1\nforward = 0.75\norders = 6
         sampling.constant.value = 3",
     );
-    let (r, t) =
-        (numbers(&reference("rod_orders_R")[0]), numbers(&reference("rod_orders_T")[0]));
+    let (r, t) = (numbers(&reference("rod_orders_R")[0]), numbers(&reference("rod_orders_T")[0]));
     let mut wrong = Vec::new();
     for order in 0..=6 {
         for (word, expected) in [("reflectance", &r), ("transmittance", &t)] {
@@ -151,9 +150,7 @@ const NAMES: [&str; 5] = ["E[R²]", "E[T²]", "E[R⁴]", "E[T⁴]", "E[M]"];
 fn moments_of_every_rule_are_met() {
     let mut wrong = Vec::new();
     let mut met = 0;
-    for (id, rule) in
-        [("term", "terminating"), ("non", "non-terminating"), ("adapt", "adaptive")]
-    {
+    for (id, rule) in [("term", "terminating"), ("non", "non-terminating"), ("adapt", "adaptive")] {
         for sampling in ["0.5", "0.6", "0.8", "1.0", "1.5"] {
             let Some(entry) = reference(&format!("spm_rod_eq21/{id}/{sampling}")).pop() else {
                 continue;
@@ -161,7 +158,12 @@ fn moments_of_every_rule_are_met() {
             let rod = format!("{EQ21}\nalbedo = 0.7\nsampling.constant.value = {sampling}");
             let found = found(&planned(&rod, rule));
             for ((name, found), expected) in NAMES.iter().zip(found).zip(numbers(&entry)) {
-                wrong.extend(differs(&format!("{name}, {rule} at {sampling}"), found, expected, 1e-11));
+                wrong.extend(differs(
+                    &format!("{name}, {rule} at {sampling}"),
+                    found,
+                    expected,
+                    1e-11,
+                ));
             }
             met += 1;
         }
@@ -218,7 +220,8 @@ fn the_adaptive_rule_never_has_the_smaller_variance() {
                 assert!(a2 >= b2 * (1.0 - 1e-10), "{albedo}, {sampling}: {a2} < {b2}");
                 worse += usize::from(a2 > b2 * 1.001);
             }
-            let [a, b] = [&adaptive, &other].map(|rows| rows[0].predicted_lookups.expect("lookups"));
+            let [a, b] =
+                [&adaptive, &other].map(|rows| rows[0].predicted_lookups.expect("lookups"));
             assert!(a <= b * (1.0 + 1e-10), "{albedo}, {sampling}: {a} > {b} lookups");
         }
     }

@@ -47,7 +47,8 @@ pub fn moments(rod: &Rod, odds: Odds, k: i32) -> [f64; 3] {
 
 fn slope(rod: &Rod, odds: Odds, k: i32, x: f64, [rho, eta, nu]: [f64; 3]) -> [f64; 3] {
     let r = (rod.extinction)(x) / rod.sampling;
-    let [straight, scattered] = odds(r, (rod.albedo)(x)).map(|(chance, weight)| chance * weight.powi(k));
+    let [straight, scattered] =
+        odds(r, (rod.albedo)(x)).map(|(chance, weight)| chance * weight.powi(k));
     let a = rod.sampling * (1.0 - straight - scattered * rod.forward);
     let b = rod.sampling * scattered * (1.0 - rod.forward);
     [

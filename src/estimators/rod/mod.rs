@@ -1,4 +1,4 @@
-//! Walks of the single particle model through a rod.
+//! Walks of a particle through a rod.
 
 pub mod walk;
 
@@ -73,4 +73,5 @@ estimators! {
     adaptive::Adaptive,
     analog::Analog,
     weighted::Weighted,
+    roulette::Roulette,
 }

@@ -6,7 +6,8 @@
 //! scattered, it turns round with probability 1 − p_f
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; only a scattering takes a third.
+//! A flight and what happens at its end take a random number each; a scattering takes a third, and so does
+//! roulette where it is played.
 
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;

@@ -37,7 +37,7 @@ pub struct Step {
     pub sampling: f64,
     /// `r (1 − a)`: what a collision absorbs of the weight.
     pub absorbed: f64,
-    /// p_f.
+    /// `p_f`.
     pub forward: f64,
     /// What happens at a collision.
     pub odds: Odds,
@@ -46,6 +46,7 @@ pub struct Step {
 impl Step {
     /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
     #[inline]
+    #[must_use]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
         let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
         let backward = 1.0 - self.forward;
@@ -58,6 +59,7 @@ impl Step {
 
     /// A and B of the k-th moment.
     #[inline]
+    #[must_use]
     pub fn rates(&self, k: i32) -> [f64; 2] {
         let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
@@ -88,7 +90,7 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Cuts the rod where a, p_f or σ̂ has a knot and where the rule changes; `None` where that
+    /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes; `None` where that
     /// makes more steps than theory can do.
     #[must_use]
     pub fn new(
@@ -265,7 +267,7 @@ impl Grid {
             let emitted = [straight * plus + turned * minus, straight * minus + turned * plus];
             let [rho, eta] = beyond[i + 1];
             let echo = 1.0 - layer.back * rho;
-            if !(echo > 0.0) {
+            if echo.is_nan() || echo <= 0.0 {
                 return None;
             }
             let minus = (layer.back * eta + emitted[1]) / echo;
