@@ -112,6 +112,7 @@ fn rods() -> Vec<Case> {
             forward = 0.7
             absorbed = true
             orders = 1
+            flux = 2
             sampling.constant.value = 1.3
             estimators = [
                 { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },

@@ -15,6 +15,10 @@ fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
         setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
     }
+    if setup.problem.parts() > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
+        let needs = "σ̂ > 0 on the whole rod to see its flux";
+        return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
+    }
     let mesh = &setup.mesh;
     match rod::diverges(mesh, &setup.problem, &setup.sampling, rule) {
         Ok(None) => Ok(()),

@@ -17,8 +17,8 @@
 //! 0 ≤ X ≤ 1,  so that Var[X] ≤ E[X](1 − E[X])
 //! ```
 //!
-//! and means are tested with that bound. Elsewhere it is refused, as it is where the absorbed energy, which
-//! has no such bound, is a channel.
+//! and means are tested with that bound. Elsewhere it is refused, as it is where the absorbed energy or the
+//! flux, which have no such bound, is a channel.
 //!
 //! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that
 //! of `non-terminating`.
@@ -72,10 +72,11 @@ impl Estimator<Rod> for Roulette {
     }
 
     fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {
-        if setup.problem.channels().contains(&Seen::Absorbed) {
+        let is_score = |seen: &Seen| matches!(seen, Seen::Absorbed | Seen::Flux(_));
+        if setup.problem.channels().iter().any(is_score) {
             return Err(Refusal::mismatch(
                 "channels whose draws are at most 1",
-                "the absorbed energy has no bound",
+                "what is scored on the way has no bound",
             ));
         }
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;

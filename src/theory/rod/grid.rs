@@ -37,6 +37,8 @@ pub struct Step {
     pub sampling: f64,
     /// `r (1 − a)`: what a collision absorbs of the weight.
     pub absorbed: f64,
+    /// The part of the rod that it lies in, see [`Rod::part`].
+    pub part: usize,
     /// `p_f`.
     pub forward: f64,
     /// What happens at a collision.
@@ -76,6 +78,7 @@ impl Step {
 /// Steps from the beginning of the support to its end.
 pub struct Grid {
     steps: Vec<Step>,
+    parts_per_length: f64,
 }
 
 /// A walk through a rod, for theory.
@@ -104,6 +107,8 @@ impl<'a> Walk<'a> {
         if let Some(sampling) = sampling {
             cuts.extend(sampling.knots());
         }
+        let from = mesh.support().from;
+        cuts.extend((1..rod.parts()).map(|part| from + rod.width() * part as f64));
         let cut = mesh.refined(&cuts, &|_, _| Vec::new());
         let mut kinks = Vec::new();
         if let Some(sampling) = sampling {
@@ -153,7 +158,8 @@ impl<'a> Walk<'a> {
         };
         let odds = self.rule.odds(ratio, albedo);
         let absorbed = ratio * (1.0 - albedo);
-        Step { end: t, width: 0.0, sampling, absorbed, forward, odds }
+        let part = self.rod.part(t);
+        Step { end: t, width: 0.0, sampling, absorbed, part, forward, odds }
     }
 
     /// The grid whose steps are so many times shorter than the coarsest grid's.
@@ -172,7 +178,7 @@ impl<'a> Walk<'a> {
                 Step { end, width, ..self.at(t, sigma) }
             }));
         }
-        Grid { steps }
+        Grid { steps, parts_per_length: 1.0 / self.rod.width() }
     }
 
     /// How many steps the coarsest grid has.
@@ -223,10 +229,10 @@ impl Layer {
 }
 
 impl Grid {
-    /// The steps.
+    /// One over the length of the parts in which the flux is looked at.
     #[must_use]
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
+    pub fn parts_per_length(&self) -> f64 {
+        self.parts_per_length
     }
 
     /// Where the k-th moment diverges: the distance that would have to be the rod's end for it to

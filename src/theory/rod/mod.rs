@@ -247,7 +247,7 @@ fn covariances(channels: &[Seen], truth: &[Known], found: &Found) -> Vec<Covaria
         let squares = [found.raw[first][1][0], found.raw[first + 1][1][0]];
         let joint = match (pair, found.joint) {
             ([Seen::Absorbed, _], Some(joint)) => joint,
-            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed], _) => continue,
+            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed] | [Seen::Flux(_), _], _) => continue,
             _ => [[0.0; 2]; 2],
         };
         let [a, b] = means;
