@@ -13,7 +13,7 @@ use common::{case, options};
 use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
-use trueflight::problems::{FreeFlight, Transmittance, TransmittanceCurve};
+use trueflight::problems::{FreeFlight, Rod, Transmittance, TransmittanceCurve};
 
 /// Draws of each experiment.
 const DRAWS: usize = 4;
@@ -100,9 +100,41 @@ fn cases() -> Vec<Case> {
     ]
 }
 
+fn rods() -> Vec<Case> {
+    vec![
+        case(
+            "rod",
+            "title = \"a rod\"
+            [problem.rod]
+            medium.piecewise-linear = { knots = [0, 2, 4], values = [0.3, 1.2, 0.5] }
+            span = [0, 4]
+            albedo.piecewise-linear = { knots = [0, 4], values = [0.9, 0.6] }
+            forward = 0.7
+            absorbed = true
+            orders = 1
+            flux = 2
+            sampling.constant.value = 1.3
+            estimators = [
+                { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },
+                { adaptive.sampling.piecewise-linear = { knots = [0, 2, 4], values = [0.8, 1, 0.6] } },
+            ]",
+        ),
+        case(
+            "roulette",
+            "title = \"a rod with roulette\"
+            [problem.rod]
+            medium.constant.extinction = 2
+            span = [0, 2]
+            albedo = 0.6
+            sampling.constant.value = 2.2
+            estimators = [{ roulette.below = 0.5 }]",
+        ),
+    ]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases = cases();
+    let cases: Vec<Case> = cases().into_iter().chain(rods()).collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -156,6 +188,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Transmittance::CATALOGUE, ["transmittance", "volume"]),
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
+        (Rod::CATALOGUE, ["rod", "roulette"]),
     ] {
         for page in pages {
             let found =

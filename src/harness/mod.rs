@@ -9,6 +9,7 @@ pub mod baseline;
 pub mod bench;
 pub mod case;
 pub mod checks;
+mod computable;
 pub mod counted;
 pub mod curves;
 pub mod draw;

@@ -94,7 +94,7 @@ pub struct CaseRecord {
     pub path: String,
     /// Its title.
     pub title: String,
-    /// The problem's name: `transmittance`, `free-flight`, `transmittance-curve`.
+    /// The problem's name: `transmittance`, `free-flight`, `transmittance-curve`, `rod`.
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,
@@ -136,7 +136,7 @@ pub struct Row {
     /// The share of the ray's support on which σ̂ was made 0, because nothing is to be found there;
     /// `None` where it is as the case has it.
     pub skipped: Option<f64>,
-    /// The channel's name, as in `T(5)`; empty where the value has one channel only.
+    /// The channel's name, as in `T(5)` or `reflectance`; empty where the value has one channel only.
     pub channel: String,
     /// How many draws the means, variances and z-scores of this row are of: a number fixed by the
     /// plan.

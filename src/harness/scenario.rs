@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::computable::{FAINTEST, refuse_what_cannot_be_computed};
 use super::mutation::Walk;
 use super::sweep::What;
 pub use super::written::Names;
@@ -214,7 +215,8 @@ impl<P: Mutable> Scenario<P> {
             _ => 1.0,
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
-        let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
+        let problem = self.varied_problem(variation);
+        let setup = Setup::new(problem, self.mesh().clone(), sampling, control);
         let setup = if self.written[index].entry.skips() { setup.skipping() } else { setup };
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
@@ -229,6 +231,14 @@ impl<P: Mutable> Scenario<P> {
         let control = setup.control.optical_depth(setup.mesh.support()).value;
         let found = format!("τ = {:.6}, of which the control takes {control:.6}", setup.log_unit);
         Err(Refusal::mismatch(needs, found))
+    }
+
+    fn varied_problem(&self, variation: Variation) -> Arc<P> {
+        let varied = match variation {
+            Some((What::Albedo, albedo)) => self.problem.with_albedo(albedo),
+            _ => None,
+        };
+        varied.map_or_else(|| self.problem.clone(), Arc::new)
     }
 
     fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
@@ -264,7 +274,9 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         match what {
             What::Sampling => inputs.sampling && written.sampling.is_none(),
             What::SamplingScale => inputs.sampling,
-            What::Albedo => written.entry.with_albedo(0.5).is_some(),
+            What::Albedo => {
+                written.entry.with_albedo(0.5).is_some() || self.problem.with_albedo(0.5).is_some()
+            }
             What::Control => inputs.control && written.control.is_none(),
             What::Points => {
                 let control = written.control.as_deref().or(self.control.as_deref());
@@ -362,28 +374,6 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         walk: Walk,
     ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
         self.mutant(name, walk, |scenario| scenario.setup(estimator, variation, address))
-    }
-}
-
-/// Below this transmittance the ratio of a draw to the truth is no longer a double.
-const FAINTEST: f64 = 1e-300;
-/// More lookups than this in one draw are a mistake in the case, not an experiment.
-const MOST_LOOKUPS: f64 = 1e6;
-
-fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
-    for channel in &ready.prediction.channels {
-        let truth = channel.truth.value;
-        if !(truth.is_finite() && truth >= FAINTEST) {
-            let needs = "an answer between 1e-300 and infinity";
-            return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
-        }
-    }
-    match &ready.prediction.lookups {
-        Some(lookups) if lookups.mean.is_nan() || lookups.mean > MOST_LOOKUPS => {
-            let needs = "at most a million lookups a draw";
-            Err(Refusal::mismatch(needs, format!("theory expects {:e}", lookups.mean)))
-        }
-        _ => Ok(ready),
     }
 }
 

@@ -41,6 +41,9 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance-curve/eq21-figure-8",
     "transmittance-curve/noise-figure-5",
     "transmittance-curve/magnet",
+    "rod/three-rules-a0.7",
+    "rod/roulette",
+    "rod/magnet",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

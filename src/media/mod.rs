@@ -12,6 +12,7 @@ pub mod cells;
 pub mod control;
 pub mod course;
 pub mod cubics;
+pub mod cursor;
 pub mod even;
 pub mod grid_file;
 pub mod lattice;
@@ -31,8 +32,9 @@ use crate::numeric::{Known, Lane, Span, roots};
 pub use body::Body;
 pub use control::Control;
 pub use course::Course;
+pub use cursor::Cursor;
 pub use medium::Medium;
-pub use piecewise::{Cursor, Piecewise};
+pub use piecewise::Piecewise;
 pub use placement::Placement;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.

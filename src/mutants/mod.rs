@@ -21,6 +21,7 @@ pub mod flight;
 pub mod free_flight;
 pub mod lookups;
 pub mod precision;
+pub mod rod;
 pub mod rules;
 pub mod scores;
 pub mod streams;
@@ -31,7 +32,7 @@ pub mod walk;
 pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
-use crate::problems::{FreeFlight, Problem, Transmittance, TransmittanceCurve};
+use crate::problems::{FreeFlight, Problem, Rod, Transmittance, TransmittanceCurve};
 
 pub use fault::{Fault, Honest};
 pub use streams::StreamMutant;
@@ -118,6 +119,12 @@ impl Mutable for TransmittanceCurve {
     }
 }
 
+impl Mutable for Rod {
+    fn mutants() -> Vec<Mutant<Self>> {
+        rod::mutants()
+    }
+}
+
 /// Every mutant of every problem, without the wrong streams.
 #[must_use]
 pub fn all() -> Vec<About> {
@@ -127,6 +134,7 @@ pub fn all() -> Vec<About> {
     about::<Transmittance>()
         .chain(about::<FreeFlight>())
         .chain(about::<TransmittanceCurve>())
+        .chain(about::<Rod>())
         .collect()
 }
 

@@ -1,6 +1,7 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 pub mod free_flight;
+pub mod rod;
 pub mod transmittance;
 pub mod transmittance_curve;
 
@@ -8,6 +9,7 @@ use crate::catalogue::{Catalogue, Settings};
 use crate::media::{Body, Medium};
 
 pub use free_flight::FreeFlight;
+pub use rod::Rod;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
 
@@ -18,6 +20,7 @@ pub const CATALOGUE: Catalogue = Catalogue {
         crate::page!(transmittance),
         crate::page!(free_flight),
         crate::page!(transmittance_curve),
+        crate::page!(rod),
     ],
 };
 
@@ -34,6 +37,12 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// The field along the ray.
     fn medium(&self) -> &Medium;
 
+    /// The same problem in a medium of another albedo; `None` if the answer does not depend on it.
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let _ = albedo;
+        None
+    }
+
     /// The logarithm of what draws are multiplied by, where values of the given optical depth
     /// would otherwise underflow; 0 for all others.
     fn log_unit(&self, depth: f64) -> f64 {
@@ -41,7 +50,7 @@ pub trait Problem: Send + Sync + Sized + 'static {
         0.0
     }
 
-    /// The distance that each channel of a draw is about.
+    /// The distance that each channel of a draw is about, for problems that are seen from the side.
     fn distances(&self) -> Vec<f64> {
         vec![self.medium().span().to]
     }

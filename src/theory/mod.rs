@@ -10,13 +10,16 @@ pub mod lookups;
 pub mod mesh;
 pub mod moments;
 pub mod optimum;
+pub mod particle;
 pub mod prediction;
 pub mod product;
+pub mod rod;
 pub mod rule;
 pub mod volterra;
 
 pub use count::CountLaw;
 pub use mesh::Mesh;
 pub use moments::Moments;
+pub use particle::{Odds, ParticleRule};
 pub use prediction::{Channel, Increment, Law, Prediction, Tails};
 pub use rule::{Outcome, Rule};

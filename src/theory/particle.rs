@@ -1,0 +1,300 @@
+//! What happens to a particle at a tentative collision: the single particle model with scattering.
+//!
+//! With `r = σ_t/σ̂` and the albedo a, the incoming weight w must leave as `a r w` into the scattered
+//! direction and as `(1 − r) w` straight on, on average. One particle at most is kept:
+//!
+//! ```text
+//! straight on with chance q_t and weight (1 − r) w/q_t
+//! scattered   with chance q_s and weight  a r w/q_s
+//! absorbed    otherwise
+//!
+//! rule             q_t                 q_s                            exists for
+//! terminating      |1 − r|             a r                            0 ≤ r ≤ 2/(a + 1)
+//! non-terminating  |1 − r|/D           a|r|/D,  D = a|r| + |1 − r|    every r
+//! adaptive         terminating where r ≥ 1 and a r + |1 − r| ≤ 1, elsewhere non-terminating
+//! analog           1 − r               a r                            0 ≤ r ≤ 1
+//! weighted         |1 − r|/D           |r|/D,   D =  |r| + |1 − r|    every r
+//! ```
+//!
+//! Theory needs the k-th moments of what leaves, `Q_k = q_t((1 − r)/q_t)^k` straight on and
+//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule.
+//!
+//! Where `0 ≤ r ≤ 1`, terminating is analog; the two differ in what they refuse. `weighted` is
+//! non-terminating with the chances of a = 1: the albedo is left to the weight.
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! sections 3.1–3.3 and 4.1, Eqs. 9 and 12 and `SimulateParticle`; `analog` and `weighted`: B. Miller,
+//! I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
+//! Transactions on Graphics 38 (2019), section 5.2.
+
+/// The chances at a tentative collision, and what becomes of the weight.
+///
+/// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. What is
+/// left of the chances is absorption.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Odds {
+    /// `q_t`, the chance to go straight on: the collision is null.
+    pub transmit: f64,
+    /// `q_s`, the chance to be scattered.
+    pub scatter: f64,
+    /// `(1 − r)/q_t`, the factor of a particle that goes straight on.
+    pub transmit_weight: f64,
+    /// `a r/q_s`, the factor of a particle that is scattered.
+    pub scatter_weight: f64,
+}
+
+/// What a number drawn at a collision decides.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Event {
+    /// Straight on.
+    Transmitted,
+    /// Into a new direction.
+    Scattered,
+    /// The end of the walk.
+    Absorbed,
+}
+
+impl Odds {
+    /// `Q_k = q_t((1 − r)/q_t)^k`, the k-th moment of what goes straight on.
+    #[inline]
+    #[must_use]
+    pub fn transmitted(&self, k: i32) -> f64 {
+        self.transmit * self.transmit_weight.powi(k)
+    }
+
+    /// `S_k = q_s(a r/q_s)^k`, the k-th moment of what is scattered.
+    #[inline]
+    #[must_use]
+    pub fn scattered(&self, k: i32) -> f64 {
+        self.scatter * self.scatter_weight.powi(k)
+    }
+
+    /// What a uniform number decides: scattering first, as in `SimulateParticle`.
+    #[inline(always)]
+    #[must_use]
+    pub fn decide(&self, number: f64) -> Event {
+        if number < self.scatter {
+            Event::Scattered
+        } else if number < self.scatter + self.transmit {
+            Event::Transmitted
+        } else {
+            Event::Absorbed
+        }
+    }
+}
+
+/// How the chances are chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ParticleRule {
+    /// The weight keeps its size, for `0 ≤ r ≤ 2/(a + 1)` (Eq. 9).
+    Terminating,
+    /// The walk ends nowhere inside the medium, for every r (Eq. 12).
+    NonTerminating,
+    /// The one or the other, as `SimulateParticle` chooses.
+    Adaptive,
+    /// Delta tracking: real with chance r, then absorbed with chance `1 − a`; for `0 ≤ r ≤ 1`.
+    Analog,
+    /// Delta tracking with the albedo as a weight, continued beyond `0 ≤ r ≤ 1` by weights.
+    Weighted,
+}
+
+impl ParticleRule {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::Terminating, Self::NonTerminating, Self::Adaptive, Self::Analog, Self::Weighted];
+
+    /// The name in case files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Terminating => "terminating",
+            Self::NonTerminating => "non-terminating",
+            Self::Adaptive => "adaptive",
+            Self::Analog => "analog",
+            Self::Weighted => "weighted",
+        }
+    }
+
+    /// The odds at a collision of ratio `r = σ_t/σ̂` where the albedo is in `[0, 1]`.
+    ///
+    /// Outside the range of [`ParticleRule::limits`] they are what the formula says and no
+    /// chances: a forced walk compares a number with them as any renderer would, and is biased.
+    #[inline(always)]
+    #[must_use]
+    pub fn odds(self, ratio: f64, albedo: f64) -> Odds {
+        match self {
+            Self::Terminating | Self::Analog => terminating(ratio, albedo),
+            Self::NonTerminating => shared(ratio, albedo, 1.0),
+            Self::Adaptive => {
+                let sum = albedo * ratio + (1.0 - ratio).abs();
+                if ratio >= 1.0 && sum <= 1.0 {
+                    terminating(ratio, albedo)
+                } else {
+                    shared(ratio, albedo, 1.0)
+                }
+            }
+            Self::Weighted => shared(ratio, 1.0, albedo),
+        }
+    }
+
+    /// The smallest and the largest r for which the odds are chances.
+    #[must_use]
+    pub fn limits(self, albedo: f64) -> [f64; 2] {
+        match self {
+            Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
+            Self::Analog => [0.0, 1.0],
+            Self::NonTerminating | Self::Adaptive | Self::Weighted => {
+                [f64::NEG_INFINITY, f64::INFINITY]
+            }
+        }
+    }
+
+    /// The same as an inequality; empty for a rule that exists for every r.
+    #[must_use]
+    pub fn needs(self) -> &'static str {
+        match self {
+            Self::Terminating => "0 ≤ r ≤ 2/(a + 1)",
+            Self::Analog => "0 ≤ σ_t ≤ σ̂",
+            Self::NonTerminating | Self::Adaptive | Self::Weighted => "",
+        }
+    }
+
+    /// The ratios at which the odds or one of their derivatives jump: panels end there.
+    #[must_use]
+    pub fn kinks(self, albedo: f64) -> Vec<f64> {
+        match self {
+            Self::Adaptive => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
+            Self::Terminating | Self::NonTerminating | Self::Analog | Self::Weighted => {
+                vec![0.0, 1.0]
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn terminating(ratio: f64, albedo: f64) -> Odds {
+    let rest = 1.0 - ratio;
+    Odds {
+        transmit: rest.abs(),
+        scatter: albedo * ratio,
+        transmit_weight: 1f64.copysign(rest),
+        scatter_weight: 1.0,
+    }
+}
+
+/// The chances of an albedo, shared out so that the walk goes on; what they leave is weight.
+#[inline(always)]
+fn shared(ratio: f64, albedo: f64, left: f64) -> Odds {
+    let rest = 1.0 - ratio;
+    let (transmitted, scattered) = (rest.abs(), albedo * ratio.abs());
+    let sum = scattered + transmitted;
+    if sum <= 0.0 {
+        // r = 1 and a = 0: nothing is left of the particle, whatever the chances.
+        return Odds { transmit: 0.0, scatter: 0.0, transmit_weight: 0.0, scatter_weight: 0.0 };
+    }
+    let transmit = transmitted / sum;
+    Odds {
+        transmit,
+        // A weight of 0 is no weight: the walk ends.
+        scatter: if left > 0.0 { 1.0 - transmit } else { 0.0 },
+        transmit_weight: sum.copysign(rest),
+        scatter_weight: left * sum.copysign(ratio),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALBEDOS: [f64; 5] = [0.0, 0.3, 0.7, 0.9, 1.0];
+
+    fn ratios() -> impl Iterator<Item = f64> {
+        (-40..=80).map(|step| 0.05 * f64::from(step))
+    }
+
+    fn holds(rule: ParticleRule, ratio: f64, albedo: f64) -> bool {
+        let [least, most] = rule.limits(albedo);
+        (least..=most).contains(&ratio)
+    }
+
+    #[test]
+    fn every_rule_keeps_both_means_where_it_exists() {
+        for rule in ParticleRule::ALL {
+            for albedo in ALBEDOS {
+                for r in ratios().filter(|&r| holds(rule, r, albedo)) {
+                    let odds = rule.odds(r, albedo);
+                    let context = format!("{rule:?} at r = {r}, a = {albedo}");
+                    assert!((odds.transmitted(1) - (1.0 - r)).abs() < 1e-14, "{context}");
+                    assert!((odds.scattered(1) - albedo * r).abs() < 1e-14, "{context}");
+                    assert!(odds.transmit >= 0.0 && odds.scatter >= 0.0, "{context}");
+                    assert!(odds.transmit + odds.scatter <= 1.0 + 1e-15, "{context}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn beyond_its_limits_a_rule_has_no_chances() {
+        for (rule, r) in [(ParticleRule::Terminating, 1.2), (ParticleRule::Terminating, -0.1)] {
+            let odds = rule.odds(r, 0.9);
+            let sum = odds.transmit + odds.scatter;
+            assert!(odds.scatter < 0.0 || sum > 1.0, "{odds:?}");
+            assert!(!holds(rule, r, 0.9));
+        }
+        assert!(holds(ParticleRule::Terminating, 2.0 / 1.9, 0.9));
+        assert!(!holds(ParticleRule::Analog, 1.01, 0.9) && holds(ParticleRule::Analog, 1.0, 0.9));
+    }
+
+    #[test]
+    fn at_one_collision_the_odds_are_those_worked_by_hand() {
+        // r = 1.5, a = 0.2: terminating 0.5 and 0.3 with weights −1 and 1.
+        let odds = ParticleRule::Terminating.odds(1.5, 0.2);
+        assert!((odds.transmit - 0.5).abs() < 1e-15 && (odds.scatter - 0.3).abs() < 1e-15);
+        assert_eq!((odds.transmit_weight, odds.scatter_weight), (-1.0, 1.0));
+        assert_eq!(ParticleRule::Adaptive.odds(1.5, 0.2), odds);
+        // a r + |1 − r| = 0.9·1.5 + 0.5 = 1.85: not terminating, D = 1.85.
+        let odds = ParticleRule::Adaptive.odds(1.5, 0.9);
+        assert!((odds.transmit - 0.5 / 1.85).abs() < 1e-15);
+        assert!((odds.transmit_weight + 1.85).abs() < 1e-15);
+        assert!((odds.scatter_weight - 1.85).abs() < 1e-15);
+        // r = −0.5, a = 0.6: D = 0.3 + 1.5, and what is scattered changes sign.
+        let odds = ParticleRule::NonTerminating.odds(-0.5, 0.6);
+        assert!((odds.scatter - 0.3 / 1.8).abs() < 1e-15);
+        assert!((odds.scatter_weight + 1.8).abs() < 1e-15);
+        // Delta tracking with the albedo as a weight.
+        let odds = ParticleRule::Weighted.odds(0.25, 0.6);
+        assert!((odds.scatter - 0.25).abs() < 1e-15 && odds.scatter_weight == 0.6);
+    }
+
+    #[test]
+    fn adaptive_second_moments_are_never_below_those_of_non_terminating() {
+        // S_2 and Q_2 of the terminating rule are those of the non-terminating one over D ≤ 1.
+        for albedo in ALBEDOS {
+            for r in ratios() {
+                let adaptive = ParticleRule::Adaptive.odds(r, albedo);
+                let other = ParticleRule::NonTerminating.odds(r, albedo);
+                assert!(adaptive.transmitted(2) >= other.transmitted(2) - 1e-15);
+                assert!(adaptive.scattered(2) >= other.scattered(2) - 1e-15);
+            }
+        }
+    }
+
+    #[test]
+    fn nothing_is_left_at_ratio_one_without_albedo() {
+        let odds = ParticleRule::NonTerminating.odds(1.0, 0.0);
+        assert_eq!((odds.transmit, odds.scatter), (0.0, 0.0));
+        assert_eq!(odds.decide(0.0), Event::Absorbed);
+    }
+
+    #[test]
+    fn a_number_decides() {
+        let odds = ParticleRule::Terminating.odds(0.5, 0.4);
+        assert_eq!(odds.decide(0.199), Event::Scattered);
+        assert_eq!(odds.decide(0.201), Event::Transmitted);
+        assert_eq!(odds.decide(0.701), Event::Absorbed);
+        // A particle that does not terminate is never absorbed.
+        let odds = ParticleRule::NonTerminating.odds(0.37, 0.83);
+        assert_eq!(odds.decide(1.0 - f64::EPSILON / 2.0), Event::Transmitted);
+    }
+}
