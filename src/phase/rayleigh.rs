@@ -43,7 +43,7 @@ impl PhaseFunction for Rayleigh {
     fn cosine<L: Lane>(&self, u: L) -> L {
         let q = u * 4.0 - 2.0;
         // The cube root of a number from 1 on; the sign comes last, so that nothing cancels in it.
-        let c = ((q.size() + (q * q + 1.0).root()).ln() * (1.0 / 3.0)).exp();
+        let c = Lane::exp(Lane::ln(q.size() + (q * q + 1.0).root()) * (1.0 / 3.0));
         let root = c - c.each(1.0) / c;
         let root = L::select(q.below(q.each(0.0)), -root, root);
         // One step of Newton's: c − 1/c cancels near 0.
