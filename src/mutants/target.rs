@@ -69,3 +69,12 @@ pub const FLIGHT_LINEAR: Target = on("free-flight/magnet", 1, "woodcock");
 pub const CURVE: Target = on("transmittance-curve/magnet", 0, "double");
 /// The curve with a control whose knots are not on the ends.
 pub const CURVE_CONTROL: Target = on("transmittance-curve/magnet", 1, "double");
+/// Single scattering in a homogeneous ball, light outside, exact transmittances.
+pub const SINGLE_EXACT: Target =
+    on("single-scattering/magnet", 0, "source-driven (exact camera, exact shadow)");
+/// The same with a ratio-tracked camera.
+pub const SINGLE_RATIO: Target =
+    on("single-scattering/magnet", 1, "source-driven (ratio camera, exact shadow)");
+/// The same with ratio-tracked shadow rays.
+pub const SINGLE_SHADOW: Target =
+    on("single-scattering/magnet", 2, "source-driven (exact camera, ratio shadow 1.5)");

@@ -1,6 +1,7 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 pub mod free_flight;
+pub mod single_scattering;
 pub mod transmittance;
 pub mod transmittance_curve;
 
@@ -8,6 +9,7 @@ use crate::catalogue::{Catalogue, Settings};
 use crate::media::{Body, Medium};
 
 pub use free_flight::FreeFlight;
+pub use single_scattering::SingleScattering;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
 
@@ -18,6 +20,7 @@ pub const CATALOGUE: Catalogue = Catalogue {
         crate::page!(transmittance),
         crate::page!(free_flight),
         crate::page!(transmittance_curve),
+        crate::page!(single_scattering),
     ],
 };
 

@@ -13,6 +13,7 @@ pub mod optimum;
 pub mod prediction;
 pub mod product;
 pub mod rule;
+pub mod single;
 pub mod volterra;
 
 pub use count::CountLaw;
