@@ -26,13 +26,13 @@
 //! section 4.3, Eq. 22.
 
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use super::Problem;
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Point, Ray};
 use crate::media::{Body, Medium, Volume};
-use crate::numeric::{Lane, Span, elementary};
+use crate::numeric::{Known, Lane, Span, elementary};
 use crate::phase::Phase;
 
 /// A light nearer to the ray's line than this, relative to the ray's length, lies on it.
@@ -46,6 +46,7 @@ pub struct SingleScattering {
     light: Light,
     albedo: f64,
     phase: Phase,
+    radiance: OnceLock<Known>,
 }
 
 /// A point light as the ray sees it.
@@ -66,6 +67,11 @@ impl SingleScattering {
     #[must_use]
     pub fn volume(&self) -> &Volume {
         &self.volume
+    }
+
+    /// L, found when it is first asked for.
+    pub fn radiance(&self, find: impl FnOnce() -> Known) -> Known {
+        *self.radiance.get_or_init(find)
     }
 
     /// The albedo a.
@@ -214,7 +220,15 @@ impl Problem for SingleScattering {
         let angle = |s: f64| elementary::atan((s - foot) / distance);
         let angles = Span::new(angle(support.from), angle(support.to));
         let light = Light { position, power, foot, distance, angles };
-        Some(Self { volume: volume.clone(), ray: *ray, medium, light, albedo, phase })
+        Some(Self {
+            volume: volume.clone(),
+            ray: *ray,
+            medium,
+            light,
+            albedo,
+            phase,
+            radiance: OnceLock::new(),
+        })
     }
 
     fn medium(&self) -> &Medium {

@@ -5,9 +5,7 @@ use super::scene::{Node, Scene};
 use crate::numeric::Known;
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
-/// The agreement that is asked of two resolutions, relative to the whole: of the radiance.
-pub const RADIANCE: f64 = 2e-14;
-/// Of moments.
+/// The agreement that is asked of two resolutions, relative to the whole: of moments.
 pub const MOMENT: f64 = 1e-11;
 /// Of lookups.
 pub const LOOKUPS: f64 = 1e-12;
@@ -50,15 +48,12 @@ impl Points {
     /// Of one technique.
     #[must_use]
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
-        let mut parts = [MOMENT; 11];
-        parts[0] = RADIANCE;
-        parts[6..10].fill(LOOKUPS);
+        let mut parts = [MOMENT; 9];
+        parts[5..].fill(LOOKUPS);
         let found = scene.integrate(parts, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
-                let mut nothing = [0.0; 11];
-                nothing[0] = node.radiance();
-                return nothing;
+                return [0.0; 9];
             }
             let gain = (technique.gain)(node);
             let walked = technique.found.is_some();
@@ -73,7 +68,6 @@ impl Points {
                 None => node.lookups(),
             };
             [
-                node.radiance(),
                 power(1, c1, s1),
                 power(2, c2, s2),
                 power(3, c3, s3),
@@ -83,25 +77,17 @@ impl Points {
                 density * lookups[2],
                 density * lookups[3],
                 density * lookups[4],
-                density,
             ]
         });
-        let value = found.value;
+        let [p1, p2, p3, p4, eighth, n1, n2, n3, n4] = found.value;
         let none = technique.found.as_ref().map_or([0.0; 5], |found| found.none);
-        let lookups = [1.0, value[6], value[7], value[8], value[9]];
-        let relative = (1..5).map(|k| found.error[k] / value[k].abs()).fold(1e-14, f64::max);
+        let relative = found.error[..4].iter().zip([p1, p2, p3, p4]).map(|(e, p)| e / p.abs());
         Self {
-            truth: radiance(value[0], found.error[0]),
-            powers: [1.0, value[1], value[2], value[3], value[4]],
-            error: relative,
-            eighth: Some(value[5]),
-            lookups: Some([
-                1.0,
-                lookups[1] + none[1],
-                lookups[2] + none[2],
-                lookups[3] + none[3],
-                lookups[4] + none[4],
-            ]),
+            truth: scene.radiance(),
+            powers: [1.0, p1, p2, p3, p4],
+            error: relative.fold(1e-14, f64::max),
+            eighth: Some(eighth),
+            lookups: Some([1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]]),
         }
     }
 
@@ -138,12 +124,6 @@ impl Points {
         let prediction = Prediction::single(channel, CountLaw::always(0.0));
         Prediction { lookups: self.lookups.map(count), ..prediction }
     }
-}
-
-/// A radiance with its quadrature's error bound; the exact optical depths add their own rounding.
-#[must_use]
-pub fn radiance(value: f64, error: f64) -> Known {
-    Known::new(value, error + 1e-13 * value.abs())
 }
 
 /// The law of a count with the given raw moments, without probabilities.

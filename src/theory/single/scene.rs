@@ -2,11 +2,13 @@
 
 use super::camera::Camera;
 use super::passage::{Passage, Tracking, added};
-use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
+use crate::numeric::{Known, Span};
 use crate::problems::{Problem, SingleScattering};
 
+/// The agreement that is asked of two resolutions of L, relative to the whole.
+const RADIANCE: f64 = 2e-14;
 /// Steps into which the support is cut at least.
 const STEPS: usize = 24;
 /// Panels are no wider than this in the stretched variable.
@@ -34,12 +36,6 @@ pub struct Node {
 }
 
 impl Node {
-    /// The integrand of L.
-    #[must_use]
-    pub fn radiance(&self) -> f64 {
-        self.extinction * self.source * self.transmittance * self.shadow.powers[1]
-    }
-
     /// `E[N^k]` of a draw that scatters here: one lookup and, unless there is nothing, those of the
     /// walk from the origin and, if that came through, of the shadow ray.
     #[must_use]
@@ -121,13 +117,31 @@ impl<'a> Scene<'a> {
         [self.problem.foot() + distance * x.sinh(), distance * x.cosh()]
     }
 
+    /// L by quadrature of exact optical depths, once for all experiments on it.
+    #[must_use]
+    pub fn radiance(&self) -> Known {
+        let problem = self.problem;
+        let medium = problem.medium();
+        let from = medium.support().from;
+        problem.radiance(|| {
+            let found = self.over([RADIANCE], Vec::new(), &|s| {
+                let before = medium.optical_depth(Span::new(from, s)).value;
+                let beyond = problem.shadow_medium(s);
+                let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
+                [medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()]
+            });
+            let [value] = found.value;
+            // The optical depths add their own rounding.
+            Known::new(value, found.error[0] + 1e-13 * value.abs())
+        })
+    }
+
     /// The ends of the panels to begin with, in the stretched variable.
-    fn ends(&self) -> Vec<f64> {
+    fn ends(&self, cuts: Vec<f64>) -> Vec<f64> {
         let medium = self.problem.medium();
         let support = medium.support();
         let mut s: Vec<f64> = medium.breaks();
-        s.extend(&self.cuts);
-        s.extend(self.camera.cuts());
+        s.extend(cuts);
         s.extend((1..STEPS).map(|i| support.from + support.length() * i as f64 / STEPS as f64));
         s.retain(|&s| support.contains_inside(s));
         s.extend([support.from, support.to]);
@@ -147,11 +161,11 @@ impl<'a> Scene<'a> {
         ends
     }
 
-    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(&Node) -> [f64; N]) -> [f64; N] {
+    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(f64) -> [f64; N]) -> [f64; N] {
         let mut sum = [0.0; N];
         for (&node, &weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
             let [s, stretch] = self.stretched(x.from + node * x.length());
-            let values = f(&self.node(s));
+            let values = f(s);
             let weight = weight * stretch * x.length();
             sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
         }
@@ -166,10 +180,21 @@ impl<'a> Scene<'a> {
         parts: [f64; N],
         f: &dyn Fn(&Node) -> [f64; N],
     ) -> Integral<N> {
+        let mut cuts = self.cuts.clone();
+        cuts.extend(self.camera.cuts());
+        self.over(parts, cuts, &|s| f(&self.node(s)))
+    }
+
+    fn over<const N: usize>(
+        &self,
+        parts: [f64; N],
+        cuts: Vec<f64>,
+        f: &dyn Fn(f64) -> [f64; N],
+    ) -> Integral<N> {
         if self.problem.medium().support().is_empty() {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };
         }
-        let ends = self.ends();
+        let ends = self.ends(cuts);
         let spans = ends.windows(2).map(|pair| Span::new(pair[0], pair[1]));
         let mut open: Vec<(Span, [f64; N], u32)> =
             spans.map(|x| (x, self.panel(x, f), HALVINGS)).collect();

@@ -9,7 +9,7 @@
 use super::camera::Losses;
 use super::chain::{At, Chain, Solved, halved};
 use super::passage::{Passage, added, poisson};
-use super::predict::{LOOKUPS, MOMENT, Points, RADIANCE, radiance};
+use super::predict::{LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use crate::numeric::Span;
 
@@ -37,10 +37,9 @@ fn gain(at: &At) -> [f64; 3] {
     [sampling, at.node.extinction * at.node.source / sampling, weight]
 }
 
-/// The scene's integrals that decide on the panels: the radiance and `∫σ̂ E[(hT̂_shadow)^k w^k]`.
-fn panels_at_collisions(scene: &Scene) -> (crate::numeric::Known, Vec<Span>, [f64; 4]) {
+/// The panels that resolve `σ̂ E[(h T̂_shadow)^k] E[T̂^k]`, and the cumulants of the lookups.
+fn panels_at_collisions(scene: &Scene) -> (Vec<Span>, [f64; 4]) {
     let mut parts = [MOMENT; 8];
-    parts[0] = RADIANCE;
     parts[4..].fill(LOOKUPS);
     let found = scene.integrate(parts, &|node| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
@@ -57,7 +56,7 @@ fn panels_at_collisions(scene: &Scene) -> (crate::numeric::Known, Vec<Span>, [f6
             if node.extinction > 0.0 { node.shadow.lookups } else { Passage::exact(0.0).lookups };
         let each = added([1.0; 5], shadow);
         [
-            node.radiance(),
+            power(1),
             power(2),
             power(3),
             power(4),
@@ -67,9 +66,8 @@ fn panels_at_collisions(scene: &Scene) -> (crate::numeric::Known, Vec<Span>, [f6
             sampling * each[4],
         ]
     });
-    let value = found.value;
-    let truth = radiance(value[0], found.error[0]);
-    (truth, found.panels, [value[4], value[5], value[6], value[7]])
+    let [.., k1, k2, k3, k4] = found.value;
+    (found.panels, [k1, k2, k3, k4])
 }
 
 /// Raw moments from cumulants.
@@ -83,7 +81,7 @@ fn raw([k1, k2, k3, k4]: [f64; 4]) -> [f64; 5] {
 /// At every collision.
 #[must_use]
 pub fn at_collisions(scene: &Scene) -> Points {
-    let (truth, panels, cumulants) = panels_at_collisions(scene);
+    let (panels, cumulants) = panels_at_collisions(scene);
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
         let mut known: Vec<Solved> = Vec::new();
@@ -104,7 +102,7 @@ pub fn at_collisions(scene: &Scene) -> Points {
         powers
     };
     let (powers, error) = both(&panels, powers);
-    Points { truth, powers, error, eighth: None, lookups: Some(raw(cumulants)) }
+    Points { truth: scene.radiance(), powers, error, eighth: None, lookups: Some(raw(cumulants)) }
 }
 
 fn power(x: f64, k: usize) -> f64 {
@@ -118,7 +116,7 @@ fn power(x: f64, k: usize) -> f64 {
 /// ```
 #[must_use]
 pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
-    let (truth, panels, _) = panels_at_collisions(scene);
+    let (panels, _) = panels_at_collisions(scene);
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
         let mut f: Vec<Solved> = Vec::new();
@@ -166,14 +164,13 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
     // Which collision casts the ray depends on all of them; without lookups of its own it does not
     // matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
-    Points { truth, powers, error, eighth: None, lookups }
+    Points { truth: scene.radiance(), powers, error, eighth: None, lookups }
 }
 
 /// At `count` points of a density, all with the transmittance of one walk over the whole ray.
 #[must_use]
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
     let mut parts = [MOMENT; 8];
-    parts[0] = RADIANCE;
     parts[4..].fill(LOOKUPS);
     let scored = |node: &Node, k: usize| {
         let p = density(node);
@@ -185,7 +182,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
             if node.extinction > 0.0 { node.shadow.lookups } else { Passage::exact(0.0).lookups };
         let lookups = added([1.0; 5], shadow);
         let cost = |k: usize| density(node) * lookups[k];
-        [node.radiance(), each(2), each(3), each(4), cost(1), cost(2), cost(3), cost(4)]
+        [each(1), each(2), each(3), each(4), cost(1), cost(2), cost(3), cost(4)]
     });
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
@@ -235,6 +232,5 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
     let each = [1.0, value[4], value[5], value[6], value[7]];
     let walk = poisson(scene.camera.collisions());
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
-    let truth = radiance(value[0], found.error[0]);
-    Points { truth, powers, error, eighth: None, lookups: Some(lookups) }
+    Points { truth: scene.radiance(), powers, error, eighth: None, lookups: Some(lookups) }
 }
