@@ -63,8 +63,7 @@ pub(super) fn interactions<M: Extinction>(
     let from = setup.problem.medium().support().from;
     let mut cursor = setup.sampling.begin();
     let (mut weight, mut lookups) = (1.0, 0);
-    loop {
-        let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) else { break };
+    while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
         let t = cursor.t;
         let extinction = medium.extinction(t);
         lookups += 1;

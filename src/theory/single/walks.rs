@@ -120,12 +120,12 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
         let mut f: Vec<Solved> = Vec::new();
-        for j in 1..4 {
+        for (j, binomial) in BINOMIAL.iter().enumerate().take(4).skip(1) {
             let solved = chain.solve(&|losses| losses.sizes[j], &|at, p, i| {
                 let [sampling, h, weight] = gain(at);
                 let lower = |n: usize| if n == 0 { 1.0 } else { f[n - 1].at[p][i] };
                 let term = |n: usize| {
-                    BINOMIAL[j][n] * power(h, n) * power(weight.abs(), j - n) * lower(j - n)
+                    binomial[n] * power(h, n) * power(weight.abs(), j - n) * lower(j - n)
                 };
                 sampling * (1..=j).map(term).sum::<f64>()
             });
