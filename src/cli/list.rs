@@ -7,8 +7,10 @@ use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{Estimated, controls, sampling};
 use trueflight::harness::{self, case::Case, checks, suite};
-use trueflight::problems::{self, FreeFlight, Rod, Transmittance, TransmittanceCurve};
-use trueflight::{media, report};
+use trueflight::problems::{
+    self, FreeFlight, Rod, SingleScattering, Transmittance, TransmittanceCurve,
+};
+use trueflight::{media, phase, report};
 
 use super::Console;
 use super::output::{self, Format};
@@ -28,6 +30,7 @@ pub struct Arguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum What {
     Media,
+    Phases,
     Sampling,
     Controls,
     Estimators,
@@ -51,12 +54,14 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
     let of_problem = |problem: &str| format!("estimators of {problem}");
     vec![
         ("media".into(), media::CATALOGUE),
+        ("phases".into(), phase::CATALOGUE),
         ("sampling".into(), sampling::CATALOGUE),
         ("controls".into(), controls::CATALOGUE),
         (of_problem("transmittance"), Transmittance::CATALOGUE),
         (of_problem("free-flight"), FreeFlight::CATALOGUE),
         (of_problem("transmittance-curve"), TransmittanceCurve::CATALOGUE),
         (of_problem("rod"), Rod::CATALOGUE),
+        (of_problem("single-scattering"), SingleScattering::CATALOGUE),
         ("problems".into(), problems::CATALOGUE),
         ("checks".into(), checks::CATALOGUE),
         ("reports".into(), report::CATALOGUE),

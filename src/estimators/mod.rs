@@ -14,6 +14,7 @@ pub mod rod;
 pub mod rules;
 pub mod sampling;
 pub mod setup;
+pub mod single_scattering;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
@@ -74,7 +75,7 @@ impl Inputs {
 
 /// A page of the catalogue of estimators of problem `P`.
 pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
-    /// What it takes.
+    /// What it takes, unless its settings say otherwise.
     const INPUTS: Inputs;
     /// Whether its draws know their [`Draw::defect`].
     const KEEPS_BOOKS: bool = false;
@@ -94,6 +95,11 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     fn label(&self, albedo: bool) -> String {
         let _ = albedo;
         String::new()
+    }
+
+    /// What it takes with its own settings.
+    fn inputs(&self) -> Inputs {
+        Self::INPUTS
     }
 
     /// The same estimator with another albedo; `None` if it has no albedo.

@@ -153,7 +153,7 @@ pub trait Experiment: Send + Sync {
 
 /// An estimator as written in a case, with its type erased.
 pub trait Entry<P: Problem>: Send + Sync {
-    /// See [`Estimator::INPUTS`].
+    /// See [`Estimator::inputs`].
     fn inputs(&self) -> Inputs;
     /// See [`Estimator::label`].
     fn label(&self, albedo: bool) -> String;
@@ -183,7 +183,7 @@ pub trait Entry<P: Problem>: Send + Sync {
 
 impl<P: Problem, E: Estimator<P>> Entry<P> for E {
     fn inputs(&self) -> Inputs {
-        E::INPUTS
+        Estimator::inputs(self)
     }
 
     fn label(&self, albedo: bool) -> String {

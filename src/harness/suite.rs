@@ -44,6 +44,8 @@ const CASES: &[(&str, &str)] = cases![
     "rod/three-rules-a0.7",
     "rod/roulette",
     "rod/magnet",
+    "single-scattering/homogeneous",
+    "single-scattering/magnet",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

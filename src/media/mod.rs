@@ -183,6 +183,12 @@ macro_rules! media {
                 match self { $(Self::$Field(field) => visitor.visit(field)),* }
             }
 
+            /// `τ` over a span.
+            #[must_use]
+            pub fn optical_depth(&self, span: Span) -> Known {
+                match self { $(Self::$Field(field) => field.optical_depth(span)),* }
+            }
+
             /// Reads `NAME = { … }` in its 1-D form.
             fn read(index: usize, settings: &Settings) -> Option<Self> {
                 let readers = [$(|s: &Settings| {

@@ -24,6 +24,7 @@ pub mod precision;
 pub mod rod;
 pub mod rules;
 pub mod scores;
+pub mod single_scattering;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -32,7 +33,9 @@ pub mod walk;
 pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
-use crate::problems::{FreeFlight, Problem, Rod, Transmittance, TransmittanceCurve};
+use crate::problems::{
+    FreeFlight, Problem, Rod, SingleScattering, Transmittance, TransmittanceCurve,
+};
 
 pub use fault::{Fault, Honest};
 pub use streams::StreamMutant;
@@ -125,6 +128,12 @@ impl Mutable for Rod {
     }
 }
 
+impl Mutable for SingleScattering {
+    fn mutants() -> Vec<Mutant<Self>> {
+        single_scattering::mutants()
+    }
+}
+
 /// Every mutant of every problem, without the wrong streams.
 #[must_use]
 pub fn all() -> Vec<About> {
@@ -135,6 +144,7 @@ pub fn all() -> Vec<About> {
         .chain(about::<FreeFlight>())
         .chain(about::<TransmittanceCurve>())
         .chain(about::<Rod>())
+        .chain(about::<SingleScattering>())
         .collect()
 }
 

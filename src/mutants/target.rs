@@ -81,3 +81,12 @@ pub const ROD_NON_TERMINATING: Target = on("rod/magnet", 3, "non-terminating");
 pub const ROD_ADAPTIVE: Target = on("rod/magnet", 4, "adaptive");
 /// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
 pub const ROD_ROULETTE: Target = on("rod/roulette", 0, "roulette (below 0.5)");
+/// Single scattering in a homogeneous ball, light outside, exact transmittances.
+pub const SINGLE_EXACT: Target =
+    on("single-scattering/magnet", 0, "source-driven (exact camera, exact shadow)");
+/// The same with a ratio-tracked camera.
+pub const SINGLE_RATIO: Target =
+    on("single-scattering/magnet", 1, "source-driven (ratio camera, exact shadow)");
+/// The same with ratio-tracked shadow rays.
+pub const SINGLE_SHADOW: Target =
+    on("single-scattering/magnet", 2, "source-driven (exact camera, ratio shadow 1.5)");

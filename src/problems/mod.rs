@@ -2,6 +2,7 @@
 
 pub mod free_flight;
 pub mod rod;
+pub mod single_scattering;
 pub mod transmittance;
 pub mod transmittance_curve;
 
@@ -10,6 +11,7 @@ use crate::media::{Body, Medium};
 
 pub use free_flight::FreeFlight;
 pub use rod::Rod;
+pub use single_scattering::SingleScattering;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
 
@@ -21,6 +23,7 @@ pub const CATALOGUE: Catalogue = Catalogue {
         crate::page!(free_flight),
         crate::page!(transmittance_curve),
         crate::page!(rod),
+        crate::page!(single_scattering),
     ],
 };
 

@@ -15,6 +15,7 @@ pub mod prediction;
 pub mod product;
 pub mod rod;
 pub mod rule;
+pub mod single;
 pub mod volterra;
 
 pub use count::CountLaw;

@@ -1,0 +1,233 @@
+//! The two transmittances of a scattering point: from the ray's origin, and from the light.
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `camera` | `"exact"`, `"ratio"` (residual ratio where there is a control) or `"delta"`, through σ̂ | `"exact"` |
+//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `exact = {}` |
+//!
+//! The exact ones evaluate optical depths, never σ_t: no lookups. They are theory, which uses the
+//! platform's library: the last bits of draws with one may differ between machines.
+//!
+//! A shadow ray is clipped to the bounds of the volume and walked from the scattering point. Where
+//! σ_t = 0 there is nothing to light, and where it misses the bounds nothing in the way: neither
+//! costs a lookup.
+
+use crate::catalogue::{Domain, Settings};
+use crate::estimators::{Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::numeric::pack::in_fused_code;
+use crate::numeric::{Lane, Span};
+use crate::problems::{Problem, SingleScattering};
+use crate::rng::Stream;
+use crate::theory::single::{Along, Camera, Scene, Tracking};
+
+/// How both transmittances are found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Connection {
+    /// That from the ray's origin.
+    pub camera: Along,
+    /// That of the shadow ray.
+    pub shadow: Tracking,
+}
+
+/// Reads `shadow`.
+pub fn read_shadow(settings: &Settings) -> Option<Tracking> {
+    if !settings.has("shadow") {
+        return Some(Tracking::Exact);
+    }
+    let names = ["exact", "ratio", "delta"].map(str::to_owned);
+    let (index, tracking) = settings.table("shadow")?.choice(&names)?;
+    let read = match index {
+        0 => Some(Tracking::Exact),
+        1 => {
+            let sampling = tracking.number("sampling", Domain::Positive);
+            let control = tracking.number_or("control", Domain::NonNegative, 0.0);
+            sampling.zip(control).map(|(sampling, control)| Tracking::Ratio { sampling, control })
+        }
+        _ => tracking
+            .number("sampling", Domain::Positive)
+            .map(|sampling| Tracking::Delta { sampling }),
+    };
+    tracking.close();
+    read
+}
+
+/// A shadow in words.
+#[must_use]
+pub fn shadow_label(shadow: Tracking) -> String {
+    match shadow {
+        Tracking::Exact => "exact shadow".into(),
+        Tracking::Ratio { sampling, control: 0.0 } => format!("ratio shadow {sampling}"),
+        Tracking::Ratio { sampling, control } => {
+            format!("residual ratio shadow {sampling}, {control}")
+        }
+        Tracking::Delta { sampling } => format!("delta shadow {sampling}"),
+    }
+}
+
+/// Delta tracking needs a majorant on every shadow ray.
+///
+/// # Errors
+///
+/// The bound on σ_t that it does not reach.
+pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
+    let Tracking::Delta { sampling } = shadow else { return Ok(()) };
+    let bound = setup.problem.shadow_majorant();
+    if sampling >= bound * (1.0 - 1e-12) {
+        return Ok(());
+    }
+    let needs = "σ̄ ≥ σ_t on every shadow ray";
+    Err(Refusal::mismatch(needs, format!("σ̄ = {sampling} and σ_t is bounded by {bound:.6} only")))
+}
+
+impl Connection {
+    /// Reads `camera`, one of the words, and `shadow`.
+    pub fn read(settings: &Settings, words: &[&'static str]) -> Option<Self> {
+        let camera = settings.word_or("camera", words, "exact").map(|word| match word {
+            "ratio" => Along::Ratio,
+            "delta" => Along::Delta,
+            _ => Along::Exact,
+        });
+        let shadow = read_shadow(settings);
+        Some(Self { camera: camera?, shadow: shadow? })
+    }
+
+    /// In words, as in `ratio camera, delta shadow 1.2`.
+    #[must_use]
+    pub fn label(&self) -> String {
+        let camera = match self.camera {
+            Along::Exact => "exact camera",
+            Along::Ratio => "ratio camera",
+            Along::Delta => "delta camera",
+        };
+        format!("{camera}, {}", shadow_label(self.shadow))
+    }
+
+    /// What the walk from the ray's origin takes.
+    #[must_use]
+    pub fn inputs(&self) -> Inputs {
+        match self.camera {
+            Along::Exact => Inputs::NONE,
+            Along::Ratio => Inputs::BOTH,
+            Along::Delta => Inputs::SAMPLING,
+        }
+    }
+
+    /// Whether both are unbiased.
+    ///
+    /// # Errors
+    ///
+    /// The violated inequality.
+    pub fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+        match self.camera {
+            Along::Exact => {}
+            Along::Ratio => setup.require_coverage()?,
+            Along::Delta => setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?,
+        }
+        require_shadow(setup, self.shadow)
+    }
+
+    /// For theory, with more kinks of what is integrated.
+    #[must_use]
+    pub fn scene<'a>(&self, setup: &'a Setup<SingleScattering>, cuts: Vec<f64>) -> Scene<'a> {
+        let camera = Camera::new(&setup.mesh, &setup.sampling, &setup.control, self.camera);
+        Scene::new(&setup.problem, camera, self.shadow, cuts)
+    }
+
+    /// `T̂ σ_t S T̂_shadow` at a point, and what it cost.
+    #[inline(always)]
+    pub fn scatter<M: Extinction>(
+        &self,
+        setup: &Setup<SingleScattering>,
+        medium: &M,
+        s: f64,
+        rng: &mut Stream,
+    ) -> (f64, u32) {
+        let extinction = medium.extinction(s);
+        if extinction <= 0.0 {
+            return (0.0, 1);
+        }
+        let (transmittance, walked) = camera(setup, medium, self.camera, s, rng);
+        if transmittance == 0.0 {
+            return (0.0, 1 + walked);
+        }
+        let (lit, cast) = shadow(&setup.problem, self.shadow, s, rng);
+        let source = extinction * setup.problem.source(s);
+        (transmittance * source * lit, 1 + walked + cast)
+    }
+}
+
+/// The transmittance from the ray's origin, and its lookups.
+#[inline(always)]
+pub fn camera<M: Extinction>(
+    setup: &Setup<SingleScattering>,
+    medium: &M,
+    along: Along,
+    to: f64,
+    rng: &mut Stream,
+) -> (f64, u32) {
+    let ray = setup.problem.medium();
+    let before = Span::new(ray.support().from, to);
+    if along == Along::Exact {
+        return (Lane::exp(-ray.optical_depth(before).value), 0);
+    }
+    let is_delta = along == Along::Delta;
+    let mut weight =
+        if is_delta { 1.0 } else { Lane::exp(-setup.control.optical_depth(before).value) };
+    let mut cursor = setup.sampling.begin();
+    let mut lookups = 0;
+    loop {
+        let flown = setup.sampling.fly(&mut cursor, -rng.ln_uniform());
+        let Some(sampling) = flown.filter(|_| cursor.t < to) else { break };
+        lookups += 1;
+        let extinction = medium.extinction(cursor.t);
+        if is_delta {
+            if rng.uniform() * sampling < extinction {
+                return (0.0, lookups);
+            }
+        } else {
+            weight *= 1.0 - (extinction - setup.control.extinction(cursor.t)) / sampling;
+        }
+    }
+    (weight, lookups)
+}
+
+/// The transmittance of the shadow ray of a point, and its lookups.
+pub fn shadow(
+    problem: &SingleScattering,
+    tracking: Tracking,
+    s: f64,
+    rng: &mut Stream,
+) -> (f64, u32) {
+    let Some((ray, inside)) = problem.shadow(s) else { return (1.0, 0) };
+    let (sampling, control) = match tracking {
+        Tracking::Exact => {
+            let profile = problem.volume().along(&ray, inside);
+            return (Lane::exp(-profile.optical_depth(inside).value), 0);
+        }
+        Tracking::Ratio { sampling, control } => (sampling, Some(control)),
+        Tracking::Delta { sampling } => (sampling, None),
+    };
+    in_fused_code(
+        #[inline(always)]
+        || {
+            let path = 1.0 / sampling;
+            let mut weight = Lane::exp(-control.unwrap_or(0.0) * inside.length());
+            let mut t = inside.from;
+            let mut lookups = 0;
+            loop {
+                t -= rng.ln_uniform() * path;
+                if t >= inside.to {
+                    return (weight, lookups);
+                }
+                lookups += 1;
+                let extinction = problem.volume().extinction_at(ray.at(t));
+                match control {
+                    Some(control) => weight *= 1.0 - (extinction - control) * path,
+                    None if rng.uniform() * sampling < extinction => return (0.0, lookups),
+                    None => {}
+                }
+            }
+        },
+    )
+}

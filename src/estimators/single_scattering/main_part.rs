@@ -1,0 +1,100 @@
+//! Scattering points through the main part of the extinction: a control of straight pieces.
+//!
+//! ```text
+//! p(s) = σ_m(s) e^{−∫₀ˢ σ_m} / (1 − e^{−τ_m}),   ∫₀ˢ σ_m = −ln(1 − u(1 − e^{−τ_m}))
+//! ```
+//!
+//! The inverse is closed because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`, or
+//! some of the light is never found.
+
+use crate::estimators::{Refusal, Setup};
+use crate::media::{Control, Piecewise};
+use crate::numeric::{Lane, Span};
+use crate::problems::{Problem, SingleScattering};
+
+/// The main part.
+#[derive(Clone, Copy)]
+pub struct MainPart<'a> {
+    pieces: &'a Piecewise,
+    support: Span,
+    /// `1 − e^{−τ_m}`.
+    absorbed: f64,
+}
+
+impl<'a> MainPart<'a> {
+    /// The control of a setup; `None` if that has no straight pieces.
+    #[inline(always)]
+    #[must_use]
+    pub fn of(setup: &'a Setup<SingleScattering>) -> Option<Self> {
+        let Control::Pieces(pieces) = &setup.control else { return None };
+        let support = setup.problem.medium().support();
+        Some(Self { pieces, support, absorbed: 1.0 - setup.control_transmittance })
+    }
+
+    /// The point that a uniform number finds.
+    #[inline(always)]
+    #[must_use]
+    pub fn point(&self, u: f64) -> f64 {
+        let depth = -Lane::ln(1.0 - u * self.absorbed);
+        let mut cursor = self.pieces.begin();
+        self.pieces.fly(&mut cursor, depth);
+        // Rounding may carry the last point past the end.
+        cursor.t.or_less(self.support.to)
+    }
+
+    /// Its density, 1/length.
+    #[inline(always)]
+    #[must_use]
+    pub fn density(&self, s: f64) -> f64 {
+        let before = Span::new(self.support.from, s);
+        let depth = crate::media::OpticalDepth::optical_depth(self.pieces, before).value;
+        self.pieces.value(s) * Lane::exp(-depth) / self.absorbed
+    }
+}
+
+/// The kinks of the density.
+#[must_use]
+pub fn cuts(setup: &Setup<SingleScattering>) -> Vec<f64> {
+    setup.control.breaks()
+}
+
+/// Straight pieces that are nowhere negative, and not zero throughout.
+///
+/// # Errors
+///
+/// What the control is instead.
+pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+    let needs = "a control of straight pieces, as `explorers`, `mean` or `constant`";
+    let Control::Pieces(pieces) = &setup.control else {
+        let found = if setup.control.is_none() { "there is none" } else { "it is another field" };
+        return Err(Refusal::mismatch(needs, found));
+    };
+    let lowest = pieces.corner_values().fold(f64::INFINITY, f64::min);
+    if lowest < 0.0 {
+        return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
+    }
+    if setup.control_transmittance >= 1.0 {
+        return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
+    }
+    Ok(())
+}
+
+/// Straight pieces that are positive wherever there is anything to scatter.
+///
+/// # Errors
+///
+/// What the control is instead, or where it is zero.
+pub fn require(setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+    require_straight(setup)?;
+    let Control::Pieces(pieces) = &setup.control else { return Ok(()) };
+    let as_sampling =
+        Setup::new(setup.problem.clone(), setup.mesh.clone(), Some(pieces.clone()), Control::None);
+    as_sampling.require_coverage().map_err(|refusal| match refusal {
+        Refusal::Inequality { at, .. } => Refusal::Inequality {
+            needs: "a control σ_m > 0 wherever σ_t > 0",
+            found: "σ_m = 0 while σ_t is not".into(),
+            at,
+        },
+        other => other,
+    })
+}

@@ -1,0 +1,82 @@
+//! Source-driven scattering: points at equal angles as seen from the light (Cauchy, equiangular).
+//!
+//! ```text
+//! θ uniform over the angles of the support,  s = foot + D tan θ,  p(s) = D/(Δθ r²)
+//! X = T̂ σ_t S T̂_shadow / p
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `camera` | `"exact"`, `"ratio"` (with σ̂ and, for residual ratio, a control) or `"delta"` (σ̂ ≥ σ_t) | `"exact"` |
+//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//!
+//! Unbiased wherever its transmittances are; the density is positive everywhere and cancels 1/r², so
+//! that the variance stays bounded however near the light is.
+//!
+//! Source: C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing in Participating
+//! Media*, Computer Graphics Forum 31 (2012), section 4; Szirmay-Kalos et al. 2017, section 4.3.
+
+use super::Connection;
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::problems::SingleScattering;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+use crate::theory::single::{Points, Technique};
+
+/// Source-driven scattering.
+#[derive(Debug, Clone)]
+pub struct SourceDriven {
+    connection: Connection,
+}
+
+/// The point that a uniform number finds.
+#[inline(always)]
+pub(super) fn point(problem: &SingleScattering, u: f64) -> f64 {
+    let angles = problem.angles();
+    problem.at_angle(angles.from + u * angles.length())
+}
+
+impl Estimator<SingleScattering> for SourceDriven {
+    const INPUTS: Inputs = Inputs::NONE;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let connection = Connection::read(settings, &["exact", "ratio", "delta"])?;
+        Some(Self { connection })
+    }
+
+    fn inputs(&self) -> Inputs {
+        self.connection.inputs()
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.connection.label()
+    }
+
+    fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
+        self.connection.domain(setup)
+    }
+
+    fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
+        let problem = &setup.problem;
+        let technique = Technique {
+            density: &|node| problem.equiangular_density(node.s),
+            gain: &|node| node.extinction * node.source / problem.equiangular_density(node.s),
+            found: None,
+        };
+        Points::of(&self.connection.scene(setup, Vec::new()), &technique).prediction()
+    }
+
+    #[inline(always)]
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<SingleScattering>,
+        medium: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        let s = point(&setup.problem, rng.uniform());
+        let (radiance, lookups) = self.connection.scatter(setup, medium, s, rng);
+        Draw::free([radiance / setup.problem.equiangular_density(s)], lookups)
+    }
+}

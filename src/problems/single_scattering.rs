@@ -1,0 +1,237 @@
+//! The radiance that a ray gathers from a point light by single scattering.
+//!
+//! ```text
+//! L = ∫ T(o, s) σ_t(s) a p(cos θ) Φ/(4π r²) T(p(s), l) ds
+//! r = |p(s) − l|,   cos θ = ((p(s) − l)/r) · (−d)
+//! ```
+//!
+//! Settings are those of `transmittance` with a `volume` and a `ray`, and
+//!
+//! | setting | meaning | unit | default |
+//! |---|---|---|---|
+//! | `light = { position, power }` | a point light that shines alike in all directions | length, power | power 1 |
+//! | `albedo` | a, the same everywhere, 0 to 1 | – | required |
+//! | `phase.NAME = { … }` | p, see `trueflight list phases` | 1/sr | required |
+//!
+//! Light goes from l to p(s) and from there against the ray to its origin; `cos θ` is that between
+//! the two directions of travel. Both stretches are clipped to the bounds of the volume. What comes
+//! straight from beyond the ray's end, the first term of Eq. 22, is not part of L.
+//!
+//! A light on the line of the ray is refused: where it lies on the ray, L is infinite.
+//!
+//! The answer is a quadrature over s to 12 digits; the optical depths of both stretches are exact.
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! section 4.3, Eq. 22.
+
+use std::f64::consts::PI;
+use std::sync::{Arc, OnceLock};
+
+use super::Problem;
+use crate::catalogue::{Domain, Settings};
+use crate::geometry::{Aabb, Point, Ray};
+use crate::media::{Body, Medium, Volume};
+use crate::numeric::{Known, Lane, Span, elementary};
+use crate::phase::Phase;
+
+/// A light nearer to the ray's line than this, relative to the ray's length, lies on it.
+const ON_LINE: f64 = 1e-9;
+
+/// Single scattering of a point light along a ray.
+pub struct SingleScattering {
+    volume: Arc<Volume>,
+    ray: Ray,
+    medium: Medium,
+    light: Light,
+    albedo: f64,
+    phase: Phase,
+    radiance: OnceLock<Known>,
+}
+
+/// A point light as the ray sees it.
+#[derive(Debug, Clone, Copy)]
+struct Light {
+    position: Point,
+    power: f64,
+    /// Where the ray's line is nearest to it, from the ray's origin.
+    foot: f64,
+    /// How near that is, > 0.
+    distance: f64,
+    /// The angles, seen from the light and measured from its foot, of the ends of the support.
+    angles: Span,
+}
+
+impl SingleScattering {
+    /// The volume.
+    #[must_use]
+    pub fn volume(&self) -> &Volume {
+        &self.volume
+    }
+
+    /// L, found when it is first asked for.
+    pub fn radiance(&self, find: impl FnOnce() -> Known) -> Known {
+        *self.radiance.get_or_init(find)
+    }
+
+    /// The albedo a.
+    #[must_use]
+    pub fn albedo(&self) -> f64 {
+        self.albedo
+    }
+
+    /// Where the ray is nearest to the light, from its origin.
+    #[must_use]
+    pub fn foot(&self) -> f64 {
+        self.light.foot
+    }
+
+    /// D, the distance of the light from the ray's line.
+    #[must_use]
+    pub fn distance(&self) -> f64 {
+        self.light.distance
+    }
+
+    /// The squared distance of `p(s)` from the light.
+    #[inline(always)]
+    fn square(&self, s: f64) -> f64 {
+        let (along, across) = (s - self.light.foot, self.light.distance);
+        along * along + across * across
+    }
+
+    /// `a p(cos θ) Φ/(4π r²)`: what `σ_t` scatters at `p(s)` towards the ray's origin, but for the
+    /// two transmittances.
+    #[inline(always)]
+    #[must_use]
+    pub fn source(&self, s: f64) -> f64 {
+        self.scattered(s, self.cosine(s))
+    }
+
+    /// `cos θ` of light that is scattered at `p(s)` towards the ray's origin.
+    #[inline(always)]
+    #[must_use]
+    pub fn cosine(&self, s: f64) -> f64 {
+        // (p − l)·d = s − foot: beyond the foot the light travels on along the ray.
+        let cosine = (self.light.foot - s) / self.square(s).sqrt();
+        cosine.or_more(-1.0).or_less(1.0)
+    }
+
+    /// `a p(cos θ) Φ/(4π r²)` with r that of `p(s)`.
+    #[inline(always)]
+    #[must_use]
+    pub fn scattered(&self, s: f64, cosine: f64) -> f64 {
+        let phase = self.phase.value(cosine);
+        self.albedo * phase * self.light.power / (4.0 * PI * self.square(s))
+    }
+
+    /// The distance along the ray that the light sees at an angle from its foot, which lies between
+    /// two right angles.
+    #[inline(always)]
+    #[must_use]
+    pub fn at_angle(&self, angle: f64) -> f64 {
+        self.light.foot + self.light.distance * (Lane::sin(angle) / Lane::cos(angle))
+    }
+
+    /// The angles of the ends of the support.
+    #[must_use]
+    pub fn angles(&self) -> Span {
+        self.light.angles
+    }
+
+    /// The density over distance of points whose angles are uniform: `D/(Δθ r²)`, 1/length.
+    #[inline(always)]
+    #[must_use]
+    pub fn equiangular_density(&self, s: f64) -> f64 {
+        self.light.distance / (self.light.angles.length() * self.square(s))
+    }
+
+    /// The ray from `p(s)` to the light, and its stretch within the bounds of the volume; `None`
+    /// where that is empty.
+    #[must_use]
+    pub fn shadow(&self, s: f64) -> Option<(Ray, Span)> {
+        let from = self.ray.at(s);
+        let length = self.square(s).sqrt();
+        let ray = Ray::new(from, self.light.position - from, length)?;
+        let inside = self.volume.bounds().clip(&ray);
+        (!inside.is_empty()).then_some((ray, inside))
+    }
+
+    /// The field along the ray from `p(s)` to the light; `None` where that is outside the bounds.
+    #[must_use]
+    pub fn shadow_medium(&self, s: f64) -> Option<Medium> {
+        let (ray, inside) = self.shadow(s)?;
+        Some(Medium::new(Arc::new(self.volume.along(&ray, inside)), ray.span(), inside))
+    }
+
+    /// A number that σ_t exceeds on no shadow ray: the volume's majorant over the box about the
+    /// lit stretch and the light.
+    #[must_use]
+    pub fn shadow_majorant(&self) -> f64 {
+        let support = self.medium.support();
+        let ends = [self.ray.at(support.from), self.ray.at(support.to), self.light.position];
+        let extreme = |of: fn(f64, f64) -> f64| {
+            Point(std::array::from_fn(|i| {
+                ends[1..].iter().fold(ends[0].0[i], |m, p| of(m, p.0[i]))
+            }))
+        };
+        let about = Aabb { low: extreme(f64::min), high: extreme(f64::max) };
+        match self.volume.bounds().enclosing_box() {
+            None => self.volume.majorant(&about),
+            Some(bounds) => bounds.intersect(&about).map_or(0.0, |b| self.volume.majorant(&b)),
+        }
+    }
+}
+
+fn read_light(settings: &Settings) -> Option<(Point, f64)> {
+    let light = settings.table("light")?;
+    let position = light.triple("position");
+    let power = light.number_or("power", Domain::Positive, 1.0);
+    light.close();
+    Some((Point(position?), power?))
+}
+
+impl Problem for SingleScattering {
+    type Value = [f64; 1];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let light = read_light(settings);
+        let albedo = settings.number("albedo", Domain::Unit);
+        let phase = Phase::read(settings);
+        let Body::Volume { volume, ray, .. } = body? else {
+            let help = "write `volume` instead of `medium`, and give a `ray`";
+            settings.fault("medium", "a light needs a field in space", help);
+            return None;
+        };
+        let ((position, power), albedo, phase) = (light?, albedo?, phase?);
+        if albedo <= 0.0 {
+            settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
+            return None;
+        }
+        let medium = body?.medium();
+        let support = medium.support();
+        let to_light = position - ray.origin;
+        let foot = to_light.dot(ray.direction);
+        let distance = (to_light - ray.direction * foot).norm();
+        if distance <= ON_LINE * ray.length.max(foot.abs()) {
+            let found = format!("the light is {distance:e} away from the line of the ray");
+            settings.fault("light", found, "move it off the line: on the ray L is infinite");
+            return None;
+        }
+        let angle = |s: f64| elementary::atan((s - foot) / distance);
+        let angles = Span::new(angle(support.from), angle(support.to));
+        let light = Light { position, power, foot, distance, angles };
+        Some(Self {
+            volume: volume.clone(),
+            ray: *ray,
+            medium,
+            light,
+            albedo,
+            phase,
+            radiance: OnceLock::new(),
+        })
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+}

@@ -1,0 +1,180 @@
+//! The transmittance from the ray's origin to any point of the ray, as it is estimated.
+
+use super::Along;
+use super::passage::{POWERS, Passage};
+use crate::media::{Control, Piecewise};
+use crate::numeric::Span;
+use crate::numeric::quadrature::GaussLegendre;
+use crate::theory::Mesh;
+
+/// How many integrals are kept.
+const COUNT: usize = 9;
+/// Where `∫σ̂` is among them.
+const FLOWN: usize = 8;
+
+/// What a walk from the ray's origin loses up to a point: `A_k = ∫ kσ_c + σ̂(1 − w^k)`, `w = 1 − r`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Losses {
+    /// `A_k` for k = 0 … 4.
+    pub signed: [f64; 5],
+    /// The same with `|w|^k`.
+    pub sizes: [f64; 5],
+    /// The same with `w|w|`, k = 2.
+    pub mixed: f64,
+}
+
+/// The integrals along the ray, ready to be read at any point.
+pub struct Camera<'a> {
+    mesh: &'a Mesh,
+    sampling: &'a Piecewise,
+    control: &'a Control,
+    along: Along,
+    rule: GaussLegendre,
+    ends: Vec<f64>,
+    sums: Vec<[f64; COUNT]>,
+}
+
+impl<'a> Camera<'a> {
+    /// Integrates along the ray.
+    #[must_use]
+    pub fn new(
+        mesh: &'a Mesh,
+        sampling: &'a Piecewise,
+        control: &'a Control,
+        along: Along,
+    ) -> Self {
+        let rule = GaussLegendre::new(16);
+        let support = mesh.support();
+        let mut camera = Self {
+            mesh,
+            sampling,
+            control,
+            along,
+            rule,
+            ends: vec![support.from],
+            sums: vec![[0.0; COUNT]],
+        };
+        if along == Along::Exact || support.is_empty() {
+            return camera;
+        }
+        let mut cuts = sampling.knots().to_vec();
+        cuts.extend(control.breaks());
+        cuts.retain(|&t| support.contains_inside(t));
+        let fine = mesh.refined(&cuts, &|_, panel| {
+            let nodes = panel.t.iter().zip(panel.extinction);
+            let rows: Vec<[f64; COUNT]> = nodes.map(|(&t, &x)| camera.integrand(t, x)).collect();
+            (0..COUNT).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
+        });
+        for panel in fine.panels() {
+            let whole = camera.over(panel.span);
+            let mut sum = camera.sums[camera.sums.len() - 1];
+            sum.iter_mut().zip(whole).for_each(|(sum, x)| *sum += x);
+            camera.ends.push(panel.span.to);
+            camera.sums.push(sum);
+        }
+        camera
+    }
+
+    fn integrand(&self, t: f64, extinction: f64) -> [f64; COUNT] {
+        let sampling = self.sampling.value(t);
+        let control = self.control.extinction(t);
+        if self.along == Along::Delta {
+            let from = self.mesh.support().from;
+            let depth = self.depth(t);
+            let nulls = self.flown(Span::new(from, t)) - depth;
+            let alive = sampling * (-depth).exp();
+            let [a, b, c, d] = [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1));
+            return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling];
+        }
+        if sampling <= 0.0 {
+            let [a, b, c, d, e] = POWERS.map(|k| f64::from(k) * control);
+            return [a, b, c, d, e, a, c, b, 0.0];
+        }
+        let weight = 1.0 - (extinction - control) / sampling;
+        let loss = |k: i32, power: f64| f64::from(k) * control + sampling * (1.0 - power);
+        let [a, b, c, d, e] = POWERS.map(|k| loss(k, weight.powi(k)));
+        let size = weight.abs();
+        let sizes = [loss(1, size), loss(3, size.powi(3)), loss(2, size * weight)];
+        [a, b, c, d, e, sizes[0], sizes[1], sizes[2], sampling]
+    }
+
+    /// τ up to a point.
+    fn depth(&self, s: f64) -> f64 {
+        let from = self.mesh.support().from;
+        self.mesh.medium().optical_depth(Span::new(from, s)).value
+    }
+
+    /// `∫σ̂` over a span.
+    fn flown(&self, span: Span) -> f64 {
+        crate::media::OpticalDepth::optical_depth(self.sampling, span).value
+    }
+
+    fn over(&self, span: Span) -> [f64; COUNT] {
+        let nodes: Vec<f64> =
+            self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();
+        let sigma = self.mesh.medium().extinctions(&nodes);
+        let mut sum = [0.0; COUNT];
+        for ((&t, &sigma), &weight) in nodes.iter().zip(&sigma).zip(&self.rule.weights) {
+            let values = self.integrand(t, sigma);
+            sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * span.length() * x);
+        }
+        sum
+    }
+
+    fn at(&self, s: f64) -> [f64; COUNT] {
+        let last = self.ends.len() - 1;
+        let panel = self.ends.partition_point(|&end| end <= s).saturating_sub(1).min(last);
+        let mut sum = self.sums[panel];
+        let rest = Span::new(self.ends[panel], s);
+        if !rest.is_empty() {
+            let more = self.over(rest);
+            sum.iter_mut().zip(more).for_each(|(sum, x)| *sum += x);
+        }
+        sum
+    }
+
+    /// The moments of the estimate up to `s`.
+    #[must_use]
+    pub fn passage(&self, s: f64) -> Passage {
+        let depth = self.depth(s);
+        match self.along {
+            Along::Exact => Passage::exact(depth),
+            Along::Ratio => {
+                let [_, b, c, d, e, .., flown] = self.at(s);
+                Passage::product([depth, b, c, d, e], flown)
+            }
+            Along::Delta => {
+                let [a, b, c, d, ..] = self.at(s);
+                let from = self.mesh.support().from;
+                Passage::decided(depth, self.flown(Span::new(from, s)), [a, b, c, d])
+            }
+        }
+    }
+
+    /// What a walk of weights loses up to `s`.
+    #[must_use]
+    pub fn losses(&self, s: f64) -> Losses {
+        let [_, b, c, d, _, size, cube, mixed, _] = self.at(s);
+        let signed = [0.0, self.depth(s), b, c, d];
+        Losses { signed, sizes: [0.0, size, b, cube, d], mixed }
+    }
+
+    /// σ̂ and `w = 1 − r` at a point.
+    #[must_use]
+    pub fn collision(&self, s: f64, extinction: f64) -> [f64; 2] {
+        let sampling = self.sampling.value(s);
+        [sampling, 1.0 - (extinction - self.control.extinction(s)) / sampling]
+    }
+
+    /// `∫σ̂` over the whole support.
+    #[must_use]
+    pub fn collisions(&self) -> f64 {
+        self.sums[self.sums.len() - 1][FLOWN]
+    }
+
+    /// The distances where σ̂ or the control have kinks.
+    #[must_use]
+    pub fn cuts(&self) -> Vec<f64> {
+        if self.along == Along::Exact { Vec::new() } else { self.ends.clone() }
+    }
+}

@@ -1,0 +1,37 @@
+//! Single scattering of a point light: the radiance, and all moments of what estimates it.
+//!
+//! A draw that scatters at one point s, found with density p, is a product of three factors that
+//! are independent once s is known: the gain `σ_t S/p`, the transmittance from the ray's origin and
+//! that of the shadow ray. Hence, for every k,
+//!
+//! ```text
+//! E[X^k] = ∫ p (σ_t S/p)^k E[T̂(s)^k] E[T̂_shadow(s)^k] ds,   S = a p(cos θ) Φ/(4π r²)
+//! ```
+//!
+//! where the moments of a tracked transmittance are those of a Poisson product, integrals along its
+//! segment. Draws that scatter at several points of one walk obey a chain of such integrals
+//! ([`chain`]). Where a part of the answer has no closed form, all of it is a quadrature in one
+//! variable, adaptive to a bound that is stated.
+
+pub mod camera;
+pub mod chain;
+pub mod passage;
+pub mod predict;
+pub mod scene;
+pub mod walks;
+
+pub use camera::Camera;
+pub use passage::{Passage, Tracking};
+pub use predict::{Points, Technique};
+pub use scene::{Node, Scene};
+
+/// How the transmittance from the ray's origin to a scattering point is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Along {
+    /// In closed form.
+    Exact,
+    /// By ratio tracking through σ̂, or residual ratio tracking where there is a control.
+    Ratio,
+    /// By delta tracking through σ̂: 1 or 0.
+    Delta,
+}

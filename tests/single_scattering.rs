@@ -1,0 +1,211 @@
+//! Single scattering: the radiance against independent values, and predictions against draws.
+
+mod common;
+
+use common::{case, mistakes, options, row, rows};
+use serde::Deserialize;
+use trueflight::harness::Plan;
+use trueflight::harness::record::Verdict;
+
+#[derive(Deserialize)]
+struct Reference {
+    id: String,
+    params: Params,
+    value: f64,
+}
+
+#[derive(Deserialize)]
+struct Params {
+    o: [f64; 3],
+    d_unnormalised: [f64; 3],
+    #[serde(rename = "S")]
+    length: f64,
+    light: [f64; 3],
+    a: f64,
+    medium: String,
+    phase: String,
+}
+
+fn values() -> Vec<Reference> {
+    serde_json::from_str(include_str!("data/single-scattering.json")).expect("values")
+}
+
+fn case_of(value: &Reference, estimators: &str) -> trueflight::harness::Case {
+    let p = &value.params;
+    let volume = match p.medium.as_str() {
+        "homogeneous sigma .8" => "volume.constant.extinction = 0.8",
+        "Eq. 21" => "volume.eq21 = {}",
+        other => panic!("{other}"),
+    };
+    let text = format!(
+        "title = \"{id}\"
+        [problem.single-scattering]
+        {volume}
+        ray = {{ origin = {o:?}, direction = {d:?}, length = {s} }}
+        light.position = {l:?}
+        albedo = {a}
+        phase.{phase} = {{}}
+        sampling.constant.value = 1.0
+        estimators = [{estimators}]",
+        id = value.id,
+        o = p.o,
+        d = p.d_unnormalised,
+        s = p.length,
+        l = p.light,
+        a = p.a,
+        phase = p.phase.to_lowercase(),
+    );
+    case(&value.id, &text)
+}
+
+const ALL: &str = "
+    { source-driven = {} },
+    { source-driven = { camera = \"ratio\", shadow.ratio = { sampling = 1.3 } } },
+    { source-driven = { camera = \"delta\", shadow.delta = { sampling = 1 } } },
+    { scattering-driven = { control.mean = {} } },
+    { delta-tracking = {} },
+    { source-scattering-mis = { control.mean = {}, camera = \"ratio\" } },
+    { source-delta-mis = {} },
+    { attenuation-driven = { control.constant.value = 0.2 } },
+    { attenuation-resampled = {} },
+    { shared-walk = { points = 3, control.constant.value = 0.2 } }";
+
+#[test]
+fn radiances_meet_their_values_to_twelve_digits() {
+    for value in values() {
+        let case = case_of(&value, ALL);
+        let plan = Plan::new(std::slice::from_ref(&case), &options(1, 10));
+        for (_, planned) in plan.experiments() {
+            let ready = planned.outcome.as_ref().unwrap_or_else(|refusal| panic!("{refusal}"));
+            let channel = &ready.prediction.channels[0];
+            let truth = channel.truth;
+            let apart = (truth.value / value.value - 1.0).abs();
+            let name = &planned.names.estimator;
+            assert!(apart < 1e-12, "{}, {name}: {apart:e}", value.id);
+            assert!(truth.error < 2e-12 * truth.value, "{}, {name}: {:e}", value.id, truth.error);
+            assert!(
+                (truth.value - value.value).abs() <= truth.error + 1e-15 * truth.value,
+                "{}, {name}: the bound {:e} is no bound, {apart:e}",
+                value.id,
+                truth.error / truth.value,
+            );
+        }
+    }
+}
+
+/// The first raw moment, by quadrature of densities, gains and conditional means, is the radiance by
+/// quadrature of the integrand: for all ways to draw.
+#[test]
+fn predicted_means_are_the_radiance() {
+    for value in values() {
+        let case = case_of(&value, ALL);
+        let plan = Plan::new(std::slice::from_ref(&case), &options(1, 10));
+        for (_, planned) in plan.experiments() {
+            let ready = planned.outcome.as_ref().unwrap_or_else(|refusal| panic!("{refusal}"));
+            let channel = &ready.prediction.channels[0];
+            let moments = channel.moments.expect("moments");
+            let apart = (moments.scale / channel.truth.value - 1.0).abs();
+            let name = &planned.names.estimator;
+            assert!(apart < 1e-10, "{}, {name}: {apart:e}", value.id);
+        }
+    }
+}
+
+/// A thin homogeneous medium: nothing is lost, and L = σ a Φ/(16π² D) Δθ.
+#[test]
+fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
+    let text = "title = \"thin\"
+        [problem.single-scattering]
+        volume.constant.extinction = 1e-9
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 2 }
+        light = { position = [0.5, 0, 1], power = 3 }
+        albedo = 0.4
+        phase.isotropic = {}
+        estimators = [{ source-driven = {} }]";
+    let found = row(&rows(text, 1000), "source-driven").clone();
+    let angle = 2.0 * 2f64.atan();
+    let thin = 1e-9 * 0.4 * 3.0 / (16.0 * std::f64::consts::PI.powi(2) * 0.5) * angle;
+    let truth = found.truth.expect("a truth");
+    assert!((truth / thin - 1.0).abs() < 1e-8, "{truth:e} for {thin:e}");
+}
+
+/// Forward light comes from behind the scattering point as the ray's origin sees it: with the light
+/// beyond the ray's end, a forward phase function gathers more than a backward one.
+#[test]
+fn a_forward_phase_function_gathers_light_that_comes_towards_the_origin() {
+    let radiance = |g: f64, z: f64| {
+        let text = format!(
+            "title = \"side\"
+            [problem.single-scattering]
+            volume.constant.extinction = 0.5
+            ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 2 }}
+            light.position = [0.2, 0, {z}]
+            albedo = 0.9
+            phase.henyey-greenstein.g = {g}
+            estimators = [{{ source-driven = {{}} }}]"
+        );
+        row(&rows(&text, 1000), "source-driven").truth.expect("a truth")
+    };
+    assert!(radiance(0.6, 4.0) > 5.0 * radiance(-0.6, 4.0));
+    assert!(radiance(-0.6, -2.0) > 5.0 * radiance(0.6, -2.0));
+}
+
+const BALL: &str = "title = \"ball\"
+    [problem.single-scattering]
+    volume.constant = { extinction = 0.9, bounds.sphere = { centre = [0, 0, 2], radius = 2 } }
+    ray = { origin = [0.3, 0, -1], direction = [0, 0.1, 1], length = 6 }
+    light.position = [2.4, 0.5, 3]
+    albedo = 0.8
+    phase.isotropic = {}
+    estimators = [";
+
+/// Why an estimator is refused in the ball.
+fn refusal(estimator: &str) -> String {
+    let text = format!("{BALL} {estimator} ]");
+    let found = rows(&text, 100);
+    assert_eq!(found[0].verdict, Some(Verdict::Refused), "{estimator}");
+    found[0].reason.clone()
+}
+
+#[test]
+fn estimators_are_refused_where_they_would_be_biased() {
+    let says = |estimator: &str, words: &str| {
+        let reason = refusal(estimator);
+        assert!(reason.contains(words), "{estimator}: {reason}");
+    };
+    says("{ source-driven.shadow.delta.sampling = 0.8 }", "σ̄ ≥ σ_t on every shadow ray");
+    says("{ source-driven = { camera = \"delta\", sampling.constant.value = 0.8 } }", "σ̂ ≥ σ_t");
+    says("{ delta-tracking.sampling.constant.value = 0.8 }", "σ̂ ≥ σ_t");
+    says("{ source-delta-mis.sampling.constant.value = 0.8 }", "σ̂ ≥ σ_t");
+    says("{ scattering-driven = {} }", "there is none");
+    says("{ scattering-driven.control.constant.value = -0.1 }", "σ_m ≥ 0");
+    says("{ source-scattering-mis.control.constant.value = 0 }", "zero throughout");
+    let gap = "sampling.piecewise-constant = { breaks = [0, 2, 3, 6], values = [1, 0, 1] }";
+    says(&format!("{{ attenuation-driven.{gap} }}"), "σ̂ > 0");
+    says(&format!("{{ attenuation-resampled.{gap} }}"), "σ̂ > 0");
+    says(&format!("{{ shared-walk.{gap} }}"), "σ̂ > 0");
+    // A control that is all of the medium leaves no residual, but there is light to scatter.
+    says(&format!("{{ attenuation-driven = {{ control.constant.value = 0.9, {gap} }} }}"), "σ̂ > 0");
+}
+
+#[test]
+fn cases_without_an_answer_are_mistakes() {
+    let fault = |from: &str, to: &str| {
+        let text = format!("{BALL} {{ source-driven = {{}} }} ]").replace(from, to);
+        mistakes(&text).unwrap_or_else(|| panic!("{to} was taken")).render(false)
+    };
+    assert!(fault("[2.4, 0.5, 3]", "[0.3, 0.2, 1]").contains("line of the ray"));
+    assert!(fault("albedo = 0.8", "albedo = 0").contains("nothing is scattered"));
+    assert!(fault("albedo = 0.8", "albedo = 1.2").contains("albedo"));
+    assert!(fault("phase.isotropic = {}", "").contains("phase"));
+    assert!(fault("phase.isotropic = {}", "phase.henyey-greenstein.g = 1").contains("mean cosine"));
+    let line = "title = \"line\"
+        [problem.single-scattering]
+        medium.constant.extinction = 1
+        span = [0, 2]
+        light.position = [1, 0, 0]
+        albedo = 0.5
+        phase.rayleigh = {}
+        estimators = [{ source-driven = {} }]";
+    assert!(mistakes(line).expect("a mistake").render(false).contains("field in space"));
+}
