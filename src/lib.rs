@@ -15,7 +15,7 @@
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
 //! 2  problems       what is sought; each integral knows its truth
-//! 1  media   stats  neighbours that have never met
+//! 1  media   phase   stats  neighbours that have never met
 //! 0  numeric geometry rng catalogue files     know nothing of light
 //! ```
 //!
@@ -42,6 +42,7 @@ pub mod harness;
 pub mod media;
 pub mod mutants;
 pub mod numeric;
+pub mod phase;
 pub mod problems;
 pub mod report;
 pub mod rng;

@@ -8,7 +8,7 @@ use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{Estimated, controls, sampling};
 use trueflight::harness::{self, case::Case, checks, suite};
 use trueflight::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
-use trueflight::{media, report};
+use trueflight::{media, phase, report};
 
 use super::Console;
 use super::output::{self, Format};
@@ -28,6 +28,7 @@ pub struct Arguments {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum What {
     Media,
+    Phases,
     Sampling,
     Controls,
     Estimators,
@@ -51,6 +52,7 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
     let of_problem = |problem: &str| format!("estimators of {problem}");
     vec![
         ("media".into(), media::CATALOGUE),
+        ("phases".into(), phase::CATALOGUE),
         ("sampling".into(), sampling::CATALOGUE),
         ("controls".into(), controls::CATALOGUE),
         (of_problem("transmittance"), Transmittance::CATALOGUE),
