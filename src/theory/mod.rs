@@ -6,6 +6,7 @@
 pub mod count;
 pub mod curve;
 pub mod flight;
+pub mod h_function;
 pub mod lookups;
 pub mod mesh;
 pub mod moments;
@@ -14,6 +15,7 @@ pub mod particle;
 pub mod prediction;
 pub mod product;
 pub mod rule;
+pub mod slab;
 pub mod volterra;
 
 pub use count::CountLaw;
