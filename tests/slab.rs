@@ -10,8 +10,8 @@ use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
 use trueflight::theory::h_function::h_function;
 use trueflight::theory::particle::ParticleRule;
-use trueflight::theory::slab::walk::Piece;
-use trueflight::theory::slab::{Incidence, Light, Walk, cached};
+use trueflight::problems::slab::{Incidence, Light};
+use trueflight::theory::slab::{Piece, Pieces, Walk, cached};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -144,7 +144,7 @@ fn walk(reference: &Reference, cosine: f64) -> Walk {
         },
         albedo: reference.params.a,
         rule,
-        pieces: vec![Piece { flown: sampling * thickness, ratio: 1.0 / sampling }],
+        pieces: Pieces::Exact(vec![Piece::of(sampling * thickness, 1.0 / sampling)]),
         largest_ratio: 1.0 / sampling,
         depth: thickness,
         laws: true,

@@ -152,18 +152,35 @@ impl<P: Problem> Setup<P> {
     ///
     /// Where it is violated most.
     pub fn require_ratio_at_most(&self, limit: f64, needs: &'static str) -> Result<(), Refusal> {
+        self.require_ratio_within(&[], |_| limit, needs)
+    }
+
+    /// The same with a limit that varies along the ray, straight between the given knots.
+    ///
+    /// # Errors
+    ///
+    /// Where it is violated most.
+    pub fn require_ratio_within(
+        &self,
+        knots: &[f64],
+        limit: impl Fn(f64) -> f64,
+        needs: &'static str,
+    ) -> Result<(), Refusal> {
         self.require_coverage()?;
         let mut cuts = self.sampling.knots().to_vec();
         cuts.extend(self.control.breaks());
+        cuts.extend(knots);
         let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
-        let worst = cut.largest(|t, sigma| {
+        let ratio = |t: f64, sigma: f64| {
             let residual = self.residual(t, sigma);
             if residual == 0.0 { 0.0 } else { residual / self.sampling.value(t) }
-        });
+        };
+        let worst = cut.largest(|t, sigma| ratio(t, sigma) / limit(t));
         match worst {
-            Some((at, ratio)) if ratio > limit * (1.0 + SLACK) => {
+            Some((at, excess)) if excess > 1.0 + SLACK => {
                 let sampling = self.sampling.value(at);
                 let name = self.residual_name();
+                let ratio = excess * limit(at);
                 let found = format!(
                     "σ̂ = {sampling:.6} and {name} = {:.6}, r = {ratio:.6},",
                     ratio * sampling

@@ -13,6 +13,7 @@ pub mod packet;
 pub mod rules;
 pub mod sampling;
 pub mod setup;
+pub mod slab;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;

@@ -214,7 +214,8 @@ impl<P: Mutable> Scenario<P> {
             _ => 1.0,
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
-        let setup = Setup::new(self.problem.clone(), self.mesh().clone(), sampling, control);
+        let problem = self.varied_problem(variation);
+        let setup = Setup::new(problem, self.mesh().clone(), sampling, control);
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
         if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
@@ -228,6 +229,14 @@ impl<P: Mutable> Scenario<P> {
         let control = setup.control.optical_depth(setup.mesh.support()).value;
         let found = format!("τ = {:.6}, of which the control takes {control:.6}", setup.log_unit);
         Err(Refusal::mismatch(needs, found))
+    }
+
+    fn varied_problem(&self, variation: Variation) -> Arc<P> {
+        let varied = match variation {
+            Some((What::Albedo, albedo)) => self.problem.with_albedo(albedo),
+            _ => None,
+        };
+        varied.map_or_else(|| self.problem.clone(), Arc::new)
     }
 
     fn varied_entry(&self, index: usize, variation: Variation) -> Option<Box<dyn Entry<P>>> {
@@ -263,7 +272,9 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         match what {
             What::Sampling => inputs.sampling && written.sampling.is_none(),
             What::SamplingScale => inputs.sampling,
-            What::Albedo => written.entry.with_albedo(0.5).is_some(),
+            What::Albedo => {
+                written.entry.with_albedo(0.5).is_some() || self.problem.with_albedo(0.5).is_some()
+            }
             What::Control => inputs.control && written.control.is_none(),
             What::Points => {
                 let control = written.control.as_deref().or(self.control.as_deref());

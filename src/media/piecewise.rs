@@ -227,6 +227,40 @@ impl Piecewise {
         }
         None
     }
+
+    /// Flies back through an optical depth, from where a flight ended inside, and answers the field
+    /// there; `None` before the first knot. Non-negative fields only.
+    #[inline(always)]
+    pub fn fly_back(&self, cursor: &mut Cursor, depth: f64) -> Option<f64> {
+        if let [value] = self.left[..]
+            && self.slope[0] == 0.0
+        {
+            cursor.t = Lane::times_plus(-depth, 1.0 / value, cursor.t);
+            return (cursor.t > self.knots[0]).then_some(value);
+        }
+        self.fly_back_over(cursor, depth)
+    }
+
+    /// The same over several pieces.
+    #[inline]
+    fn fly_back_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+        loop {
+            let (begin, slope) = (self.knots[cursor.piece], self.slope[cursor.piece]);
+            let here = self.line(cursor.piece, cursor.t);
+            let left = (cursor.t - begin) * 0.5 * (here + self.left[cursor.piece]);
+            if depth < left {
+                let root = Lane::or_more(here * here - 2.0 * slope * depth, 0.0).sqrt();
+                cursor.t -= 2.0 * depth / (here + root);
+                return Some(self.line(cursor.piece, cursor.t));
+            }
+            if cursor.piece == 0 {
+                return None;
+            }
+            depth -= left;
+            cursor.t = begin;
+            cursor.piece -= 1;
+        }
+    }
 }
 
 impl Extinction for Piecewise {
@@ -301,6 +335,28 @@ mod tests {
         let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]);
         let s = steps.free_flight(Span::new(0.0, 3.0), 1.5).expect("inside");
         assert!((s - 2.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn a_flight_back_undoes_a_flight() {
+        let fields = [
+            lines(),
+            Piecewise::steps(&[0.0, 1.0, 2.0, 3.0], &[1.0, 0.0, 1.0]),
+            Piecewise::constant(0.7, Span::new(-1.0, 4.0)),
+        ];
+        for field in fields {
+            for step in 1..17 {
+                let (there, back) = (0.1 * f64::from(step), 0.07 * f64::from(step));
+                let mut cursor = field.begin();
+                field.fly(&mut cursor, there).expect("inside");
+                let value = field.fly_back(&mut cursor, back).expect("still inside");
+                let mut direct = field.begin();
+                let expected = field.fly(&mut direct, there - back).expect("inside");
+                assert!((cursor.t - direct.t).abs() < 1e-14, "{field:?} at {step}");
+                assert!((value - expected).abs() < 1e-14);
+                assert_eq!(field.fly_back(&mut cursor, there), None);
+            }
+        }
     }
 
     #[test]

@@ -23,6 +23,7 @@ pub mod lookups;
 pub mod precision;
 pub mod rules;
 pub mod scores;
+pub mod slab;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -31,7 +32,7 @@ pub mod walk;
 pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
-use crate::problems::{FreeFlight, Problem, Transmittance, TransmittanceCurve};
+use crate::problems::{FreeFlight, Problem, Slab, Transmittance, TransmittanceCurve};
 
 pub use fault::{Fault, Honest};
 pub use streams::StreamMutant;
@@ -118,6 +119,12 @@ impl Mutable for TransmittanceCurve {
     }
 }
 
+impl Mutable for Slab {
+    fn mutants() -> Vec<Mutant<Self>> {
+        slab::mutants()
+    }
+}
+
 /// Every mutant of every problem, without the wrong streams.
 #[must_use]
 pub fn all() -> Vec<About> {
@@ -127,6 +134,7 @@ pub fn all() -> Vec<About> {
     about::<Transmittance>()
         .chain(about::<FreeFlight>())
         .chain(about::<TransmittanceCurve>())
+        .chain(about::<Slab>())
         .collect()
 }
 

@@ -1,13 +1,15 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 pub mod free_flight;
+pub mod slab;
 pub mod transmittance;
 pub mod transmittance_curve;
 
-use crate::catalogue::{Catalogue, Settings};
+use crate::catalogue::{Catalogue, Settings, Value};
 use crate::media::{Body, Medium};
 
 pub use free_flight::FreeFlight;
+pub use slab::Slab;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
 
@@ -18,6 +20,7 @@ pub const CATALOGUE: Catalogue = Catalogue {
         crate::page!(transmittance),
         crate::page!(free_flight),
         crate::page!(transmittance_curve),
+        crate::page!(slab),
     ],
 };
 
@@ -34,6 +37,12 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// The field along the ray.
     fn medium(&self) -> &Medium;
 
+    /// The same problem in a medium of another albedo; `None` if the answer does not depend on it.
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let _ = albedo;
+        None
+    }
+
     /// The logarithm of what draws are multiplied by, where values of the given optical depth
     /// would otherwise underflow; 0 for all others.
     fn log_unit(&self, depth: f64) -> f64 {
@@ -44,5 +53,13 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// The distance that each channel of a draw is about.
     fn distances(&self) -> Vec<f64> {
         vec![self.medium().span().to]
+    }
+}
+
+/// Whether a case sweeps the albedo: then it need not give one.
+fn sweeps_albedo(settings: &Settings) -> bool {
+    match settings.entry("sweep").map(|entry| &entry.node.value) {
+        Some(Value::Table(sweep)) => sweep.iter().any(|entry| entry.key == "albedo"),
+        _ => false,
     }
 }

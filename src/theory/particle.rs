@@ -196,7 +196,8 @@ fn shared(ratio: f64, albedo: f64, left: f64) -> Odds {
     let transmit = transmitted / sum;
     Odds {
         transmit,
-        scatter: 1.0 - transmit,
+        // A weight of 0 is no weight: the walk ends.
+        scatter: if left > 0.0 { 1.0 - transmit } else { 0.0 },
         transmit_weight: sum.copysign(rest),
         scatter_weight: left * sum.copysign(ratio),
     }

@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
-use super::{Answer, Incidence, Light, answer};
+use super::{Answer, answer};
 use crate::numeric::Known;
+use crate::problems::slab::{Incidence, Light};
 
 /// More answers than this are forgotten, all together.
 const MOST: usize = 4096;

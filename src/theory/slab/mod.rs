@@ -19,34 +19,18 @@
 pub mod cache;
 pub mod directions;
 pub mod layer;
+pub mod pieces;
 pub mod walk;
 
 use crate::numeric::Known;
-use crate::phase::Phase;
+use crate::problems::slab::{Incidence, Light};
 
 use directions::Directions;
 use layer::{Layer, Slice};
 
 pub use cache::cached;
+pub use pieces::{Piece, Pieces};
 pub use walk::Walk;
-
-/// Where light comes from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Light {
-    /// From one direction, by its cosine `μ₀` with the normal of the slab, in `(0, 1]`.
-    Collimated(f64),
-    /// Evenly from all sides, the Lambertian law `2μ₀ dμ₀`.
-    Diffuse,
-}
-
-/// What is asked of a slab, without its depth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Incidence {
-    /// Where light comes from.
-    pub light: Light,
-    /// How it is scattered.
-    pub phase: Phase,
-}
 
 /// What becomes of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -86,6 +70,9 @@ impl Resolution {
     pub const FINE: Self = Self { faintest: 1e-11, directions: 32, first_layer: 3e-14 };
     /// For moments: 1e-5 and mostly far better.
     pub const COARSE: Self = Self { faintest: 1e-6, directions: 16, first_layer: 1e-9 };
+
+    /// For moments where r varies, of which thirty-six layers are solved.
+    pub const LAYERED: Self = Self { faintest: 1e-5, directions: 12, first_layer: 1e-7 };
 
     fn coarser(self) -> Self {
         Self {

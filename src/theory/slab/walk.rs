@@ -3,8 +3,9 @@
 //! With `Q_k`, `S_k` the k-th moments of what a tentative collision leaves, `E[X^k]` is reflectance or
 //! transmittance of the slab that is `∫σ̂(1 − Q_k)` thick and has the albedo `S_k/(1 − Q_k)`, layer by
 //! layer where `r = σ_t/σ̂` changes from layer to layer. Of rules that leave no weight at a null
-//! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂: analog and weighted walks
-//! are predicted in every medium. Elsewhere, where r varies continuously, only the mean is known.
+//! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies
+//! continuously, layers have the mean `Q_k` and `S_k`; the error is of second order in their
+//! thickness, and is extrapolated from two cuts and bounded by their difference.
 //!
 //! A walk leaves on one side only: `X_R X_T = 0`, which makes the covariance.
 //!
@@ -24,7 +25,8 @@
 //! the cost are derived here.
 
 use super::layer::Slice;
-use super::{Answer, Incidence, Resolution, energy, solve};
+use super::pieces::{Piece, Pieces};
+use super::{Answer, Energy, Incidence, Resolution, energy, solve};
 use crate::numeric::Known;
 use crate::theory::particle::{Odds, ParticleRule};
 use crate::theory::prediction::Covariance;
@@ -32,15 +34,6 @@ use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// The channels of a draw, in their order.
 pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
-
-/// A stretch of the slab on which r is one number.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Piece {
-    /// `∫σ̂` over the stretch.
-    pub flown: f64,
-    /// r.
-    pub ratio: f64,
-}
 
 /// A walk in a slab.
 #[derive(Debug, Clone)]
@@ -51,8 +44,8 @@ pub struct Walk {
     pub albedo: f64,
     /// What happens at a collision.
     pub rule: ParticleRule,
-    /// The stretches from the top on; none where r varies continuously.
-    pub pieces: Vec<Piece>,
+    /// The layers.
+    pub pieces: Pieces,
     /// The largest r.
     pub largest_ratio: f64,
     /// τ of the slab.
@@ -87,21 +80,8 @@ impl Walk {
         }
     }
 
-    /// The slab whose reflectance and transmittance are the k-th moments.
-    fn slices(&self, k: i32) -> Option<Vec<Slice>> {
-        let slice = |flown: f64, odds: &Odds| Slice {
-            flown,
-            straight: odds.transmitted(k),
-            scattered: odds.scattered(k),
-            score: 0.0,
-        };
-        if self.is_tracking() {
-            return Some(vec![slice(self.depth, &self.rule.odds(1.0, self.albedo))]);
-        }
-        let pieces = self.pieces.iter();
-        let slices: Vec<Slice> =
-            pieces.map(|p| slice(p.flown, &self.rule.odds(p.ratio, self.albedo))).collect();
-        (!slices.is_empty()).then_some(slices)
+    fn odds(&self, ratio: f64) -> Odds {
+        self.rule.odds(ratio, self.albedo)
     }
 
     /// Whether null collisions leave the weight alone.
@@ -110,45 +90,78 @@ impl Walk {
         matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
     }
 
-    /// `E[X_R^k]` and `E[X_T^k]`; infinite where they are, `None` where they are not known.
+    /// Whether the second moments are known to be infinite: no number of draws would settle.
+    #[must_use]
+    pub fn diverges(&self) -> bool {
+        // A weight that never grows stays at 1 at most.
+        let grows = |ratio: f64| {
+            let odds = self.odds(ratio);
+            odds.transmit_weight.abs() > 1.0 || odds.scatter_weight.abs() > 1.0
+        };
+        let pieces = match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
+        };
+        let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
+        may_grow && self.powers(2).is_none()
+    }
+
+    /// `E[X_R^k]` and `E[X_T^k]`; `None` where they are infinite.
+    fn powers(&self, k: i32) -> Option<[Known; 2]> {
+        let moments = |odds: Odds| [odds.transmitted(k), odds.scattered(k), 0.0];
+        let layers = |pieces: &[Piece]| -> Vec<Slice> {
+            pieces.iter().map(|piece| piece.slice(|ratio| moments(self.odds(ratio)))).collect()
+        };
+        let exact = |slices: &[Slice]| {
+            let answer = solve(&self.incidence, slices, Resolution::COARSE)?;
+            Some([answer.reflected, answer.transmitted])
+        };
+        if self.is_tracking() {
+            return exact(&[Piece::of(self.depth, 1.0).slice(|ratio| moments(self.odds(ratio)))]);
+        }
+        match &self.pieces {
+            Pieces::Exact(pieces) => exact(&layers(pieces)),
+            Pieces::Graded(cuts) => {
+                let energy = |cut: &Vec<Piece>| -> Option<Energy> {
+                    energy(&self.incidence, &layers(cut), Resolution::LAYERED)
+                };
+                let [coarse, fine] = [energy(&cuts[0])?, energy(&cuts[1])?];
+                Some([
+                    extrapolated(coarse.reflected, fine.reflected),
+                    extrapolated(coarse.transmitted, fine.transmitted),
+                ])
+            }
+        }
+    }
+
+    /// The same, infinite where they are; `None` where they are not asked for.
     fn moments(&self, k: i32, truth: &Answer) -> Option<[Known; 2]> {
-        if k > 4 && !self.laws {
+        let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
+        if k > 4 && (is_graded || !self.laws) {
             return None;
         }
-        let slices = self.slices(k)?;
-        if let [slice] = slices[..]
-            && slice
-                == (Slice { flown: self.depth, straight: 0.0, scattered: self.albedo, score: 0.0 })
-        {
+        if self.is_tracking() && self.odds(1.0).scatter_weight == 1.0 {
             // Draws are 0 or 1.
             return Some([truth.reflected, truth.transmitted]);
         }
         let infinite = Known::new(f64::INFINITY, f64::INFINITY);
-        let answer = solve(&self.incidence, &slices, Resolution::COARSE);
-        Some(answer.map_or([infinite; 2], |answer| [answer.reflected, answer.transmitted]))
+        Some(self.powers(k).unwrap_or([infinite; 2]))
     }
 
     /// The law of the number of collisions without its probabilities; `None` where it is not known, or
     /// has an infinite variance.
     fn lookups(&self) -> Option<CountLaw> {
-        let collisions = self.pieces.iter().map(|piece| {
-            let odds = self.rule.odds(piece.ratio, self.albedo);
-            (piece.flown, odds)
-        });
-        let collisions: Vec<(f64, Odds)> = collisions.collect();
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
         // Along a layer of null collisions only there is no end to them.
-        let endless = |(flown, odds): &(f64, Odds)| *flown > 0.0 && odds.transmit >= 1.0;
-        if collisions.is_empty() || collisions.iter().any(endless) {
+        let odds = |ratio: f64| self.odds(ratio);
+        if pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds)) {
             return None;
         }
         let slices = |z: f64, score: fn(&Odds) -> f64| -> Vec<Slice> {
-            let slice = |&(flown, odds): &(f64, Odds)| Slice {
-                flown,
-                straight: z * odds.transmit,
-                scattered: z * odds.scatter,
-                score: z * score(&odds),
+            let at = |ratio: f64| {
+                let odds = self.odds(ratio);
+                [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
             };
-            collisions.iter().map(slice).collect()
+            pieces.iter().map(|piece| piece.slice(at)).collect()
         };
         let fine = if self.laws { Resolution::FINE } else { Resolution::COARSE };
         let mean = energy(&self.incidence, &slices(1.0, |_| 1.0), fine)?.score;
@@ -162,6 +175,11 @@ impl Walk {
         let kurtosis = 3.0 + fourth / (variance * variance);
         Some(CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() })
     }
+}
+
+/// What two cuts say together: the error of the finer one is a quarter of the other's.
+fn extrapolated(coarse: f64, fine: f64) -> Known {
+    Known::new(fine + (fine - coarse) / 3.0, (fine - coarse).abs() + 1e-4 * fine.abs())
 }
 
 /// The step of θ in units of the number of collisions over which the law decays.
