@@ -8,9 +8,9 @@ use trueflight::phase::Phase;
 use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
+use trueflight::problems::slab::{Incidence, Light};
 use trueflight::theory::h_function::h_function;
 use trueflight::theory::particle::ParticleRule;
-use trueflight::problems::slab::{Incidence, Light};
 use trueflight::theory::slab::{Piece, Pieces, Walk, cached};
 
 #[derive(Deserialize)]
@@ -172,4 +172,110 @@ fn second_moments_of_walks_are_those_of_the_references() {
         }
     }
     assert_eq!(count, 12);
+}
+
+/// A walk by the non-terminating rule at a = 0.8 through layers.
+fn through(light: Light, pieces: Vec<Piece>) -> Walk {
+    Walk {
+        incidence: Incidence { light, phase: Phase::Rayleigh(Rayleigh) },
+        albedo: 0.8,
+        rule: ParticleRule::NonTerminating,
+        depth: 1.0,
+        largest_ratio: 2.0,
+        pieces: Pieces::Exact(pieces),
+        laws: true,
+    }
+}
+
+fn lookups(walk: &Walk) -> f64 {
+    let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
+    walk.predict(&truth).lookups.expect("r is constant in each layer").mean
+}
+
+#[test]
+fn a_walk_without_end_looks_up_the_mean_chord() {
+    // Lambertian light on both sides: 4V/S = 2D, times the mean σ̂, whatever is in the slab.
+    let layers = [(0.7, 0.3), (0.2, 0.9), (1.1, 0.6)];
+    let of = |order: &[usize]| {
+        let pieces = order.iter().map(|&i| Piece::of(layers[i].0, layers[i].1)).collect();
+        lookups(&through(Light::Diffuse, pieces))
+    };
+    let both = 0.5 * (of(&[0, 1, 2]) + of(&[2, 1, 0]));
+    assert!((both - 2.0 * 2.0).abs() < 1e-10, "{both}");
+    assert!((of(&[0, 1, 2]) - of(&[2, 1, 0])).abs() > 1e-3);
+    assert!((lookups(&through(Light::Diffuse, vec![Piece::of(1.7, 0.5)])) - 3.4).abs() < 1e-10);
+}
+
+#[test]
+fn the_law_of_the_lookups_is_poisson_without_scattering() {
+    // r = 10⁻¹² below every collision: all is null but for the rarest, and the path is D/μ₀.
+    let light = Light::Collimated(0.4);
+    let walk = Walk { albedo: 1.0, ..through(light, vec![Piece::of(1.2, 1e-12)]) };
+    let truth = cached(&walk.incidence, Known::exact(1.0), 1.0).expect("finite");
+    let law = walk.predict(&truth).lookups.expect("r is constant");
+    assert!((law.mean - 3.0).abs() < 1e-9, "{}", law.mean);
+    assert!((law.variance - 3.0).abs() < 1e-5, "{}", law.variance);
+    assert!((law.kurtosis - 3.0 - 1.0 / 3.0).abs() < 1e-2, "{}", law.kurtosis);
+}
+
+#[test]
+fn layers_of_one_kind_are_one_layer() {
+    let light = Light::Collimated(0.3);
+    let moments = |pieces: Vec<Piece>| {
+        let walk = through(light, pieces);
+        let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
+        let channels = walk.predict(&truth).channels;
+        let variances: Vec<f64> =
+            channels.iter().map(|c| c.moments.expect("r is constant").variance()).collect();
+        (variances, lookups(&walk))
+    };
+    let (whole, cut) = (
+        moments(vec![Piece::of(1.6, 0.7)]),
+        moments(vec![Piece::of(0.5, 0.7), Piece::of(0.1, 0.7), Piece::of(1.0, 0.7)]),
+    );
+    for (a, b) in whole.0.iter().zip(&cut.0) {
+        assert!((a / b - 1.0).abs() < 1e-7, "{a} {b}");
+    }
+    assert!((whole.1 / cut.1 - 1.0).abs() < 1e-11, "{} {}", whole.1, cut.1);
+}
+
+#[test]
+fn a_varying_ratio_is_averaged_to_its_error() {
+    // Weighted delta tracking: E[X^k] is the energy of the slab of albedo a^k, whatever r(z) ≤ 1.
+    let ramp = |count: usize| -> Vec<Piece> {
+        let layer = |i: usize| {
+            let at = |x: f64| (i as f64 + x) / count as f64;
+            // r from 0.2 to 1 with σ̂ = 1.5 on [0, 1]; two-point Gauss in each layer.
+            let nodes = [0.5 - 0.75f64.sqrt() / 3.0, 0.5 + 0.75f64.sqrt() / 3.0];
+            let ratios = nodes.map(|x| [0.5, 0.2 + 0.8 * at(x)]).to_vec();
+            Piece { flown: 1.5 / count as f64, ratios }
+        };
+        (0..count).map(layer).collect()
+    };
+    let graded = Walk {
+        rule: ParticleRule::Weighted,
+        depth: 0.9,
+        pieces: Pieces::Graded([ramp(12), ramp(24)]),
+        ..through(Light::Collimated(0.6), Vec::new())
+    };
+    let exact = Walk { largest_ratio: 1.0, ..graded.clone() };
+    let truth = cached(&graded.incidence, Known::exact(0.9), 0.8).expect("finite");
+    let (graded, exact) = (graded.predict(&truth), exact.predict(&truth));
+    for (graded, exact) in graded.channels.iter().zip(&exact.channels) {
+        let (graded, exact) = (graded.moments.expect("known"), exact.moments.expect("known"));
+        let difference = (graded.variance() / exact.variance() - 1.0).abs();
+        assert!(difference <= graded.error + exact.error, "{difference:e} > {:e}", graded.error);
+        assert!(graded.error < 0.01, "{:e}", graded.error);
+    }
+}
+
+#[test]
+fn a_walk_far_below_the_extinction_diverges() {
+    let of = |sampling: f64| Walk {
+        largest_ratio: 1.0 / sampling,
+        depth: 3.0,
+        ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
+    };
+    assert!(!of(1.0).diverges() && !of(0.9).diverges());
+    assert!(of(0.5).diverges() && of(0.3).diverges());
 }

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{Estimated, controls, sampling};
 use trueflight::harness::{self, case::Case, checks, suite};
-use trueflight::problems::{self, FreeFlight, Transmittance, TransmittanceCurve};
+use trueflight::problems::{self, FreeFlight, Rod, Slab, Transmittance, TransmittanceCurve};
 use trueflight::{media, phase, report};
 
 use super::Console;
@@ -58,6 +58,8 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
         (of_problem("transmittance"), Transmittance::CATALOGUE),
         (of_problem("free-flight"), FreeFlight::CATALOGUE),
         (of_problem("transmittance-curve"), TransmittanceCurve::CATALOGUE),
+        (of_problem("rod"), Rod::CATALOGUE),
+        (of_problem("slab"), Slab::CATALOGUE),
         ("problems".into(), problems::CATALOGUE),
         ("checks".into(), checks::CATALOGUE),
         ("reports".into(), report::CATALOGUE),

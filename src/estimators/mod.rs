@@ -10,6 +10,7 @@ pub mod free_flight;
 pub mod layers;
 pub mod ledger;
 pub mod packet;
+pub mod rod;
 pub mod rules;
 pub mod sampling;
 pub mod setup;

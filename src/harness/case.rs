@@ -10,7 +10,7 @@
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
 //! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
-//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `slab` | required |
+//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `slab` | required |
 //!
 //! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
 //! others need, at most `draws`.
@@ -37,7 +37,7 @@ use super::written::Usual;
 use crate::catalogue::{Domain, Page, Settings};
 use crate::estimators::Order;
 use crate::media::Body;
-use crate::problems::{self, FreeFlight, Slab, Transmittance, TransmittanceCurve};
+use crate::problems::{self, FreeFlight, Rod, Slab, Transmittance, TransmittanceCurve};
 use crate::rng::name_hash;
 
 /// A case file, read.
@@ -125,6 +125,7 @@ impl Case {
             let read = match names[index].as_str() {
                 "transmittance" => Scenario::<Transmittance>::read,
                 "free-flight" => Scenario::<FreeFlight>::read,
+                "rod" => Scenario::<Rod>::read,
                 "slab" => Scenario::<Slab>::read,
                 _ => Scenario::<TransmittanceCurve>::read,
             };

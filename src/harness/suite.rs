@@ -41,6 +41,8 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance-curve/eq21-figure-8",
     "transmittance-curve/noise-figure-5",
     "transmittance-curve/magnet",
+    "slab/magnet",
+    "slab/magnet-diffuse",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

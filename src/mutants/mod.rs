@@ -21,6 +21,7 @@ pub mod flight;
 pub mod free_flight;
 pub mod lookups;
 pub mod precision;
+pub mod rod;
 pub mod rules;
 pub mod scores;
 pub mod slab;
@@ -32,7 +33,7 @@ pub mod walk;
 pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
-use crate::problems::{FreeFlight, Problem, Slab, Transmittance, TransmittanceCurve};
+use crate::problems::{FreeFlight, Problem, Rod, Slab, Transmittance, TransmittanceCurve};
 
 pub use fault::{Fault, Honest};
 pub use streams::StreamMutant;
@@ -119,6 +120,12 @@ impl Mutable for TransmittanceCurve {
     }
 }
 
+impl Mutable for Rod {
+    fn mutants() -> Vec<Mutant<Self>> {
+        rod::mutants()
+    }
+}
+
 impl Mutable for Slab {
     fn mutants() -> Vec<Mutant<Self>> {
         slab::mutants()
@@ -134,6 +141,7 @@ pub fn all() -> Vec<About> {
     about::<Transmittance>()
         .chain(about::<FreeFlight>())
         .chain(about::<TransmittanceCurve>())
+        .chain(about::<Rod>())
         .chain(about::<Slab>())
         .collect()
 }

@@ -69,3 +69,23 @@ pub const FLIGHT_LINEAR: Target = on("free-flight/magnet", 1, "woodcock");
 pub const CURVE: Target = on("transmittance-curve/magnet", 0, "double");
 /// The curve with a control whose knots are not on the ends.
 pub const CURVE_CONTROL: Target = on("transmittance-curve/magnet", 1, "double");
+/// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
+pub const ROD_TERMINATING: Target = on("rod/magnet", 0, "terminating");
+/// `σ̂ = 1.6`.
+pub const ROD_ANALOG: Target = on("rod/magnet", 1, "analog");
+/// `σ̂ = 1.6`.
+pub const ROD_WEIGHTED: Target = on("rod/magnet", 2, "weighted");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const ROD_NON_TERMINATING: Target = on("rod/magnet", 3, "non-terminating");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const ROD_ADAPTIVE: Target = on("rod/magnet", 4, "adaptive");
+/// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
+pub const SLAB_ANALOG: Target = on("slab/magnet", 0, "analog");
+/// `σ̂ = 1.2`.
+pub const SLAB_WEIGHTED: Target = on("slab/magnet", 1, "weighted");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const SLAB_NON_TERMINATING: Target = on("slab/magnet", 2, "non-terminating");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const SLAB_ADAPTIVE: Target = on("slab/magnet", 3, "adaptive");
+/// Diffuse light, a σ̂ in steps.
+pub const SLAB_DIFFUSE: Target = on("slab/magnet-diffuse", 0, "non-terminating");

@@ -1,6 +1,7 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 pub mod free_flight;
+pub mod rod;
 pub mod slab;
 pub mod transmittance;
 pub mod transmittance_curve;
@@ -9,6 +10,7 @@ use crate::catalogue::{Catalogue, Settings, Value};
 use crate::media::{Body, Medium};
 
 pub use free_flight::FreeFlight;
+pub use rod::Rod;
 pub use slab::Slab;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
@@ -20,6 +22,7 @@ pub const CATALOGUE: Catalogue = Catalogue {
         crate::page!(transmittance),
         crate::page!(free_flight),
         crate::page!(transmittance_curve),
+        crate::page!(rod),
         crate::page!(slab),
     ],
 };
@@ -50,7 +53,7 @@ pub trait Problem: Send + Sync + Sized + 'static {
         0.0
     }
 
-    /// The distance that each channel of a draw is about.
+    /// The distance that each channel of a draw is about, for problems that are seen from the side.
     fn distances(&self) -> Vec<f64> {
         vec![self.medium().span().to]
     }

@@ -45,6 +45,21 @@ impl CountLaw {
         }
         Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
     }
+
+    /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
+    #[must_use]
+    pub fn of_factorial_moments([mean, pairs, triples, quadruples]: [f64; 4]) -> Self {
+        let variance = pairs + mean - mean * mean;
+        // A number that is all but certain leaves a variance of rounding.
+        if variance <= 1e-12 * mean * mean {
+            return Self::always(mean);
+        }
+        let raw = [mean, pairs + mean, triples + 3.0 * pairs + mean];
+        let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
+        let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
+        let kurtosis = (fourth / (variance * variance)).max(1.0);
+        Self { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
+    }
 }
 
 impl CountLaw {

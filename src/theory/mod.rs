@@ -14,6 +14,7 @@ pub mod optimum;
 pub mod particle;
 pub mod prediction;
 pub mod product;
+pub mod rod;
 pub mod rule;
 pub mod slab;
 pub mod volterra;

@@ -180,21 +180,12 @@ impl Integrals {
     /// is Poisson or certain, see [`Product::lookups`].
     #[must_use]
     pub fn count(&self) -> CountLaw {
-        let [mean, pairs, triples, quadruples] = self.lookups;
+        let mean = self.lookups[0];
         // A walk that nothing ends early makes Poisson many lookups.
         if (mean - self.flown).abs() <= 1e-13 * self.flown {
             return CountLaw::poisson(self.flown);
         }
-        let variance = pairs + mean - mean * mean;
-        // A number that is all but certain leaves a variance of rounding.
-        if variance <= 1e-12 * mean * mean {
-            return CountLaw::always(mean);
-        }
-        let raw = [mean, pairs + mean, triples + 3.0 * pairs + mean];
-        let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
-        let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
-        let kurtosis = (fourth / (variance * variance)).max(1.0);
-        CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
+        CountLaw::of_factorial_moments(self.lookups)
     }
 }
 

@@ -13,7 +13,8 @@ const BLURRED: f64 = 1e-4;
 /// The walk of a rule, for theory.
 fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
-    let ratio = |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
+    let ratio =
+        |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
     Walk {
         incidence: *setup.problem.incidence(),
         albedo: setup.problem.albedo(),
@@ -54,15 +55,9 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// What theory says of a rule. A forced walk is outside its domain, not outside theory's: there is a
-/// truth wherever an answer is asked for.
+/// What theory says of a rule; without an answer its values are no numbers, and are refused as such.
 fn predict(setup: &Setup<Slab>, rule: ParticleRule) -> Prediction {
-    let walk = walk_of(setup, rule);
-    let slab = &setup.problem;
-    match slab::cached(slab.incidence(), setup.mesh.optical_depth(), slab.albedo()) {
-        Some(truth) => walk.predict(&truth),
-        None => Prediction::unknown(&slab::walk::CHANNELS),
-    }
+    walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
 }
 
 /// The plumbing of a page: all that differs is the rule, as in `walks!(ParticleRule::Adaptive)`.
@@ -99,7 +94,6 @@ macro_rules! walks {
         }
     };
 }
-use walks;
 
 estimators! {
     Slab:

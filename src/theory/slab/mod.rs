@@ -54,6 +54,14 @@ pub struct Answer {
     pub score: Known,
 }
 
+impl Answer {
+    /// No answer.
+    pub const UNKNOWN: Self = {
+        let nothing = Known { value: f64::NAN, error: f64::INFINITY };
+        Self { reflected: nothing, transmitted: nothing, score: nothing }
+    };
+}
+
 /// How closely a slab is looked at.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Resolution {

@@ -1,0 +1,75 @@
+//! Walks of the single particle model through a rod.
+
+pub mod walk;
+
+use crate::estimators::{Refusal, Setup, estimators};
+use crate::problems::Rod;
+use crate::theory::ParticleRule;
+use crate::theory::rod;
+
+/// Whether a rule exists on a rod, reaches all of it, and has a variance there.
+fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
+    setup.require_coverage()?;
+    if !rule.needs().is_empty() {
+        let albedo = setup.problem.albedo();
+        let limit = |t: f64| rule.limits(albedo.value(t))[1];
+        setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+    }
+    let mesh = &setup.mesh;
+    match rod::diverges(mesh, &setup.problem, &setup.sampling, rule) {
+        Ok(None) => Ok(()),
+        Ok(Some(at)) => Err(Refusal::Inequality {
+            needs: "a finite variance",
+            found: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends".to_owned(),
+            at,
+        }),
+        Err(_) => Err(Refusal::mismatch(
+            "a rod that theory can cut into 1e4 steps",
+            "σ̂ or σ_t is too large on it",
+        )),
+    }
+}
+
+/// The plumbing of a page: all that differs is the rule, as in `walks!(ParticleRule::Adaptive)`.
+macro_rules! walks {
+    ($rule:expr) => {
+        const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+
+        fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
+            Some(Self)
+        }
+
+        fn domain(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Rod>,
+        ) -> Result<(), $crate::estimators::Refusal> {
+            $crate::estimators::rod::realisable(setup, $rule)
+        }
+
+        fn predict(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Rod>,
+        ) -> $crate::theory::Prediction {
+            $crate::theory::rod::predict(&setup.mesh, &setup.problem, &setup.sampling, $rule)
+        }
+
+        #[inline(always)]
+        fn draw<M: $crate::media::Extinction>(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Rod>,
+            medium: &M,
+            rng: &mut $crate::rng::Stream,
+        ) -> $crate::estimators::Draw<$crate::problems::rod::Values> {
+            $crate::estimators::rod::walk::draw(&$rule, setup, medium, rng)
+        }
+    };
+}
+
+estimators! {
+    Rod:
+    terminating::Terminating,
+    non_terminating::NonTerminating,
+    adaptive::Adaptive,
+    analog::Analog,
+    weighted::Weighted,
+}

@@ -1,0 +1,224 @@
+//! What a rod sends back and lets through: light that scatters forward and backward along a line.
+//!
+//! ```text
+//! a particle enters at the beginning, going forward; where it collides (rate σ_t) it is scattered
+//! with probability a, and then goes on forward with probability p_f, else it turns round
+//! reflectance R: it leaves at the beginning;  transmittance T: it leaves at the end
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
+//! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
+//! | `albedo` | a in [0, 1]: a number, or a field, see below | required unless swept |
+//! | `forward` | p_f in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
+//! | `absorbed` | whether the absorbed energy is a channel, scored at every collision: Σ w r (1 − a) | false |
+//! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
+//! | `sampling` | σ̂ of every estimator without its own | required unless swept |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! A field of numbers along the rod is `{ piecewise-linear = { knots, values } }` or
+//! `{ piecewise-constant = { breaks, values } }`, with distances along the ray; outside its knots the
+//! first and the last value go on. In empty space the particle flies on, so that only the part of a
+//! ray inside the field's bounds is the rod.
+//!
+//! The answer is exact. Where a and p_f are constant it is a closed form that depends on the optical
+//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. Of `a = 1`
+//! nothing is absorbed: that channel, and any other whose answer is 0, is refused.
+//!
+//! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
+//! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
+
+use super::{Problem, sweeps_albedo};
+use crate::catalogue::{Domain, Settings, Value};
+use crate::media::piecewise_constant::read_steps;
+use crate::media::piecewise_linear::read_lines;
+use crate::media::{Body, Medium, Piecewise};
+
+/// The most channels that a draw can have.
+pub const MOST: usize = 16;
+/// The highest order of scattering that has a channel of its own.
+pub const HIGHEST_ORDER: u64 = 6;
+
+/// What a channel is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Seen {
+    /// The weight that leaves at the beginning after so many scatterings.
+    ReflectedBy(usize),
+    /// The weight that leaves at the end after so many scatterings.
+    TransmittedBy(usize),
+    /// The energy absorbed on the way.
+    Absorbed,
+    /// The weight that leaves at the beginning.
+    Reflected,
+    /// The weight that leaves at the end.
+    Transmitted,
+}
+
+impl Seen {
+    /// The channel's name.
+    #[must_use]
+    pub fn name(self) -> String {
+        match self {
+            Self::ReflectedBy(order) => format!("reflectance, order {order}"),
+            Self::TransmittedBy(order) => format!("transmittance, order {order}"),
+            Self::Absorbed => "absorbed".to_owned(),
+            Self::Reflected => "reflectance".to_owned(),
+            Self::Transmitted => "transmittance".to_owned(),
+        }
+    }
+}
+
+/// A rod.
+pub struct Rod {
+    medium: Medium,
+    albedo: Piecewise,
+    forward: Piecewise,
+    channels: Vec<Seen>,
+}
+
+/// The values of one draw, one per channel.
+#[derive(Debug, Clone, Copy)]
+pub struct Values {
+    /// The values; the first `count` are meant.
+    pub at: [f64; MOST],
+    /// How many.
+    pub count: usize,
+}
+
+impl AsRef<[f64]> for Values {
+    fn as_ref(&self) -> &[f64] {
+        &self.at[..self.count]
+    }
+}
+
+impl Rod {
+    /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
+    #[must_use]
+    pub fn new(
+        medium: Medium,
+        albedo: &Piecewise,
+        forward: &Piecewise,
+        channels: Vec<Seen>,
+    ) -> Self {
+        let span = medium.span();
+        Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels }
+    }
+
+    /// a, as a function of the distance.
+    #[must_use]
+    pub fn albedo(&self) -> &Piecewise {
+        &self.albedo
+    }
+
+    /// p_f, as a function of the distance.
+    #[must_use]
+    pub fn forward(&self) -> &Piecewise {
+        &self.forward
+    }
+
+    /// What the channels of a draw are about, the last two always reflectance and transmittance.
+    #[must_use]
+    pub fn channels(&self) -> &[Seen] {
+        &self.channels
+    }
+}
+
+/// The channels that a case asks for.
+#[must_use]
+pub fn channels(absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
+    let mut channels = Vec::new();
+    if let Some(highest) = orders {
+        channels.push(Seen::TransmittedBy(0));
+        for order in 1..=highest {
+            channels.extend([Seen::ReflectedBy(order), Seen::TransmittedBy(order)]);
+        }
+    }
+    if absorbed {
+        channels.push(Seen::Absorbed);
+    }
+    channels.extend([Seen::Reflected, Seen::Transmitted]);
+    channels
+}
+
+impl Problem for Rod {
+    type Value = Values;
+
+    #[allow(clippy::cast_possible_truncation)] // at most six
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let albedo = share(settings, "albedo", sweeps_albedo(settings).then_some(0.5));
+        let forward = share(settings, "forward", Some(0.5));
+        let absorbed = settings.flag_or("absorbed", false);
+        let orders = if settings.has("orders") {
+            settings.count("orders", 0..=HIGHEST_ORDER).map(|highest| Some(highest as usize))
+        } else {
+            Some(None)
+        };
+        let medium = body?.medium();
+        let (albedo, forward) = (albedo?.on(&medium), forward?.on(&medium));
+        Some(Self::new(medium, &albedo, &forward, channels(absorbed?, orders?)))
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let albedo = Piecewise::constant(albedo, self.medium.span());
+        let (medium, channels) = (self.medium.clone(), self.channels.clone());
+        Some(Self::new(medium, &albedo, &self.forward, channels))
+    }
+}
+
+/// A number in `[0, 1]`, the same everywhere or not.
+enum Share {
+    Everywhere(f64),
+    Varying(Piecewise),
+}
+
+impl Share {
+    fn on(self, medium: &Medium) -> Piecewise {
+        match self {
+            Self::Everywhere(value) => Piecewise::constant(value, medium.span()),
+            Self::Varying(pieces) => pieces,
+        }
+    }
+}
+
+/// Reads a share, a number or a field; `default` where the key is absent.
+fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Share> {
+    let value = settings.entry(key).map(|entry| &entry.node.value);
+    if !matches!(value, Some(Value::Table(_))) {
+        let number = match default {
+            Some(default) => settings.number_or(key, Domain::Unit, default),
+            None => settings.number(key, Domain::Unit),
+        };
+        return number.map(Share::Everywhere);
+    }
+    let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
+    let (index, field) = settings.table(key)?.choice(&names)?;
+    let pieces = if index == 0 { read_steps(&field) } else { read_lines(&field) };
+    field.close();
+    let pieces = pieces?;
+    if pieces.corner_values().any(|value| value > 1.0) {
+        let message = format!("`{key}` is a share, and exceeds 1");
+        field.fault("values", message, "each value is between 0 and 1");
+        return None;
+    }
+    Some(Share::Varying(pieces))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_channels_are_what_leaves() {
+        assert_eq!(channels(false, None), [Seen::Reflected, Seen::Transmitted]);
+        let all = channels(true, Some(6));
+        assert_eq!(all.len(), MOST);
+        assert_eq!(all[MOST - 2..], [Seen::Reflected, Seen::Transmitted]);
+        assert_eq!(all[2].name(), "transmittance, order 1");
+    }
+}

@@ -1,0 +1,287 @@
+//! A rod cut into steps, and its two-stream equations on them.
+//!
+//! ```text
+//! m₊' = A m₊ − B m₋ − s₊,   m₋' = −A m₋ + B m₊ + s₋
+//! ```
+//!
+//! m₊(x) and m₋(x) are what a particle of weight 1 at x is worth if it goes forward or backward, A is
+//! the rate at which it stops being what it was, B the rate at which it turns round, and s what it
+//! earns on the way. The implicit midpoint rule makes every step a layer with reflection r, equal
+//! from both sides, transmission t and emission e:
+//!
+//! ```text
+//! D = (1 + a)² − b²,  t = (1 − a² + b²)/D,  r = 2b/D,  e± = h((1 + a)s± + b s∓)/D,  a = hA/2, b = hB/2
+//! ```
+//!
+//! It is symmetric, so that its error is a series in h², which Romberg's scheme removes term by term.
+
+use super::super::particle::{Odds, ParticleRule};
+use super::super::{Mesh, mesh::Panel};
+use crate::media::Piecewise;
+use crate::numeric::Span;
+use crate::problems::{Problem, Rod};
+
+/// The largest `h σ̂(1 + Q₂ + S₂)` of a step of the coarsest grid.
+const COARSEST: f64 = 0.5;
+/// More steps than this on the coarsest grid are more than theory can do.
+const MOST: f64 = 1e4;
+
+/// The middle of a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Step {
+    /// The step's end.
+    pub end: f64,
+    /// h.
+    pub width: f64,
+    /// σ̂.
+    pub sampling: f64,
+    /// `r (1 − a)`: what a collision absorbs of the weight.
+    pub absorbed: f64,
+    /// p_f.
+    pub forward: f64,
+    /// What happens at a collision.
+    pub odds: Odds,
+}
+
+impl Step {
+    /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
+    #[inline]
+    pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
+        let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
+        let backward = 1.0 - self.forward;
+        let [plus, minus] = worth;
+        [
+            q * plus + s * (self.forward * plus + backward * minus),
+            q * minus + s * (self.forward * minus + backward * plus),
+        ]
+    }
+
+    /// A and B of the k-th moment.
+    #[inline]
+    pub fn rates(&self, k: i32) -> [f64; 2] {
+        let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
+        [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
+    }
+
+    /// The same of the absolute values, which converge where the moment exists.
+    #[inline]
+    fn absolute_rates(&self, k: i32) -> [f64; 2] {
+        let (q, s) = (self.odds.transmitted(k).abs(), self.odds.scattered(k).abs());
+        [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
+    }
+}
+
+/// Steps from the beginning of the support to its end.
+pub struct Grid {
+    steps: Vec<Step>,
+}
+
+/// A walk through a rod, for theory.
+pub struct Walk<'a> {
+    /// The rod.
+    pub rod: &'a Rod,
+    /// σ̂; `None` for the walk of the light itself, which flies through σ_t.
+    pub sampling: Option<&'a Piecewise>,
+    /// What happens at a collision.
+    pub rule: ParticleRule,
+    panels: Vec<(Span, usize)>,
+}
+
+impl<'a> Walk<'a> {
+    /// Cuts the rod where a, p_f or σ̂ has a knot and where the rule changes; `None` where that
+    /// makes more steps than theory can do.
+    #[must_use]
+    pub fn new(
+        mesh: &Mesh,
+        rod: &'a Rod,
+        sampling: Option<&'a Piecewise>,
+        rule: ParticleRule,
+    ) -> Option<Self> {
+        let mut cuts = rod.albedo().knots().to_vec();
+        cuts.extend(rod.forward().knots());
+        if let Some(sampling) = sampling {
+            cuts.extend(sampling.knots());
+        }
+        let cut = mesh.refined(&cuts, &|_, _| Vec::new());
+        let mut kinks = Vec::new();
+        if let Some(sampling) = sampling {
+            kinks.extend(cut.roots(|t, sigma| sigma - sampling.value(t)));
+            if rule == ParticleRule::Adaptive {
+                let limit = |t: f64| 0.5 * (1.0 + rod.albedo().value(t));
+                kinks.extend(cut.roots(|t, sigma| sigma * limit(t) - sampling.value(t)));
+            }
+        }
+        let cut = cut.refined(&kinks, &|_, _| Vec::new());
+        let mut walk = Self { rod, sampling, rule, panels: Vec::new() };
+        let mut sum = 0.0;
+        for panel in cut.panels() {
+            let steps = walk.steps_of(panel);
+            sum += steps;
+            // What is no number stops here too.
+            if sum.is_nan() || sum > MOST {
+                return None;
+            }
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
+            walk.panels.push((panel.span, steps as usize));
+        }
+        Some(walk)
+    }
+
+    fn steps_of(&self, panel: Panel<'_>) -> f64 {
+        let at = panel.t.iter().zip(panel.extinction);
+        let rates = at.map(|(&t, &sigma)| {
+            let step = self.at(t, sigma);
+            let moved = step.odds.transmitted(2).abs() + step.odds.scattered(2).abs();
+            step.sampling * (1.0 + moved)
+        });
+        let fastest = rates.fold(0.0, f64::max);
+        (panel.span.length() * fastest / COARSEST).ceil().max(2.0)
+    }
+
+    fn at(&self, t: f64, extinction: f64) -> Step {
+        let (albedo, forward) = (self.rod.albedo().value(t), self.rod.forward().value(t));
+        let sampling = self.sampling.map_or(extinction, |sampling| sampling.value(t));
+        // Where both vanish there are no collisions, and any finite ratio will do.
+        let ratio = match self.sampling {
+            None => 1.0,
+            Some(_) if extinction == 0.0 => 0.0,
+            Some(_) => extinction / sampling,
+        };
+        let odds = self.rule.odds(ratio, albedo);
+        let absorbed = ratio * (1.0 - albedo);
+        Step { end: t, width: 0.0, sampling, absorbed, forward, odds }
+    }
+
+    /// The grid whose steps are so many times shorter than the coarsest grid's.
+    #[must_use]
+    pub fn grid(&self, finer: usize) -> Grid {
+        let mut steps = Vec::new();
+        for &(span, count) in &self.panels {
+            let count = count * finer;
+            let width = span.length() / count as f64;
+            let middles: Vec<f64> =
+                (0..count).map(|i| span.from + width * (i as f64 + 0.5)).collect();
+            let extinctions = self.rod.medium().extinctions(&middles);
+            let pairs = middles.iter().zip(&extinctions).enumerate();
+            steps.extend(pairs.map(|(i, (&t, &sigma))| {
+                let end = span.from + width * (i + 1) as f64;
+                Step { end, width, ..self.at(t, sigma) }
+            }));
+        }
+        Grid { steps }
+    }
+
+    /// How many steps the coarsest grid has.
+    #[must_use]
+    pub fn coarsest(&self) -> usize {
+        self.panels.iter().map(|panel| panel.1).sum()
+    }
+}
+
+/// m₊ and m₋ at the ends of all steps.
+#[derive(Debug, Clone)]
+pub struct Worth(Vec<[f64; 2]>);
+
+impl Worth {
+    /// In the middle of a step.
+    #[inline]
+    #[must_use]
+    pub fn middle(&self, step: usize) -> [f64; 2] {
+        let (from, to) = (self.0[step], self.0[step + 1]);
+        [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])]
+    }
+
+    /// Of the particle that enters.
+    #[must_use]
+    pub fn entering(&self) -> f64 {
+        self.0[0][0]
+    }
+}
+
+/// A step as a layer.
+struct Layer {
+    through: f64,
+    back: f64,
+    /// `h(1 + a)/D` and `h b/D`: what of a source leaves the way it goes, and the other way.
+    emission: [f64; 2],
+}
+
+impl Layer {
+    fn new([a, b]: [f64; 2], width: f64) -> Self {
+        let (a, b) = (0.5 * width * a, 0.5 * width * b);
+        let scale = 1.0 / ((1.0 + (a - b)) * (1.0 + (a + b)));
+        Self {
+            through: (1.0 - (a - b) * (a + b)) * scale,
+            back: 2.0 * b * scale,
+            emission: [width * (1.0 + a) * scale, width * b * scale],
+        }
+    }
+}
+
+impl Grid {
+    /// The steps.
+    #[must_use]
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
+    }
+
+    /// Where the k-th moment diverges: the distance that would have to be the rod's end for it to
+    /// exist. `None` where it exists.
+    ///
+    /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
+    /// where ρr reaches 1.
+    #[must_use]
+    pub fn critical(&self, k: i32) -> Option<f64> {
+        let mut passed = 0.0;
+        for step in &self.steps {
+            let layer = Layer::new(step.absolute_rates(k), step.width);
+            let echo = 1.0 - passed * layer.back;
+            if !(echo > 0.0 && layer.through > 0.0 && layer.back >= 0.0) {
+                return Some(step.end);
+            }
+            passed = layer.back + layer.through * layer.through * passed / echo;
+        }
+        None
+    }
+
+    /// Solves the equations with given rates and sources, where leaving at the beginning and at the
+    /// end is worth `ends`; `None` where the echoes diverge.
+    pub fn solve(
+        &self,
+        rates: impl Fn(&Step) -> [f64; 2],
+        source: impl Fn(usize, &Step) -> [f64; 2],
+        ends: [f64; 2],
+    ) -> Option<Worth> {
+        let n = self.steps.len();
+        // m₊ = ρ m₋ + η at the beginning of each step, from the end of the rod backwards.
+        let mut beyond = vec![[0.0, ends[1]]; n + 1];
+        let mut layers = Vec::with_capacity(n);
+        for (i, step) in self.steps.iter().enumerate().rev() {
+            let layer = Layer::new(rates(step), step.width);
+            let [plus, minus] = source(i, step);
+            let [straight, turned] = layer.emission;
+            let emitted = [straight * plus + turned * minus, straight * minus + turned * plus];
+            let [rho, eta] = beyond[i + 1];
+            let echo = 1.0 - layer.back * rho;
+            if !(echo > 0.0) {
+                return None;
+            }
+            let minus = (layer.back * eta + emitted[1]) / echo;
+            beyond[i] = [
+                layer.back + layer.through * layer.through * rho / echo,
+                emitted[0] + layer.through * (eta + rho * minus),
+            ];
+            layers.push((layer, emitted[1]));
+        }
+        let mut worth = Vec::with_capacity(n + 1);
+        let mut minus = ends[0];
+        for (i, (layer, emitted)) in layers.iter().rev().enumerate() {
+            let [rho, eta] = beyond[i];
+            worth.push([rho * minus + eta, minus]);
+            let [rho, eta] = beyond[i + 1];
+            minus = (layer.through * minus + layer.back * eta + emitted) / (1.0 - layer.back * rho);
+        }
+        worth.push([beyond[n][0] * minus + ends[1], minus]);
+        Some(Worth(worth))
+    }
+}

@@ -1,0 +1,232 @@
+//! The rod: what comes back and what gets through, and all that theory says of walks in it.
+//!
+//! Truths are closed forms where the albedo and the phase are constant, and elsewhere the mean of the
+//! light's own walk (σ̂ = σ_t, analog) by the two-stream equations. Moments of every rule at any σ̂(x)
+//! solve the same equations with other rates.
+//!
+//! A moment may diverge: where the particle's weight grows faster than it leaves, the echoes between
+//! two parts of the rod add up to infinity. The length at which that begins is the moment's critical
+//! length. An experiment whose second moment diverges has no variance and is refused; where only the
+//! fourth diverges the mean is tested and the variance is not.
+//!
+//! Source: derived from the rules of L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády,
+//! *Unbiased Light Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum
+//! 36 (2017), sections 3.1–3.3 and 4.1. The criticality of second moments is that of T. E. Booth and
+//! E. D. Cashwell, *Analysis of Error in Monte Carlo Transport Calculations*, Nuclear Science and
+//! Engineering 71 (1979).
+
+mod closed;
+pub mod grid;
+pub mod moments;
+
+use self::grid::Walk;
+use self::moments::{Joint, POWERS};
+use super::particle::ParticleRule;
+use super::prediction::Covariance;
+use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use crate::media::Piecewise;
+use crate::numeric::{Known, Span};
+use crate::problems::rod::Seen;
+use crate::problems::{Problem, Rod};
+
+/// Grids on which divergence is looked for are so much finer than the coarsest.
+const FINER: usize = 16;
+
+/// The exact answer of every channel; `None` where the rod has more steps than theory can do.
+#[must_use]
+pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
+    let support = mesh.support();
+    let depth = rod.medium().optical_depth(support);
+    let share = |field: &Piecewise| one_value(field, support);
+    let closed = share(rod.albedo()).zip(share(rod.forward()));
+    let closed = closed.map(|(albedo, forward)| closed::leaving(depth, albedo, forward));
+    let needed = |seen: &&Seen| closed.is_none() || !has_closed_form(**seen);
+    let open: Vec<Seen> = rod.channels().iter().filter(needed).copied().collect();
+    let mut solved = Vec::new();
+    if !open.is_empty() {
+        let walk = Walk::new(mesh, rod, None, ParticleRule::Analog)?;
+        let numbers = moments::romberg(&walk, &|grid| {
+            open.iter().map(|&seen| moments::power(grid, seen, 1)).collect()
+        });
+        solved = numbers?;
+    }
+    let mut solved = solved.into_iter();
+    let known = rod.channels().iter().map(|seen| match (closed, seen) {
+        (Some([r, _]), Seen::Reflected) => Some(r),
+        (Some([_, t]), Seen::Transmitted) => Some(t),
+        (Some([r, t]), Seen::Absorbed) => {
+            Some(Known::new((1.0 - r.value) - t.value, r.error + t.error + f64::EPSILON))
+        }
+        _ => solved.next().map(|[value, error]| Known::new(value, error)),
+    });
+    known.collect()
+}
+
+fn has_closed_form(seen: Seen) -> bool {
+    matches!(seen, Seen::Reflected | Seen::Transmitted | Seen::Absorbed)
+}
+
+/// The value of a field that has only one on a stretch.
+fn one_value(field: &Piecewise, span: Span) -> Option<f64> {
+    field.on(span).single_value()
+}
+
+/// Where the second moment of a walk diverges; `None` where it exists, and an error without an answer.
+///
+/// # Errors
+///
+/// The rod has more steps than theory can do.
+pub fn diverges(
+    mesh: &Mesh,
+    rod: &Rod,
+    sampling: &Piecewise,
+    rule: ParticleRule,
+) -> Result<Option<f64>, TooLong> {
+    let walk = Walk::new(mesh, rod, Some(sampling), rule).ok_or(TooLong)?;
+    Ok(walk.grid(FINER).critical(2))
+}
+
+/// A walk that is too long for theory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TooLong;
+
+/// What the walk of a rule through σ̂ is predicted to do; the truth alone where [`diverges`] says that
+/// it has no variance, and not even that where it says nothing.
+#[must_use]
+pub fn predict(mesh: &Mesh, rod: &Rod, sampling: &Piecewise, rule: ParticleRule) -> Prediction {
+    let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
+    let truth = truth(mesh, rod).unwrap_or_else(unknown);
+    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Found::of(&walk));
+    let channel = |(index, (seen, &truth)): (usize, (&Seen, &Known))| {
+        let raw = found.as_ref().map(|found| &found.raw[index]);
+        let moments = raw.map(|raw| central(truth, raw));
+        let (name, tails) = (seen.name(), raw.map_or(Tails::LIGHT, tails));
+        Channel { name, moments, ..Channel::unbiased(truth, Moments::certain(1.0), tails) }
+    };
+    let channels = rod.channels().iter().zip(&truth).enumerate().map(channel);
+    Prediction {
+        channels: channels.collect(),
+        lookups: found.as_ref().map(Found::lookups),
+        layers: None,
+        random_numbers: None,
+        law: None,
+        covariances: found
+            .as_ref()
+            .map_or_else(Vec::new, |found| covariances(rod.channels(), &truth, found)),
+        increments: Vec::new(),
+        stable_share: None,
+    }
+}
+
+/// Raw moments of all channels.
+struct Found {
+    /// `E[X^k]` of each channel for the powers of [`POWERS`], with an absolute error; infinite where
+    /// it diverges.
+    raw: Vec<[[f64; 2]; POWERS.len()]>,
+    /// Factorial moments of the number of lookups.
+    lookups: [f64; 4],
+    /// With the energy absorbed, where that is a channel and the moments exist.
+    joint: Option<Joint>,
+}
+
+impl Found {
+    fn of(walk: &Walk<'_>) -> Option<Self> {
+        let fine = walk.grid(FINER);
+        if fine.critical(2).is_some() {
+            return None;
+        }
+        let channels = walk.rod.channels();
+        let (fourth, eighth) = (fine.critical(4).is_none(), fine.critical(8).is_none());
+        let exists = |k: i32| match k {
+            1 | 2 => true,
+            3 | 4 => fourth,
+            _ => eighth,
+        };
+        let powers: Vec<i32> = POWERS.into_iter().filter(|&k| exists(k)).collect();
+        let is_joint = fourth && channels.contains(&Seen::Absorbed);
+        let numbers = moments::romberg(walk, &|grid| {
+            let mut numbers = moments::lookups(grid)?.to_vec();
+            for &seen in channels {
+                for &k in &powers {
+                    numbers.push(moments::power(grid, seen, k)?);
+                }
+            }
+            if is_joint {
+                numbers.extend(moments::joint(grid, true)?.as_flattened());
+            }
+            Some(numbers)
+        })?;
+        let mut numbers = numbers.into_iter();
+        let mut next = || numbers.next().unwrap_or([f64::INFINITY; 2]);
+        let lookups = std::array::from_fn(|_| next()[0]);
+        let mut of_channel = |_: &Seen| {
+            POWERS.map(|k| if exists(k) { next() } else { [f64::INFINITY, f64::INFINITY] })
+        };
+        let raw = channels.iter().map(&mut of_channel).collect();
+        let joint = is_joint.then(|| std::array::from_fn(|_| std::array::from_fn(|_| next()[0])));
+        Some(Self { raw, lookups, joint })
+    }
+
+    fn lookups(&self) -> CountLaw {
+        CountLaw::of_factorial_moments(self.lookups)
+    }
+}
+
+/// Central moments in units of the truth.
+fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
+    let m = truth.value;
+    let [_, [two, e2], [three, e3], [four, e4], _] = *raw;
+    let variance = two - m * m;
+    let relative = [
+        variance / (m * m),
+        if three.is_finite() {
+            (three - 3.0 * m * two + 2.0 * m.powi(3)) / m.powi(3)
+        } else {
+            three
+        },
+        if four.is_finite() {
+            (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4)
+        } else {
+            four
+        },
+    ];
+    let error = (e2 + 2.0 * m * truth.error) / variance;
+    let fourth = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2) / (relative[2] * m.powi(4));
+    let error = if four.is_finite() { error.max(fourth) } else { error };
+    Moments { scale: m, relative, error }
+}
+
+/// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.
+fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
+    let [_, [two, _], _, [four, _], [eight, _]] = *raw;
+    Tails {
+        rare_event_size: four / (two * two),
+        eighth_moment_ratio: if eight.is_finite() { eight / (four * four) } else { f64::INFINITY },
+    }
+}
+
+/// The covariances of neighbouring channels. A particle leaves at one end and after one number of
+/// scatterings: the products of such channels are 0.
+fn covariances(channels: &[Seen], truth: &[Known], found: &Found) -> Vec<Covariance> {
+    let mut covariances = Vec::new();
+    for (first, pair) in channels.windows(2).enumerate() {
+        let means = [truth[first].value, truth[first + 1].value];
+        let squares = [found.raw[first][1][0], found.raw[first + 1][1][0]];
+        let joint = match (pair, found.joint) {
+            ([Seen::Absorbed, _], Some(joint)) => joint,
+            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed], _) => continue,
+            _ => [[0.0; 2]; 2],
+        };
+        let [a, b] = means;
+        let [[ab, abb], [aab, aabb]] = joint;
+        let value = ab - a * b;
+        let square = aabb - 2.0 * b * aab - 2.0 * a * abb
+            + 4.0 * a * b * ab
+            + b * b * squares[0]
+            + a * a * squares[1]
+            - 3.0 * a * a * b * b;
+        let variance = square - value * value;
+        covariances.push(Covariance { pair: [first, first + 1], value, variance });
+    }
+    covariances
+}

@@ -1,0 +1,185 @@
+//! Every moment of a walk through a rod, from its two-stream equations.
+//!
+//! With `Q_k` and `S_k` of a rule (see `particle`) and `c = r(1 − a)`, the particle's worth to the
+//! k-th power solves the equations of `grid` with
+//!
+//! ```text
+//! A_k = σ̂(1 − Q_k − S_k p_f),  B_k = σ̂ S_k p_b
+//! reflectance^k, transmittance^k:  no source; leaving is worth 1 at that end
+//! of scattering order n:           A = σ̂(1 − Q_k), B = 0, source σ̂ S_k(p_f, p_b) of order n − 1
+//! Y^j X^k, Y the absorbed energy:  source σ̂ Σ_{i<j} (j over i) c^{j−i} (Q, S)_{i+k} of Y^i X^k
+//! M(M − 1)…(M − n + 1), M lookups: A₀, B₀, source n σ̂ (Q, S)₀ of the one before, and n σ̂ for n = 1
+//! ```
+//!
+//! Each is the expectation over what the next collision does; terms with different powers of the
+//! weight never mix, which is why the equations close.
+
+use super::grid::{Grid, Step, Walk, Worth};
+use crate::problems::rod::Seen;
+
+/// The powers whose means are found: those of the moments, and the eighth for their tails.
+pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
+/// The finest grid has steps `2^LEVELS` times shorter than the coarsest.
+const LEVELS: usize = 6;
+/// More steps than this are not solved.
+const MOST_STEPS: usize = 200_000;
+/// Where two estimates agree to this, no finer grid is asked.
+const AGREEMENT: f64 = 2e-14;
+/// What rounding adds, relative.
+const ROUNDING: f64 = 1e-13;
+
+/// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
+pub type Joint = [[f64; 2]; 2];
+
+/// A list of numbers that a grid yields: the same numbers on every grid.
+pub type Numbers<'f> = dyn Fn(&Grid) -> Option<Vec<f64>> + 'f;
+
+/// The numbers that finer and finer grids tend to, each with a bound on its absolute error; `None`
+/// where a grid has no answer.
+#[must_use]
+pub fn romberg(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> {
+    let mut before: Vec<Vec<f64>> = Vec::new();
+    let mut finer = 1;
+    for level in 0..=LEVELS {
+        let Some(found) = numbers(&walk.grid(finer)) else {
+            // Steps that are too long may find echoes that finer ones do not.
+            before.clear();
+            finer *= 2;
+            continue;
+        };
+        let mut row = vec![found];
+        let mut factor = 1.0;
+        for coarse in &before {
+            factor *= 4.0;
+            let fine = &row[row.len() - 1];
+            let better = fine.iter().zip(coarse).map(|(f, c)| f + (f - c) / (factor - 1.0));
+            row.push(better.collect());
+        }
+        let best = &row[row.len() - 1];
+        if let Some(last) = before.last() {
+            let error = |(x, y): (&f64, &f64)| (x - y).abs();
+            let agree = best.iter().zip(last).all(|pair| error(pair) <= AGREEMENT * pair.0.abs());
+            let no_finer = level == LEVELS || 2 * finer * walk.coarsest() > MOST_STEPS;
+            if agree || no_finer {
+                let bounded = best
+                    .iter()
+                    .zip(last)
+                    .map(|pair| [*pair.0, error(pair) + ROUNDING * pair.0.abs()]);
+                return Some(bounded.collect());
+            }
+        }
+        before = row;
+        finer *= 2;
+    }
+    None
+}
+
+fn nothing(_: usize, _: &Step) -> [f64; 2] {
+    [0.0; 2]
+}
+
+/// The worth of leaving at one end, to the k-th power of the weight.
+fn leaving(grid: &Grid, k: i32, ends: [f64; 2]) -> Option<Worth> {
+    grid.solve(|step| step.rates(k), nothing, ends)
+}
+
+const BEGINNING: [f64; 2] = [1.0, 0.0];
+const END: [f64; 2] = [0.0, 1.0];
+
+/// `E[X^k]` of a channel.
+#[must_use]
+pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
+    let worth = match seen {
+        Seen::Reflected => leaving(grid, k, BEGINNING)?,
+        Seen::Transmitted => leaving(grid, k, END)?,
+        Seen::ReflectedBy(order) => by_order(grid, k, BEGINNING, order)?,
+        Seen::TransmittedBy(order) => by_order(grid, k, END, order)?,
+        Seen::Absorbed => absorbed_times(grid, usize::try_from(k).ok()?, None)?.pop()?,
+    };
+    Some(worth.entering())
+}
+
+fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Worth> {
+    let rates = |step: &Step| [step.sampling * (1.0 - step.odds.transmitted(k)), 0.0];
+    let mut worth = grid.solve(rates, nothing, ends)?;
+    for _ in 0..order {
+        let source = |i: usize, step: &Step| {
+            let [plus, minus] = worth.middle(i);
+            let scattered = step.sampling * step.odds.scattered(k);
+            let backward = 1.0 - step.forward;
+            [
+                scattered * (step.forward * plus + backward * minus),
+                scattered * (step.forward * minus + backward * plus),
+            ]
+        };
+        worth = grid.solve(rates, source, [0.0; 2])?;
+    }
+    Some(worth)
+}
+
+/// `Y^i X^k` for i = 0 … j, `X^k` being what leaves at one end to the power k, or 1.
+fn absorbed_times(grid: &Grid, j: usize, end: Option<([f64; 2], i32)>) -> Option<Vec<Worth>> {
+    let k = end.map_or(0, |(_, k)| k);
+    let mut found = Vec::new();
+    if let Some((ends, k)) = end {
+        found.push(leaving(grid, k, ends)?);
+    }
+    for power in found.len()..=j {
+        if power == 0 {
+            // Worth 1 whatever happens.
+            found.push(grid.solve(|_| [0.0; 2], nothing, [1.0; 2])?);
+            continue;
+        }
+        let source = |at: usize, step: &Step| {
+            let mut sum = [0.0; 2];
+            let mut ways = 1.0;
+            for (i, worth) in (0_i32..).zip(&found) {
+                let left = i32::try_from(power).unwrap_or(i32::MAX) - i;
+                let share = step.sampling * ways * step.absorbed.powi(left);
+                let order = i + k;
+                // Of weight 1 to the power 0 all is left, whatever happens to the particle.
+                let middle = worth.middle(at);
+                let after = if order == 0 { middle } else { step.after(order, middle) };
+                sum = [sum[0] + share * after[0], sum[1] + share * after[1]];
+                ways *= f64::from(left) / f64::from(i + 1);
+            }
+            sum
+        };
+        let order = i32::try_from(power).ok()? + k;
+        let worth = grid.solve(|step| step.rates(order), source, [0.0; 2])?;
+        found.push(worth);
+    }
+    Some(found)
+}
+
+/// See [`Joint`]; what leaves at the beginning is reflectance.
+#[must_use]
+pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
+    let ends = if reflected { BEGINNING } else { END };
+    let mut joint = [[0.0; 2]; 2];
+    for k in 1..=2 {
+        let found = absorbed_times(grid, 2, Some((ends, k)))?;
+        let place = usize::try_from(k - 1).ok()?;
+        joint[0][place] = found[1].entering();
+        joint[1][place] = found[2].entering();
+    }
+    Some(joint)
+}
+
+/// The factorial moments `E[M(M − 1)…(M − n + 1)]` of the number of lookups, n = 1 … 4.
+#[must_use]
+pub fn lookups(grid: &Grid) -> Option<[f64; 4]> {
+    let mut found = [0.0; 4];
+    let mut worth: Option<Worth> = None;
+    for (n, moment) in (1_i32..).zip(&mut found) {
+        let source = |at: usize, step: &Step| {
+            let rate = f64::from(n) * step.sampling;
+            let after = worth.as_ref().map_or([1.0; 2], |worth| step.after(0, worth.middle(at)));
+            [rate * after[0], rate * after[1]]
+        };
+        let next = grid.solve(|step| step.rates(0), source, [0.0; 2])?;
+        *moment = next.entering();
+        worth = Some(next);
+    }
+    Some(found)
+}
