@@ -52,6 +52,29 @@ fn cases() -> Vec<Case> {
             sampling.constant.value = 1.2
             estimators = [{ double = {} }, { double.control.explorers.points = 9 }]",
         ),
+        case(
+            "rod",
+            "title = \"a rod\"
+            [problem.rod]
+            medium.constant.extinction = 1
+            span = [0, 2]
+            absorbed = true
+            sampling.constant.value = 1.2
+            sweep.albedo.values = [0.4, 0.9]
+            estimators = [{ analog = {} }, { adaptive.sampling.constant.value = 0.8 }]",
+        ),
+        case(
+            "slab",
+            "title = \"a slab\"
+            [problem.slab]
+            medium.constant.extinction = 1
+            span = [0, 1]
+            albedo = 0.8
+            phase.rayleigh = {}
+            incidence.collimated.cosine = 0.5
+            sampling.constant.value = 1.2
+            estimators = [{ analog = {} }, { non-terminating = {} }]",
+        ),
     ]
 }
 

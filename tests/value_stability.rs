@@ -13,7 +13,7 @@ use common::{case, options};
 use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
-use trueflight::problems::{FreeFlight, Transmittance, TransmittanceCurve};
+use trueflight::problems::{FreeFlight, Rod, Slab, Transmittance, TransmittanceCurve};
 
 /// Draws of each experiment.
 const DRAWS: usize = 4;
@@ -97,6 +97,37 @@ fn cases() -> Vec<Case> {
             sampling.constant.value = 1.2
             estimators = [{ double = {} }]",
         ),
+        case(
+            "rod",
+            "title = \"a rod\"
+            [problem.rod]
+            medium.piecewise-linear = { knots = [0, 2, 4], values = [0.3, 1.2, 0.5] }
+            span = [0, 4]
+            albedo.piecewise-linear = { knots = [0, 4], values = [0.9, 0.6] }
+            forward = 0.7
+            absorbed = true
+            orders = 1
+            sampling.constant.value = 1.3
+            estimators = [
+                { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },
+                { adaptive.sampling.piecewise-linear = { knots = [0, 2, 4], values = [0.8, 1, 0.6] } },
+            ]",
+        ),
+        case(
+            "slab",
+            "title = \"a slab\"
+            [problem.slab]
+            medium.piecewise-linear = { knots = [0, 1, 2], values = [0.3, 1.2, 0.5] }
+            span = [0, 2]
+            albedo = 0.9
+            phase.henyey-greenstein = { g = 0.5 }
+            incidence.diffuse = {}
+            sampling.constant.value = 1.3
+            estimators = [
+                { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },
+                { adaptive.sampling.piecewise-linear = { knots = [0, 1, 2], values = [0.8, 1.1, 0.6] } },
+            ]",
+        ),
     ]
 }
 
@@ -156,6 +187,8 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Transmittance::CATALOGUE, ["transmittance", "volume"]),
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
+        (Rod::CATALOGUE, ["rod", "rod"]),
+        (Slab::CATALOGUE, ["slab", "slab"]),
     ] {
         for page in pages {
             let found =

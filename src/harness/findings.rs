@@ -139,6 +139,18 @@ fn of_question(
     })
 }
 
+/// Why what a channel's draws would say cannot be tested, whatever they say: known before the first
+/// draw. Empty where all of it can.
+#[must_use]
+pub fn untestable(planned: &Planned, channel: usize) -> String {
+    let about = |question: &&Question| question.channel.is_none_or(|about| about == channel);
+    let reasons = planned.questions.iter().filter(about).filter_map(|question| {
+        let Kind::Untestable(why) = &question.kind else { return None };
+        Some(format!("{} cannot be tested: {why}", question.what))
+    });
+    reasons.collect::<Vec<_>>().join("; ")
+}
+
 fn gate_finding(
     plan: &Plan,
     question: &Question,

@@ -20,7 +20,16 @@ use crate::theory::{Channel, Prediction};
 #[must_use]
 pub fn planned(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
-        case.experiments.iter().flat_map(|planned| theory_rows(case, planned)).collect()
+        let rows = case.experiments.iter().flat_map(|planned| {
+            let mut rows = theory_rows(case, planned);
+            for (channel, row) in
+                rows.iter_mut().enumerate().filter(|(_, row)| row.verdict.is_none())
+            {
+                row.reason = findings::untestable(planned, channel);
+            }
+            rows
+        });
+        rows.collect()
     };
     let mut record = record(plan, plan.cases.iter().map(|case| (rows(case), None, None)));
     for (case, planned_case) in record.results.cases.iter_mut().zip(&plan.cases) {

@@ -8,6 +8,7 @@ pub mod baseline;
 pub mod bench;
 pub mod case;
 pub mod checks;
+mod computable;
 pub mod curves;
 pub mod draw;
 pub mod filter;

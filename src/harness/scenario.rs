@@ -2,6 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::computable::{FAINTEST, refuse_what_cannot_be_computed};
 use super::mutation::Walk;
 use super::sweep::What;
 pub use super::written::Names;
@@ -372,28 +373,6 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         walk: Walk,
     ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
         self.mutant(name, walk, |scenario| scenario.setup(estimator, variation, address))
-    }
-}
-
-/// Below this transmittance the ratio of a draw to the truth is no longer a double.
-const FAINTEST: f64 = 1e-300;
-/// More lookups than this in one draw are a mistake in the case, not an experiment.
-const MOST_LOOKUPS: f64 = 1e6;
-
-fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
-    for channel in &ready.prediction.channels {
-        let truth = channel.truth.value;
-        if !(truth.is_finite() && truth >= FAINTEST) {
-            let needs = "an answer between 1e-300 and infinity";
-            return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
-        }
-    }
-    match &ready.prediction.lookups {
-        Some(lookups) if lookups.mean.is_nan() || lookups.mean > MOST_LOOKUPS => {
-            let needs = "at most a million lookups a draw";
-            Err(Refusal::mismatch(needs, format!("theory expects {:e}", lookups.mean)))
-        }
-        _ => Ok(ready),
     }
 }
 

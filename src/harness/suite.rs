@@ -41,6 +41,10 @@ const CASES: &[(&str, &str)] = cases![
     "transmittance-curve/eq21-figure-8",
     "transmittance-curve/noise-figure-5",
     "transmittance-curve/magnet",
+    "rod/three-rules-a0.7",
+    "rod/layers-with-gap",
+    "rod/constant-albedo",
+    "rod/magnet",
     "slab/magnet",
     "slab/magnet-diffuse",
 ];

@@ -50,7 +50,8 @@ macro_rules! walks {
             &self,
             setup: &$crate::estimators::Setup<$crate::problems::Rod>,
         ) -> $crate::theory::Prediction {
-            $crate::theory::rod::predict(&setup.mesh, &setup.problem, &setup.sampling, $rule)
+            let (mesh, rod) = (&setup.mesh, &setup.problem);
+            $crate::theory::rod::predict(mesh, rod, &setup.sampling, $rule, setup.laws)
         }
 
         #[inline(always)]

@@ -44,7 +44,11 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     }
     let variance = moments.variance();
     if !(kurtosis.is_finite() && variance.is_finite()) {
-        return Some(Kind::Untestable("its moments overflow".into()));
+        return Some(Kind::Untestable(if variance.is_finite() {
+            "the fourth moment of a draw is infinite or overflows".into()
+        } else {
+            "the variance of a draw is infinite or overflows".into()
+        }));
     }
     let noise = rounding_of(subject) * channel.truth.value.abs() / variance.sqrt();
     let floor = moments.error + noise * (2.0 + noise);

@@ -21,7 +21,7 @@ use crate::media::Piecewise;
 use crate::numeric::Span;
 use crate::problems::{Problem, Rod};
 
-/// The largest `h σ̂(1 + Q₂ + S₂)` of a step of the coarsest grid.
+/// The largest `h(|A_k| + B_k)`, k = 0 … 2, of a step of the coarsest grid.
 const COARSEST: f64 = 0.5;
 /// More steps than this on the coarsest grid are more than theory can do.
 const MOST: f64 = 1e4;
@@ -131,10 +131,12 @@ impl<'a> Walk<'a> {
         let at = panel.t.iter().zip(panel.extinction);
         let rates = at.map(|(&t, &sigma)| {
             let step = self.at(t, sigma);
-            let moved = step.odds.transmitted(2).abs() + step.odds.scattered(2).abs();
-            step.sampling * (1.0 + moved)
+            let rate = |k: i32| step.rates(k).map(f64::abs).iter().sum::<f64>();
+            (0..=2)
+                .map(rate)
+                .fold(0.0, |most, rate| if rate.is_nan() { rate } else { rate.max(most) })
         });
-        let fastest = rates.fold(0.0, f64::max);
+        let fastest = rates.fold(0.0, |most, rate| if rate <= most { most } else { rate });
         (panel.span.length() * fastest / COARSEST).ceil().max(2.0)
     }
 

@@ -20,7 +20,7 @@ pub mod grid;
 pub mod moments;
 
 use self::grid::Walk;
-use self::moments::{Joint, POWERS};
+use self::moments::{Joint, POWERS, Precision};
 use super::particle::ParticleRule;
 use super::prediction::Covariance;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
@@ -45,7 +45,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let mut solved = Vec::new();
     if !open.is_empty() {
         let walk = Walk::new(mesh, rod, None, ParticleRule::Analog)?;
-        let numbers = moments::romberg(&walk, &|grid| {
+        let numbers = moments::romberg(&walk, Precision::FULL, &|grid| {
             open.iter().map(|&seen| moments::power(grid, seen, 1)).collect()
         });
         solved = numbers?;
@@ -92,11 +92,19 @@ pub struct TooLong;
 
 /// What the walk of a rule through σ̂ is predicted to do; the truth alone where [`diverges`] says that
 /// it has no variance, and not even that where it says nothing.
+///
+/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
 #[must_use]
-pub fn predict(mesh: &Mesh, rod: &Rod, sampling: &Piecewise, rule: ParticleRule) -> Prediction {
+pub fn predict(
+    mesh: &Mesh,
+    rod: &Rod,
+    sampling: &Piecewise,
+    rule: ParticleRule,
+    laws: bool,
+) -> Prediction {
     let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
     let truth = truth(mesh, rod).unwrap_or_else(unknown);
-    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Found::of(&walk));
+    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Found::of(&walk, laws));
     let channel = |(index, (seen, &truth)): (usize, (&Seen, &Known))| {
         let raw = found.as_ref().map(|found| &found.raw[index]);
         let moments = raw.map(|raw| central(truth, raw));
@@ -130,13 +138,15 @@ struct Found {
 }
 
 impl Found {
-    fn of(walk: &Walk<'_>) -> Option<Self> {
+    fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
+        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
         let fine = walk.grid(FINER);
         if fine.critical(2).is_some() {
             return None;
         }
         let channels = walk.rod.channels();
-        let (fourth, eighth) = (fine.critical(4).is_none(), fine.critical(8).is_none());
+        let fourth = laws && fine.critical(4).is_none();
+        let eighth = laws && fine.critical(8).is_none();
         let exists = |k: i32| match k {
             1 | 2 => true,
             3 | 4 => fourth,
@@ -144,7 +154,7 @@ impl Found {
         };
         let powers: Vec<i32> = POWERS.into_iter().filter(|&k| exists(k)).collect();
         let is_joint = fourth && channels.contains(&Seen::Absorbed);
-        let numbers = moments::romberg(walk, &|grid| {
+        let numbers = moments::romberg(walk, precision, &|grid| {
             let mut numbers = moments::lookups(grid)?.to_vec();
             for &seen in channels {
                 for &k in &powers {

@@ -19,17 +19,29 @@ use crate::problems::rod::Seen;
 
 /// The powers whose means are found: those of the moments, and the eighth for their tails.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
-/// The finest grid has steps `2^LEVELS` times shorter than the coarsest.
-const LEVELS: usize = 6;
 /// More steps than this are not solved.
 const MOST_STEPS: usize = 200_000;
-/// Where two estimates agree to this, no finer grid is asked.
-const AGREEMENT: f64 = 2e-14;
 /// What rounding adds, relative.
 const ROUNDING: f64 = 1e-13;
 
 /// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
 pub type Joint = [[f64; 2]; 2];
+
+/// How far a sequence of grids goes.
+#[derive(Debug, Clone, Copy)]
+pub struct Precision {
+    /// Where two estimates agree to this, no finer grid is asked.
+    pub agreement: f64,
+    /// The finest grid has steps `2^levels` times shorter than the coarsest.
+    pub levels: usize,
+}
+
+impl Precision {
+    /// For truths, and predictions that draws are compared with.
+    pub const FULL: Self = Self { agreement: 1e-12, levels: 6 };
+    /// For lines in plots and the search of optima.
+    pub const PLOTS: Self = Self { agreement: 1e-5, levels: 3 };
+}
 
 /// A list of numbers that a grid yields: the same numbers on every grid.
 pub type Numbers<'f> = dyn Fn(&Grid) -> Option<Vec<f64>> + 'f;
@@ -37,10 +49,14 @@ pub type Numbers<'f> = dyn Fn(&Grid) -> Option<Vec<f64>> + 'f;
 /// The numbers that finer and finer grids tend to, each with a bound on its absolute error; `None`
 /// where a grid has no answer.
 #[must_use]
-pub fn romberg(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> {
+pub fn romberg(
+    walk: &Walk<'_>,
+    precision: Precision,
+    numbers: &Numbers<'_>,
+) -> Option<Vec<[f64; 2]>> {
     let mut before: Vec<Vec<f64>> = Vec::new();
     let mut finer = 1;
-    for level in 0..=LEVELS {
+    for level in 0..=precision.levels {
         let Some(found) = numbers(&walk.grid(finer)) else {
             // Steps that are too long may find echoes that finer ones do not.
             before.clear();
@@ -58,8 +74,9 @@ pub fn romberg(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> 
         let best = &row[row.len() - 1];
         if let Some(last) = before.last() {
             let error = |(x, y): (&f64, &f64)| (x - y).abs();
-            let agree = best.iter().zip(last).all(|pair| error(pair) <= AGREEMENT * pair.0.abs());
-            let no_finer = level == LEVELS || 2 * finer * walk.coarsest() > MOST_STEPS;
+            let near = |pair: (&f64, &f64)| error(pair) <= precision.agreement * pair.0.abs();
+            let agree = best.iter().zip(last).all(near);
+            let no_finer = level == precision.levels || 2 * finer * walk.coarsest() > MOST_STEPS;
             if agree || no_finer {
                 let bounded = best
                     .iter()

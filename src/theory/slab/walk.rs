@@ -163,17 +163,18 @@ impl Walk {
             };
             pieces.iter().map(|piece| piece.slice(at)).collect()
         };
-        let fine = if self.laws { Resolution::FINE } else { Resolution::COARSE };
-        let mean = energy(&self.incidence, &slices(1.0, |_| 1.0), fine)?.score;
+        let mean = solve(&self.incidence, &slices(1.0, |_| 1.0), Resolution::COARSE)?.score;
+        let error = mean.error / mean.value;
+        let mean = mean.value;
         let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
         let f = |theta: f64| -> Option<f64> {
             let slices = slices(theta.exp(), ends);
-            let found = energy(&self.incidence, &slices, Resolution::COARSE)?;
+            let found = energy(&self.incidence, &slices, Resolution::LAYERED)?;
             Some((found.reflected + found.transmitted + found.score).ln())
         };
         let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
         let kurtosis = 3.0 + fourth / (variance * variance);
-        Some(CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() })
+        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
     }
 }
 

@@ -1,0 +1,290 @@
+//! The rod against numbers from another arithmetic, see `tests/data/README.md`, and against a second
+//! way to find them.
+
+#[path = "../common/mod.rs"]
+mod common;
+mod riccati;
+
+use common::{case, differs, none, options};
+use serde_json::Value;
+use trueflight::harness::record::{Row, Verdict};
+use trueflight::harness::{Plan, judge};
+
+const EQ21: &str = "volume.eq21 = {}
+    ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }";
+
+/// A value of `rod-values.json`.
+fn reference(id: &str) -> Vec<Value> {
+    let all: Vec<Value> =
+        serde_json::from_str(include_str!("../data/rod-values.json")).expect("JSON");
+    all.into_iter().filter(|entry| entry["id"] == id).collect()
+}
+
+/// Its numbers; a moment that diverges is written as null.
+fn numbers(entry: &Value) -> Vec<f64> {
+    let list = entry["value"].as_array().expect("a list");
+    list.iter().map(|x| x.as_f64().unwrap_or(f64::INFINITY)).collect()
+}
+
+/// What a plan says of a rod with one estimator.
+fn planned(rod: &str, estimator: &str) -> Vec<Row> {
+    let text =
+        format!("title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]");
+    let cases = [case("test", &text)];
+    let record = judge::planned(&Plan::new(&cases, &options(1, 100_000)));
+    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+}
+
+/// The truths of a rod, channel by channel.
+fn truths(rod: &str) -> Vec<(String, f64)> {
+    let rows = planned(rod, "non-terminating");
+    let truth = |row: &Row| row.truth.unwrap_or_else(|| panic!("{}", row.reason));
+    rows.iter().map(|row| (row.channel.clone(), truth(row))).collect()
+}
+
+#[test]
+fn closed_forms_are_met() {
+    let mut wrong = Vec::new();
+    for entry in reference("rod_RT") {
+        let [a, pf, tau] =
+            ["a", "pf", "tau"].map(|key| entry["params"][key].as_f64().expect("a number"));
+        let expected = numbers(&entry);
+        // Only the optical depth matters: one value, and layers with a gap.
+        let (half, quarter) = (0.5 * tau, 0.25 * tau);
+        let media = [
+            format!("medium.constant.extinction = {tau}\nspan = [0, 1]"),
+            format!(
+                "medium.piecewise-constant = {{ breaks = [1, 2, 3, 5], \
+                 values = [{half}, 0, {quarter}] }}\nspan = [1, 5]"
+            ),
+        ];
+        for medium in media {
+            let rod =
+                format!("{medium}\nalbedo = {a}\nforward = {pf}\nsampling.constant.value = 4");
+            for ((name, value), expected) in truths(&rod).iter().zip(&expected) {
+                let what = format!("{name} of {}", entry["params"]);
+                wrong.extend(differs(&what, *value, *expected, 1e-14));
+            }
+        }
+    }
+    none(&wrong);
+}
+
+/// A rod of `rod_lin`, as seen from its beginning or from its end.
+fn ramp(from_the_end: bool) -> String {
+    let (extinction, albedo) =
+        if from_the_end { ("[3.5, 0.5]", "[0.35, 0.95]") } else { ("[0.5, 3.5]", "[0.95, 0.35]") };
+    format!(
+        "medium.piecewise-linear = {{ knots = [0, 3], values = {extinction} }}\nspan = [0, 3]\n\
+         albedo.piecewise-linear = {{ knots = [0, 3], values = {albedo} }}\nforward = 0.7"
+    )
+}
+
+/// A rod of `rod_pw`, likewise.
+fn layers(from_the_end: bool) -> String {
+    let (breaks, extinction, albedo) = if from_the_end {
+        ("[0, 0.5, 2.5, 3.5]", "[2, 1.2, 0.5]", "[1, 0.4, 0.9]")
+    } else {
+        ("[0, 1, 3, 3.5]", "[0.5, 1.2, 2]", "[0.9, 0.4, 1]")
+    };
+    format!(
+        "medium.piecewise-constant = {{ breaks = {breaks}, values = {extinction} }}\n\
+         span = [0, 3.5]\n\
+         albedo.piecewise-constant = {{ breaks = {breaks}, values = {albedo} }}\nforward = 0.6"
+    )
+}
+
+#[test]
+fn varying_albedo_is_met() {
+    let mut wrong = Vec::new();
+    for (id, rod) in [("rod_lin", ramp as fn(bool) -> String), ("rod_pw", layers)] {
+        let expected = numbers(&reference(id)[0]);
+        for (from_the_end, reflectance) in [(false, expected[0]), (true, expected[2])] {
+            let found = truths(&format!("{}\nsampling.constant.value = 4", rod(from_the_end)));
+            let pairs = found.iter().zip([reflectance, expected[1]]);
+            wrong.extend(pairs.filter_map(|((name, value), expected)| {
+                differs(&format!("{name} of {id}"), *value, expected, 5e-12)
+            }));
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn orders_of_scattering_are_met() {
+    let found = truths(
+        "medium.constant.extinction = 2\nspan = [0, 1]\nalbedo = 1\nforward = 0.75\norders = 6
+        sampling.constant.value = 3",
+    );
+    let (r, t) = (numbers(&reference("rod_orders_R")[0]), numbers(&reference("rod_orders_T")[0]));
+    let mut wrong = Vec::new();
+    for order in 0..=6 {
+        for (word, expected) in [("reflectance", &r), ("transmittance", &t)] {
+            let name = format!("{word}, order {order}");
+            match found.iter().find(|(channel, _)| *channel == name) {
+                Some((_, value)) => wrong.extend(differs(&name, *value, expected[order], 1e-13)),
+                None => assert!(order == 0 && word == "reflectance"),
+            }
+        }
+    }
+    none(&wrong);
+}
+
+/// A raw moment from the central ones.
+fn raw(row: &Row, k: usize) -> f64 {
+    let m = row.truth.expect("a truth");
+    let [m2, m3, m4] = row.relative_moments.map(|moment| moment.unwrap_or(f64::INFINITY));
+    if k == 2 { m * m * (1.0 + m2) } else { m.powi(4) * (m4 + 4.0 * m3 + 6.0 * m2 + 1.0) }
+}
+
+/// `E[R²]`, `E[T²]`, `E[R⁴]`, `E[T⁴]` and the expected lookups.
+fn found(rows: &[Row]) -> [f64; 5] {
+    let [reflected, transmitted] = rows else { panic!("{}", rows[0].reason) };
+    let lookups = reflected.predicted_lookups.expect("lookups");
+    [raw(reflected, 2), raw(transmitted, 2), raw(reflected, 4), raw(transmitted, 4), lookups]
+}
+
+const NAMES: [&str; 5] = ["E[R²]", "E[T²]", "E[R⁴]", "E[T⁴]", "E[M]"];
+
+#[test]
+fn moments_of_every_rule_are_met() {
+    let mut wrong = Vec::new();
+    let mut met = 0;
+    for (id, rule) in [("term", "terminating"), ("non", "non-terminating"), ("adapt", "adaptive")] {
+        for sampling in ["0.5", "0.6", "0.8", "1.0", "1.5"] {
+            let Some(entry) = reference(&format!("spm_rod_eq21/{id}/{sampling}")).pop() else {
+                continue;
+            };
+            let rod = format!("{EQ21}\nalbedo = 0.7\nsampling.constant.value = {sampling}");
+            let found = found(&planned(&rod, rule));
+            for ((name, found), expected) in NAMES.iter().zip(found).zip(numbers(&entry)) {
+                wrong.extend(differs(
+                    &format!("{name}, {rule} at {sampling}"),
+                    found,
+                    expected,
+                    1e-11,
+                ));
+            }
+            met += 1;
+        }
+    }
+    assert_eq!(met, 12);
+    none(&wrong);
+}
+
+#[test]
+fn a_riccati_equation_finds_the_same_moments() {
+    let rod = riccati::Rod {
+        extinction: |x| 0.5 + x,
+        albedo: |x| 0.95 - 0.2 * x,
+        forward: 0.7,
+        sampling: 3.0,
+        length: 3.0,
+    };
+    let rules: [(&str, riccati::Odds); 3] = [
+        ("terminating", riccati::terminating),
+        ("non-terminating", riccati::non_terminating),
+        ("adaptive", riccati::adaptive),
+    ];
+    let mut wrong = Vec::new();
+    for (name, rule) in rules {
+        let found = found(&planned(&format!("{}\nsampling.constant.value = 3", ramp(false)), name));
+        let [second, fourth] = [2, 4].map(|k| riccati::moments(&rod, rule, k));
+        let lookups = riccati::moments(&rod, rule, 0)[2];
+        let expected = [second[0], second[1], fourth[0], fourth[1], lookups];
+        for ((what, found), expected) in NAMES.iter().zip(found).zip(expected) {
+            // Where r passes 1 the chances have a kink, which Runge–Kutta steps over.
+            wrong.extend(differs(&format!("{what}, {name}"), found, expected, 1e-8));
+        }
+    }
+    none(&wrong);
+}
+
+/// S 3.3 and 4.1 hold that the adaptive rule is never worse. For the variance it is never better
+/// than the non-terminating rule; what it saves are lookups, where σ̂ is below σ_t.
+#[test]
+fn the_adaptive_rule_never_has_the_smaller_variance() {
+    let mut worse = 0;
+    for albedo in ["0.1", "0.5", "0.7", "0.9", "1"] {
+        for sampling in ["0.6", "0.7", "0.8", "0.9", "1", "1.5"] {
+            let rod = format!("{EQ21}\nalbedo = {albedo}\nsampling.constant.value = {sampling}");
+            let (adaptive, other) = (planned(&rod, "adaptive"), planned(&rod, "non-terminating"));
+            let is_refused = |rows: &[Row]| rows[0].verdict == Some(Verdict::Refused);
+            if is_refused(&adaptive) || is_refused(&other) {
+                // What has no variance without terminating has none with it.
+                assert!(is_refused(&adaptive), "{albedo}, {sampling}");
+                continue;
+            }
+            for (a, b) in adaptive.iter().zip(&other) {
+                let [a2, b2] = [a, b].map(|row| row.predicted_variance.expect("a variance"));
+                assert!(a2 >= b2 * (1.0 - 1e-10), "{albedo}, {sampling}: {a2} < {b2}");
+                worse += usize::from(a2 > b2 * 1.001);
+            }
+            let [a, b] =
+                [&adaptive, &other].map(|rows| rows[0].predicted_lookups.expect("lookups"));
+            assert!(a <= b * (1.0 + 1e-10), "{albedo}, {sampling}: {a} > {b} lookups");
+        }
+    }
+    assert!(worse >= 10, "{worse}");
+}
+
+#[test]
+fn both_ends_together_look_up_what_the_whole_sampling_extinction_asks() {
+    for rod in [ramp as fn(bool) -> String, layers] {
+        let lookups = |from_the_end: bool| {
+            let rod = format!("{}\nsampling.constant.value = 1.9", rod(from_the_end));
+            planned(&rod, "non-terminating")[0].predicted_lookups.expect("lookups")
+        };
+        let length = if rod(false).contains("[0, 3]") { 3.0 } else { 3.5 };
+        let mean = 0.5 * (lookups(false) + lookups(true));
+        assert!((mean / (1.9 * length) - 1.0).abs() < 1e-11, "{mean}");
+    }
+}
+
+#[test]
+fn what_diverges_is_told_before_a_draw() {
+    let rod = |sampling: f64| format!("{EQ21}\nalbedo = 0.7\nsampling.constant.value = {sampling}");
+    let far_below = &planned(&rod(0.3), "non-terminating")[0];
+    assert_eq!(far_below.verdict, Some(Verdict::Refused));
+    assert!(far_below.reason.contains("finite variance"), "{}", far_below.reason);
+    let below = &planned(&rod(0.55), "non-terminating")[1];
+    assert_eq!(below.verdict, None);
+    assert!(below.predicted_variance.is_some() && below.predicted_kurtosis.is_none());
+    assert!(below.reason.contains("the fourth moment"), "{}", below.reason);
+    let above = &planned(&rod(0.9), "non-terminating")[1];
+    assert!(above.reason.is_empty() && above.predicted_kurtosis.is_some(), "{}", above.reason);
+}
+
+#[test]
+fn a_rule_is_refused_where_it_has_no_chances() {
+    let rod = format!("{EQ21}\nalbedo = 0.9\nsampling.constant.value = 0.6");
+    let refused = &planned(&rod, "terminating")[0];
+    assert_eq!(refused.verdict, Some(Verdict::Refused));
+    assert!(refused.reason.contains("2/(a + 1)"), "{}", refused.reason);
+    let refused = &planned(&rod, "analog")[0];
+    assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
+}
+
+#[test]
+fn every_setting_is_checked() {
+    let rod = |line: &str| {
+        let text = format!(
+            "title = \"a rod\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\n{line}
+            sampling.constant.value = 2\nestimators = [{{ analog = {{}} }}]"
+        );
+        common::mistakes(&text).map(|error| error.render(false))
+    };
+    assert_eq!(rod("albedo = 0.5\nforward = 0.2\nabsorbed = true\norders = 2"), None);
+    for (line, expected) in [
+        ("", "`albedo` is missing"),
+        ("albedo = 1.5", "`albedo` is 1.5"),
+        ("albedo = 0.5\nforward = -1", "`forward` is -1"),
+        ("albedo = 0.5\norders = 7", "`orders` is 7"),
+        ("albedo = 0.5\nabsorbed = 1", "`absorbed` is 1"),
+        ("albedo.piecewise-linear = { knots = [0, 1], values = [0.5, 1.1] }", "exceeds 1"),
+        ("albedo.gaussian = {}", "`gaussian` is not known"),
+    ] {
+        let found = rod(line).unwrap_or_else(|| panic!("{line} is accepted"));
+        assert!(found.contains(expected), "{line}: {found}");
+    }
+}
