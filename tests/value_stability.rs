@@ -97,6 +97,11 @@ fn cases() -> Vec<Case> {
             sampling.constant.value = 1.2
             estimators = [{ double = {} }]",
         ),
+    ]
+}
+
+fn rods() -> Vec<Case> {
+    vec![
         case(
             "rod",
             "title = \"a rod\"
@@ -107,11 +112,22 @@ fn cases() -> Vec<Case> {
             forward = 0.7
             absorbed = true
             orders = 1
+            flux = 2
             sampling.constant.value = 1.3
             estimators = [
                 { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },
                 { adaptive.sampling.piecewise-linear = { knots = [0, 2, 4], values = [0.8, 1, 0.6] } },
             ]",
+        ),
+        case(
+            "roulette",
+            "title = \"a rod with roulette\"
+            [problem.rod]
+            medium.constant.extinction = 2
+            span = [0, 2]
+            albedo = 0.6
+            sampling.constant.value = 2.2
+            estimators = [{ roulette.below = 0.5 }]",
         ),
         case(
             "slab",
@@ -133,7 +149,7 @@ fn cases() -> Vec<Case> {
 
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases = cases();
+    let cases: Vec<Case> = cases().into_iter().chain(rods()).collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -187,7 +203,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Transmittance::CATALOGUE, ["transmittance", "volume"]),
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
-        (Rod::CATALOGUE, ["rod", "rod"]),
+        (Rod::CATALOGUE, ["rod", "roulette"]),
         (Slab::CATALOGUE, ["slab", "slab"]),
     ] {
         for page in pages {

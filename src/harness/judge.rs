@@ -285,7 +285,8 @@ fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
     );
     let spread = (predicted.variance() / n).sqrt();
     row.z_mean = finite(row.mean.map(|mean| (mean - channel.truth.value) / spread));
-    let kurtosis = predicted.kurtosis().filter(|&kurtosis| kurtosis > 1.0 + 1e-6);
+    let testable = |kurtosis: &f64| *kurtosis > 1.0 + 1e-6 && kurtosis.is_finite();
+    let kurtosis = predicted.kurtosis().filter(testable);
     let square = tally.mean_square().map(|square| square * unit * unit / predicted.variance());
     row.z_variance = finite(
         square

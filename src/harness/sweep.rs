@@ -4,7 +4,7 @@
 //! |---|---|---|
 //! | `sweep.sampling` | a constant σ̂, for every estimator without its own | 1/length, > 0 |
 //! | `sweep.sampling-scale` | a factor on each estimator's own σ̂ | > 0 |
-//! | `sweep.albedo` | the albedo, for estimators that have one | 0 to 1 |
+//! | `sweep.albedo` | the albedo, of the medium or of estimators that have one of their own | 0 to 1 |
 //! | `sweep.control` | a constant control, for estimators that take one and have none of their own | 1/length |
 //! | `sweep.points` | the number of explorer points, for controls through explorers | whole, ≥ 2 |
 //!
@@ -20,7 +20,7 @@ pub enum What {
     Sampling,
     /// A factor on each estimator's own σ̂.
     SamplingScale,
-    /// The albedo, for estimators that have one.
+    /// The albedo, of the medium or of estimators that have one of their own.
     Albedo,
     /// A constant control, for every estimator that takes one and has none of its own.
     Control,

@@ -6,9 +6,11 @@
 //! ```
 
 use super::target::{
-    ROD_ADAPTIVE, ROD_ANALOG, ROD_NON_TERMINATING, ROD_TERMINATING, ROD_WEIGHTED, Target,
+    ROD_ADAPTIVE, ROD_ANALOG, ROD_NON_TERMINATING, ROD_ROULETTE, ROD_TERMINATING, ROD_WEIGHTED,
+    Target,
 };
 use super::{About, Draws, Mutant};
+use crate::estimators::rod::roulette::Roulette;
 use crate::estimators::rod::walk::{self, Steps};
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
@@ -32,7 +34,7 @@ pub fn mutants() -> Vec<Mutant<Rod>> {
         rod("rod-one-number", "the number that decided the collision decides the direction too", ROD_ANALOG, "mean", Analog, OneNumber),
         rod("rod-forward-for-backward", "forward and backward are mixed up", ROD_ANALOG, "mean", Analog, MixedUp),
         rod("rod-analog-for-weighted", "absorption by roulette and by weight at once", ROD_WEIGHTED, "mean", Weighted, Changed(Analog, albedo_twice)),
-        rod("rod-roulette-uncompensated", "a particle of weight below 1/2 is killed half of the time, and its weight stays", ROD_NON_TERMINATING, "mean", NonTerminating, Killed),
+        rod("rod-roulette-uncompensated", "what survives roulette keeps its weight", ROD_ROULETTE, "mean", Roulette { below: 0.5 }, Killed),
     ]
 }
 
@@ -41,7 +43,7 @@ fn rod(
     bug: &'static str,
     target: Target,
     check: &'static str,
-    honest: ParticleRule,
+    honest: impl Steps + Copy + Send + Sync + 'static,
     steps: impl Steps + Copy + Send + Sync + 'static,
 ) -> Mutant<Rod> {
     Mutant::new(About { name, bug, target, check }, Walk(steps), Walk(honest))
@@ -106,7 +108,7 @@ impl Steps for Killed {
 
     #[inline(always)]
     fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
-        (weight.abs() >= 0.5 || rng.uniform() < 0.5).then_some(weight)
+        Roulette { below: 0.5 }.keep(rng, weight).map(|_| weight)
     }
 }
 
@@ -126,7 +128,7 @@ impl Steps for OneNumber {
     }
 }
 
-/// A particle turns round with probability p_f.
+/// A particle turns round with probability `p_f`.
 #[derive(Clone, Copy)]
 struct MixedUp;
 

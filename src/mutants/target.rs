@@ -79,6 +79,8 @@ pub const ROD_WEIGHTED: Target = on("rod/magnet", 2, "weighted");
 pub const ROD_NON_TERMINATING: Target = on("rod/magnet", 3, "non-terminating");
 /// `σ̂ = 0.9`, below σ_t at both ends.
 pub const ROD_ADAPTIVE: Target = on("rod/magnet", 4, "adaptive");
+/// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
+pub const ROD_ROULETTE: Target = on("rod/roulette", 0, "roulette (below 0.5)");
 /// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
 pub const SLAB_ANALOG: Target = on("slab/magnet", 0, "analog");
 /// `σ̂ = 1.2`.

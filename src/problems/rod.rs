@@ -11,8 +11,9 @@
 //! | `medium` with `span = [from, to]` | a field in 1-D and where it is asked about | one of the two |
 //! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it: the rod | is required |
 //! | `albedo` | a in [0, 1]: a number, or a field, see below | required unless swept |
-//! | `forward` | p_f in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
+//! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
 //! | `absorbed` | whether the absorbed energy is a channel, scored at every collision: Σ w r (1 − a) | false |
+//! | `flux` | up to 4: the mean flux, forward and backward together, in so many equal parts of the rod are channels too, scored at every tentative collision: Σ w/(σ̂ width) | none |
 //! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
 //! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
@@ -23,7 +24,7 @@
 //! first and the last value go on. In empty space the particle flies on, so that only the part of a
 //! ray inside the field's bounds is the rod.
 //!
-//! The answer is exact. Where a and p_f are constant it is a closed form that depends on the optical
+//! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
 //! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. Of `a = 1`
 //! nothing is absorbed: that channel, and any other whose answer is 0, is refused.
 //!
@@ -37,7 +38,9 @@ use crate::media::piecewise_linear::read_lines;
 use crate::media::{Body, Medium, Piecewise};
 
 /// The most channels that a draw can have.
-pub const MOST: usize = 16;
+pub const MOST: usize = 20;
+/// The most parts of a rod in which its flux is a channel.
+pub const MOST_PARTS: usize = 4;
 /// The highest order of scattering that has a channel of its own.
 pub const HIGHEST_ORDER: u64 = 6;
 
@@ -48,6 +51,8 @@ pub enum Seen {
     ReflectedBy(usize),
     /// The weight that leaves at the end after so many scatterings.
     TransmittedBy(usize),
+    /// The mean flux in a part of the rod, from 0.
+    Flux(usize),
     /// The energy absorbed on the way.
     Absorbed,
     /// The weight that leaves at the beginning.
@@ -63,6 +68,7 @@ impl Seen {
         match self {
             Self::ReflectedBy(order) => format!("reflectance, order {order}"),
             Self::TransmittedBy(order) => format!("transmittance, order {order}"),
+            Self::Flux(part) => format!("flux, part {}", part + 1),
             Self::Absorbed => "absorbed".to_owned(),
             Self::Reflected => "reflectance".to_owned(),
             Self::Transmitted => "transmittance".to_owned(),
@@ -76,6 +82,7 @@ pub struct Rod {
     albedo: Piecewise,
     forward: Piecewise,
     channels: Vec<Seen>,
+    parts: usize,
 }
 
 /// The values of one draw, one per channel.
@@ -103,7 +110,29 @@ impl Rod {
         channels: Vec<Seen>,
     ) -> Self {
         let span = medium.span();
-        Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels }
+        let parts = channels.iter().filter(|seen| matches!(seen, Seen::Flux(_))).count();
+        Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
+    }
+
+    /// How many parts of the rod have their flux as a channel: 0 or all of them.
+    #[must_use]
+    pub fn parts(&self) -> usize {
+        self.parts
+    }
+
+    /// The length of such a part.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.medium.support().length() / self.parts.max(1) as f64
+    }
+
+    /// The part that holds a distance inside the rod.
+    #[inline(always)]
+    #[must_use]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the number of parts
+    pub fn part(&self, t: f64) -> usize {
+        let part = (t - self.medium.support().from) / self.width();
+        (part as usize).min(self.parts.saturating_sub(1))
     }
 
     /// a, as a function of the distance.
@@ -112,7 +141,7 @@ impl Rod {
         &self.albedo
     }
 
-    /// p_f, as a function of the distance.
+    /// `p_f`, as a function of the distance.
     #[must_use]
     pub fn forward(&self) -> &Piecewise {
         &self.forward
@@ -127,8 +156,8 @@ impl Rod {
 
 /// The channels that a case asks for.
 #[must_use]
-pub fn channels(absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
-    let mut channels = Vec::new();
+pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
+    let mut channels: Vec<Seen> = (0..parts).map(Seen::Flux).collect();
     if let Some(highest) = orders {
         channels.push(Seen::TransmittedBy(0));
         for order in 1..=highest {
@@ -145,11 +174,12 @@ pub fn channels(absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
 impl Problem for Rod {
     type Value = Values;
 
-    #[allow(clippy::cast_possible_truncation)] // at most six
+    #[allow(clippy::cast_possible_truncation)] // at most six and four
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let albedo = share(settings, "albedo", sweeps_albedo(settings).then_some(0.5));
         let forward = share(settings, "forward", Some(0.5));
         let absorbed = settings.flag_or("absorbed", false);
+        let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
         let orders = if settings.has("orders") {
             settings.count("orders", 0..=HIGHEST_ORDER).map(|highest| Some(highest as usize))
         } else {
@@ -157,7 +187,8 @@ impl Problem for Rod {
         };
         let medium = body?.medium();
         let (albedo, forward) = (albedo?.on(&medium), forward?.on(&medium));
-        Some(Self::new(medium, &albedo, &forward, channels(absorbed?, orders?)))
+        let channels = channels(parts? as usize, absorbed?, orders?);
+        Some(Self::new(medium, &albedo, &forward, channels))
     }
 
     fn medium(&self) -> &Medium {
@@ -215,10 +246,11 @@ mod tests {
 
     #[test]
     fn the_last_channels_are_what_leaves() {
-        assert_eq!(channels(false, None), [Seen::Reflected, Seen::Transmitted]);
-        let all = channels(true, Some(6));
+        assert_eq!(channels(0, false, None), [Seen::Reflected, Seen::Transmitted]);
+        let all = channels(4, true, Some(6));
         assert_eq!(all.len(), MOST);
         assert_eq!(all[MOST - 2..], [Seen::Reflected, Seen::Transmitted]);
-        assert_eq!(all[2].name(), "transmittance, order 1");
+        assert_eq!(all[0].name(), "flux, part 1");
+        assert_eq!(all[6].name(), "transmittance, order 1");
     }
 }

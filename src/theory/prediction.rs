@@ -37,6 +37,8 @@ pub struct Channel {
     pub mean: Known,
     /// Its central moments; `None` where no closed form is known.
     pub moments: Option<Moments>,
+    /// A bound on its variance, where that is all that is known.
+    pub most_variance: Option<f64>,
     /// How heavy its tails are.
     pub tails: Tails,
     /// What relative tolerances refer to: the truth, or, for a transmittance of optical depth
@@ -72,7 +74,17 @@ impl Channel {
     pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
         let (unit, moments) = (truth.value, Some(moments));
         let name = String::new();
-        Self { name, truth, mean: truth, moments, tails, unit, log_unit: 0.0, losses: None }
+        Self {
+            name,
+            truth,
+            mean: truth,
+            moments,
+            most_variance: None,
+            tails,
+            unit,
+            log_unit: 0.0,
+            losses: None,
+        }
     }
 
     /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
@@ -153,6 +165,7 @@ impl Prediction {
         let mut channels = self.channels;
         for channel in &mut channels {
             channel.moments = None;
+            channel.most_variance = None;
         }
         Self {
             channels,

@@ -241,6 +241,30 @@ fn both_ends_together_look_up_what_the_whole_sampling_extinction_asks() {
     }
 }
 
+/// Without scattering the flux is the transmittance; with it, what is absorbed is σ_t (1 − a) times it.
+#[test]
+fn the_flux_is_what_absorption_feeds_on() {
+    let rod = |albedo: f64| {
+        let found = truths(&format!(
+            "medium.constant.extinction = 1.5\nspan = [0, 2]\nalbedo = {albedo}\nflux = 2
+            absorbed = true\nforward = 0.8\nsampling.constant.value = 2"
+        ));
+        let of = |name: &str| found.iter().find(|(channel, _)| channel == name).expect(name).1;
+        (of("flux, part 1"), of("flux, part 2"), of("absorbed"))
+    };
+    let (first, second, absorbed) = rod(0.6);
+    let mut wrong = Vec::new();
+    wrong.extend(differs("absorbed", 1.5 * 0.4 * (first + second), absorbed, 1e-11));
+    // ∫ e^{−1.5 t} over each half.
+    let bare = |from: f64, to: f64| ((-1.5 * from).exp() - (-1.5 * to).exp()) / 1.5;
+    let text = "medium.constant.extinction = 1.5\nspan = [0, 2]\nalbedo = 1e-12\nflux = 2
+        sampling.constant.value = 2";
+    let found = truths(text);
+    wrong.extend(differs("first half", found[0].1, bare(0.0, 1.0), 1e-11));
+    wrong.extend(differs("second half", found[1].1, bare(1.0, 2.0), 1e-11));
+    none(&wrong);
+}
+
 #[test]
 fn what_diverges_is_told_before_a_draw() {
     let rod = |sampling: f64| format!("{EQ21}\nalbedo = 0.7\nsampling.constant.value = {sampling}");
@@ -280,6 +304,7 @@ fn every_setting_is_checked() {
         ("albedo = 1.5", "`albedo` is 1.5"),
         ("albedo = 0.5\nforward = -1", "`forward` is -1"),
         ("albedo = 0.5\norders = 7", "`orders` is 7"),
+        ("albedo = 0.5\nflux = 5", "`flux` is 5"),
         ("albedo = 0.5\nabsorbed = 1", "`absorbed` is 1"),
         ("albedo.piecewise-linear = { knots = [0, 1], values = [0.5, 1.1] }", "exceeds 1"),
         ("albedo.gaussian = {}", "`gaussian` is not known"),

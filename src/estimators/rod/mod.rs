@@ -1,4 +1,4 @@
-//! Walks of the single particle model through a rod.
+//! Walks of a particle through a rod.
 
 pub mod walk;
 
@@ -14,6 +14,10 @@ fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
         let albedo = setup.problem.albedo();
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
         setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+    }
+    if setup.problem.parts() > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
+        let needs = "σ̂ > 0 on the whole rod to see its flux";
+        return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
     }
     let mesh = &setup.mesh;
     match rod::diverges(mesh, &setup.problem, &setup.sampling, rule) {
@@ -73,4 +77,5 @@ estimators! {
     adaptive::Adaptive,
     analog::Analog,
     weighted::Weighted,
+    roulette::Roulette,
 }

@@ -6,12 +6,13 @@
 //! scattered, it turns round with probability 1 − p_f
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; only a scattering takes a third.
+//! A flight and what happens at its end take a random number each; a scattering takes a third, and so does
+//! roulette where it is played.
 
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
 use crate::problems::Rod;
-use crate::problems::rod::{MOST, Seen, Values};
+use crate::problems::rod::{MOST, MOST_PARTS, Seen, Values};
 use crate::rng::Stream;
 use crate::theory::ParticleRule;
 use crate::theory::particle::{Event, Odds};
@@ -61,6 +62,8 @@ pub struct Fate {
     pub order: usize,
     /// `Σ w r (1 − a)`.
     pub absorbed: f64,
+    /// `Σ w/(σ̂ width)` in each part of the rod.
+    pub flux: [f64; MOST_PARTS],
 }
 
 impl Fate {
@@ -77,6 +80,8 @@ impl Fate {
             };
             *value = if *seen == Seen::Absorbed {
                 self.absorbed
+            } else if let Seen::Flux(part) = *seen {
+                self.flux[part]
             } else if self.left == Some(*seen) || by_order == Some(*seen) {
                 self.weight
             } else {
@@ -96,9 +101,11 @@ pub fn draw<M: Extinction>(
     rng: &mut Stream,
 ) -> Draw<Values> {
     let rod = &*setup.problem;
+    let (sees_flux, parts_per_length) = (rod.parts() > 0, 1.0 / rod.width());
     let mut cursor = setup.sampling.begin();
     let mut is_forward = true;
-    let mut fate = Fate { left: None, weight: 1.0, order: 0, absorbed: 0.0 };
+    let mut fate =
+        Fate { left: None, weight: 1.0, order: 0, absorbed: 0.0, flux: [0.0; MOST_PARTS] };
     let mut lookups = 0;
     loop {
         let (depth, number) = (-rng.ln_uniform(), rng.uniform());
@@ -115,6 +122,9 @@ pub fn draw<M: Extinction>(
         let ratio = medium.extinction(cursor.t) / sampling;
         let albedo = rod.albedo().value(cursor.t);
         fate.absorbed += fate.weight * ratio * (1.0 - albedo);
+        if sees_flux {
+            fate.flux[rod.part(cursor.t)] += fate.weight * (parts_per_length / sampling);
+        }
         let odds = steps.odds_at(ratio, albedo);
         match odds.decide(number) {
             Event::Transmitted => fate.weight *= odds.transmit_weight,
@@ -141,14 +151,20 @@ mod tests {
 
     #[test]
     fn a_particle_is_seen_at_its_end_and_by_its_order() {
-        let channels = channels(true, Some(2));
-        let fate = Fate { left: Some(Seen::Reflected), weight: 0.5, order: 1, absorbed: 0.2 };
+        let channels = channels(1, true, Some(2));
+        let fate = Fate {
+            left: Some(Seen::Reflected),
+            weight: 0.5,
+            order: 1,
+            absorbed: 0.2,
+            flux: [0.3, 0.0, 0.0, 0.0],
+        };
         let values = fate.values(&channels);
-        // T0, R1, T1, R2, T2, absorbed, R, T.
-        assert_eq!(values.as_ref(), [0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
+        // Flux, T0, R1, T1, R2, T2, absorbed, R, T.
+        assert_eq!(values.as_ref(), [0.3, 0.0, 0.5, 0.0, 0.0, 0.0, 0.2, 0.5, 0.0]);
         let lost = Fate { left: None, ..fate };
-        assert_eq!(lost.values(&channels).as_ref()[5..], [0.2, 0.0, 0.0]);
+        assert_eq!(lost.values(&channels).as_ref()[6..], [0.2, 0.0, 0.0]);
         let often = Fate { order: 7, ..fate };
-        assert_eq!(often.values(&channels).as_ref()[..5], [0.0; 5]);
+        assert_eq!(often.values(&channels).as_ref()[1..6], [0.0; 5]);
     }
 }

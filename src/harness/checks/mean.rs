@@ -7,7 +7,8 @@
 //! The mean may pass only if the variance of the same experiment passes too; where that one is
 //! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
 //! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. A case that declares an experiment biased passes only if the bias is shown; where
-//! theory has no variance for it, that of pilot draws is used, doubled.
+//! theory has no variance for it, that of pilot draws is used, doubled. Where theory has no more than a
+//! bound on the variance, V is that bound.
 
 use super::{Always, Ask, Check, Kind, Known, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
@@ -68,7 +69,10 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
             Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
         }
         (None, Some(pilot)) => Known { variance: 2.0 * pilot * scale * scale, error: 0.0, floor },
-        (None, None) => return Kind::Untestable("theory has no variance for it".into()),
+        (None, None) => match channel.most_variance {
+            Some(most) => Known { variance: most * scale * scale, error: 0.0, floor },
+            None => return Kind::Untestable("theory has no variance for it".into()),
+        },
     };
     if !known.variance.is_finite() {
         return Kind::Untestable("the variance overflows".into());

@@ -37,7 +37,9 @@ pub struct Step {
     pub sampling: f64,
     /// `r (1 − a)`: what a collision absorbs of the weight.
     pub absorbed: f64,
-    /// p_f.
+    /// The part of the rod that it lies in, see [`Rod::part`].
+    pub part: usize,
+    /// `p_f`.
     pub forward: f64,
     /// What happens at a collision.
     pub odds: Odds,
@@ -46,6 +48,7 @@ pub struct Step {
 impl Step {
     /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
     #[inline]
+    #[must_use]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
         let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
         let backward = 1.0 - self.forward;
@@ -58,6 +61,7 @@ impl Step {
 
     /// A and B of the k-th moment.
     #[inline]
+    #[must_use]
     pub fn rates(&self, k: i32) -> [f64; 2] {
         let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
@@ -74,6 +78,7 @@ impl Step {
 /// Steps from the beginning of the support to its end.
 pub struct Grid {
     steps: Vec<Step>,
+    parts_per_length: f64,
 }
 
 /// A walk through a rod, for theory.
@@ -88,7 +93,7 @@ pub struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    /// Cuts the rod where a, p_f or σ̂ has a knot and where the rule changes; `None` where that
+    /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes; `None` where that
     /// makes more steps than theory can do.
     #[must_use]
     pub fn new(
@@ -102,6 +107,8 @@ impl<'a> Walk<'a> {
         if let Some(sampling) = sampling {
             cuts.extend(sampling.knots());
         }
+        let from = mesh.support().from;
+        cuts.extend((1..rod.parts()).map(|part| from + rod.width() * part as f64));
         let cut = mesh.refined(&cuts, &|_, _| Vec::new());
         let mut kinks = Vec::new();
         if let Some(sampling) = sampling {
@@ -151,7 +158,8 @@ impl<'a> Walk<'a> {
         };
         let odds = self.rule.odds(ratio, albedo);
         let absorbed = ratio * (1.0 - albedo);
-        Step { end: t, width: 0.0, sampling, absorbed, forward, odds }
+        let part = self.rod.part(t);
+        Step { end: t, width: 0.0, sampling, absorbed, part, forward, odds }
     }
 
     /// The grid whose steps are so many times shorter than the coarsest grid's.
@@ -170,7 +178,7 @@ impl<'a> Walk<'a> {
                 Step { end, width, ..self.at(t, sigma) }
             }));
         }
-        Grid { steps }
+        Grid { steps, parts_per_length: 1.0 / self.rod.width() }
     }
 
     /// How many steps the coarsest grid has.
@@ -221,10 +229,10 @@ impl Layer {
 }
 
 impl Grid {
-    /// The steps.
+    /// One over the length of the parts in which the flux is looked at.
     #[must_use]
-    pub fn steps(&self) -> &[Step] {
-        &self.steps
+    pub fn parts_per_length(&self) -> f64 {
+        self.parts_per_length
     }
 
     /// Where the k-th moment diverges: the distance that would have to be the rod's end for it to
@@ -265,7 +273,7 @@ impl Grid {
             let emitted = [straight * plus + turned * minus, straight * minus + turned * plus];
             let [rho, eta] = beyond[i + 1];
             let echo = 1.0 - layer.back * rho;
-            if !(echo > 0.0) {
+            if echo.is_nan() || echo <= 0.0 {
                 return None;
             }
             let minus = (layer.back * eta + emitted[1]) / echo;

@@ -126,6 +126,29 @@ pub fn predict(
     }
 }
 
+/// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
+#[must_use]
+pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
+    let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
+    let truth = truth(mesh, rod).unwrap_or_else(unknown);
+    let channels = rod.channels().iter().zip(truth).map(|(seen, truth)| Channel {
+        name: seen.name(),
+        moments: None,
+        most_variance: Some(truth.value * (1.0 - truth.value)),
+        ..Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT)
+    });
+    Prediction {
+        channels: channels.collect(),
+        lookups: None,
+        layers: None,
+        random_numbers: None,
+        law: None,
+        covariances: Vec::new(),
+        increments: Vec::new(),
+        stable_share: None,
+    }
+}
+
 /// Raw moments of all channels.
 struct Found {
     /// `E[X^k]` of each channel for the powers of [`POWERS`], with an absolute error; infinite where
@@ -224,7 +247,7 @@ fn covariances(channels: &[Seen], truth: &[Known], found: &Found) -> Vec<Covaria
         let squares = [found.raw[first][1][0], found.raw[first + 1][1][0]];
         let joint = match (pair, found.joint) {
             ([Seen::Absorbed, _], Some(joint)) => joint,
-            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed], _) => continue,
+            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed] | [Seen::Flux(_), _], _) => continue,
             _ => [[0.0; 2]; 2],
         };
         let [a, b] = means;

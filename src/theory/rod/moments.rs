@@ -1,13 +1,14 @@
 //! Every moment of a walk through a rod, from its two-stream equations.
 //!
-//! With `Q_k` and `S_k` of a rule (see `particle`) and `c = r(1 − a)`, the particle's worth to the
-//! k-th power solves the equations of `grid` with
+//! With `Q_k` and `S_k` of a rule (see `particle`), and `c = r(1 − a)` for the absorbed energy and
+//! `c = 1/(σ̂ width)` for the flux, the particle's worth to the k-th power solves the equations of `grid`
+//! with
 //!
 //! ```text
 //! A_k = σ̂(1 − Q_k − S_k p_f),  B_k = σ̂ S_k p_b
 //! reflectance^k, transmittance^k:  no source; leaving is worth 1 at that end
 //! of scattering order n:           A = σ̂(1 − Q_k), B = 0, source σ̂ S_k(p_f, p_b) of order n − 1
-//! Y^j X^k, Y the absorbed energy:  source σ̂ Σ_{i<j} (j over i) c^{j−i} (Q, S)_{i+k} of Y^i X^k
+//! Y^j X^k, Y = Σ c w a score:      source σ̂ Σ_{i<j} (j over i) c^{j−i} (Q, S)_{i+k} of Y^i X^k
 //! M(M − 1)…(M − n + 1), M lookups: A₀, B₀, source n σ̂ (Q, S)₀ of the one before, and n σ̂ for n = 1
 //! ```
 //!
@@ -111,7 +112,15 @@ pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
         Seen::Transmitted => leaving(grid, k, END)?,
         Seen::ReflectedBy(order) => by_order(grid, k, BEGINNING, order)?,
         Seen::TransmittedBy(order) => by_order(grid, k, END, order)?,
-        Seen::Absorbed => absorbed_times(grid, usize::try_from(k).ok()?, None)?.pop()?,
+        Seen::Absorbed => score_times(grid, &absorbed, usize::try_from(k).ok()?, None)?.pop()?,
+        Seen::Flux(part) => {
+            let flux = move |step: &Step, power: i32| {
+                // σ̂ c = 1/width even where both c and a flight through σ̂ = 0 are infinite.
+                if step.part == part { step.sampling.powi(1 - power) } else { 0.0 }
+            };
+            let path = score_times(grid, &flux, usize::try_from(k).ok()?, None)?.pop()?;
+            return Some(path.entering() * grid.parts_per_length().powi(k));
+        }
     };
     Some(worth.entering())
 }
@@ -134,8 +143,20 @@ fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Worth> 
     Some(worth)
 }
 
+/// `σ̂ c^k` of a score.
+type Score<'f> = dyn Fn(&Step, i32) -> f64 + 'f;
+
+fn absorbed(step: &Step, power: i32) -> f64 {
+    step.sampling * step.absorbed.powi(power)
+}
+
 /// `Y^i X^k` for i = 0 … j, `X^k` being what leaves at one end to the power k, or 1.
-fn absorbed_times(grid: &Grid, j: usize, end: Option<([f64; 2], i32)>) -> Option<Vec<Worth>> {
+fn score_times(
+    grid: &Grid,
+    score: &Score<'_>,
+    j: usize,
+    end: Option<([f64; 2], i32)>,
+) -> Option<Vec<Worth>> {
     let k = end.map_or(0, |(_, k)| k);
     let mut found = Vec::new();
     if let Some((ends, k)) = end {
@@ -152,7 +173,7 @@ fn absorbed_times(grid: &Grid, j: usize, end: Option<([f64; 2], i32)>) -> Option
             let mut ways = 1.0;
             for (i, worth) in (0_i32..).zip(&found) {
                 let left = i32::try_from(power).unwrap_or(i32::MAX) - i;
-                let share = step.sampling * ways * step.absorbed.powi(left);
+                let share = ways * score(step, left);
                 let order = i + k;
                 // Of weight 1 to the power 0 all is left, whatever happens to the particle.
                 let middle = worth.middle(at);
@@ -175,7 +196,7 @@ pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
     let ends = if reflected { BEGINNING } else { END };
     let mut joint = [[0.0; 2]; 2];
     for k in 1..=2 {
-        let found = absorbed_times(grid, 2, Some((ends, k)))?;
+        let found = score_times(grid, &absorbed, 2, Some((ends, k)))?;
         let place = usize::try_from(k - 1).ok()?;
         joint[0][place] = found[1].entering();
         joint[1][place] = found[2].entering();

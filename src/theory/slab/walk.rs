@@ -256,6 +256,7 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         truth,
         mean: truth,
         moments,
+        most_variance: None,
         tails,
         unit: t,
         log_unit: 0.0,
