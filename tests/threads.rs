@@ -63,6 +63,18 @@ fn cases() -> Vec<Case> {
             sweep.albedo.values = [0.4, 0.9]
             estimators = [{ analog = {} }, { adaptive.sampling.constant.value = 0.8 }]",
         ),
+        case(
+            "slab",
+            "title = \"a slab\"
+            [problem.slab]
+            medium.constant.extinction = 1
+            span = [0, 1]
+            albedo = 0.8
+            phase.rayleigh = {}
+            incidence.collimated.cosine = 0.5
+            sampling.constant.value = 1.2
+            estimators = [{ analog = {} }, { non-terminating = {} }]",
+        ),
     ]
 }
 

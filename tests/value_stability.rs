@@ -13,7 +13,7 @@ use common::{case, options};
 use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
-use trueflight::problems::{FreeFlight, Rod, Transmittance, TransmittanceCurve};
+use trueflight::problems::{FreeFlight, Rod, Slab, Transmittance, TransmittanceCurve};
 
 /// Draws of each experiment.
 const DRAWS: usize = 4;
@@ -129,6 +129,21 @@ fn rods() -> Vec<Case> {
             sampling.constant.value = 2.2
             estimators = [{ roulette.below = 0.5 }]",
         ),
+        case(
+            "slab",
+            "title = \"a slab\"
+            [problem.slab]
+            medium.piecewise-linear = { knots = [0, 1, 2], values = [0.3, 1.2, 0.5] }
+            span = [0, 2]
+            albedo = 0.9
+            phase.henyey-greenstein = { g = 0.5 }
+            incidence.diffuse = {}
+            sampling.constant.value = 1.3
+            estimators = [
+                { terminating = {} }, { non-terminating = {} }, { analog = {} }, { weighted = {} },
+                { adaptive.sampling.piecewise-linear = { knots = [0, 1, 2], values = [0.8, 1.1, 0.6] } },
+            ]",
+        ),
     ]
 }
 
@@ -189,6 +204,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
         (Rod::CATALOGUE, ["rod", "roulette"]),
+        (Slab::CATALOGUE, ["slab", "slab"]),
     ] {
         for page in pages {
             let found =

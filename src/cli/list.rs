@@ -5,12 +5,9 @@ use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
-use trueflight::estimators::{Estimated, controls, sampling};
+use trueflight::estimators::{self, controls, sampling};
 use trueflight::harness::{self, case::Case, checks, suite};
-use trueflight::problems::{
-    self, FreeFlight, Rod, SingleScattering, Transmittance, TransmittanceCurve,
-};
-use trueflight::{media, phase, report};
+use trueflight::{media, phase, problems, report};
 
 use super::Console;
 use super::output::{self, Format};
@@ -51,22 +48,24 @@ struct Row {
 
 /// Every catalogue of the library with the name of its part.
 pub fn catalogues() -> Vec<(String, Catalogue)> {
-    let of_problem = |problem: &str| format!("estimators of {problem}");
-    vec![
-        ("media".into(), media::CATALOGUE),
-        ("phases".into(), phase::CATALOGUE),
-        ("sampling".into(), sampling::CATALOGUE),
-        ("controls".into(), controls::CATALOGUE),
-        (of_problem("transmittance"), Transmittance::CATALOGUE),
-        (of_problem("free-flight"), FreeFlight::CATALOGUE),
-        (of_problem("transmittance-curve"), TransmittanceCurve::CATALOGUE),
-        (of_problem("rod"), Rod::CATALOGUE),
-        (of_problem("single-scattering"), SingleScattering::CATALOGUE),
-        ("problems".into(), problems::CATALOGUE),
-        ("checks".into(), checks::CATALOGUE),
-        ("reports".into(), report::CATALOGUE),
-        ("files".into(), harness::CATALOGUE),
-    ]
+    let mut all = vec![
+        ("media".to_owned(), media::CATALOGUE),
+        ("phases".to_owned(), phase::CATALOGUE),
+        ("sampling".to_owned(), sampling::CATALOGUE),
+        ("controls".to_owned(), controls::CATALOGUE),
+    ];
+    let of_problems = problems::CATALOGUE.pages.iter().zip(estimators::catalogues());
+    all.extend(
+        of_problems
+            .map(|(problem, catalogue)| (format!("estimators of {}", problem.name()), catalogue)),
+    );
+    all.extend([
+        ("problems".to_owned(), problems::CATALOGUE),
+        ("checks".to_owned(), checks::CATALOGUE),
+        ("reports".to_owned(), report::CATALOGUE),
+        ("files".to_owned(), harness::CATALOGUE),
+    ]);
+    all
 }
 
 /// Prints the names with one sentence each.

@@ -15,6 +15,7 @@ pub mod rules;
 pub mod sampling;
 pub mod setup;
 pub mod single_scattering;
+pub mod slab;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
@@ -25,7 +26,7 @@ use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::media::Extinction;
-use crate::problems::Problem;
+use crate::problems::{Problem, each_problem};
 use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
 
@@ -172,6 +173,18 @@ pub trait Estimated: Problem {
 
     /// Reads the settings of the estimator at a position of the catalogue.
     fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
+}
+
+macro_rules! estimators_of {
+    ($($module:ident :: $Problem:ident,)*) => {
+        vec![$(<crate::problems::$Problem as Estimated>::CATALOGUE),*]
+    };
+}
+
+/// The estimators of every problem, in the order of the problems.
+#[must_use]
+pub fn catalogues() -> Vec<Catalogue> {
+    each_problem!(estimators_of)
 }
 
 /// Lists the estimators of one problem: from one line each come the module, the name in case files

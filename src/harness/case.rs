@@ -10,7 +10,7 @@
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
 //! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
-//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `single-scattering` | required |
+//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `single-scattering`, `slab` | required |
 //!
 //! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
 //! others need, at most `draws`.
@@ -37,8 +37,14 @@ use super::written::Usual;
 use crate::catalogue::{Domain, Page, Settings};
 use crate::estimators::Order;
 use crate::media::Body;
-use crate::problems::{self, FreeFlight, Rod, SingleScattering, Transmittance, TransmittanceCurve};
+use crate::problems::{self, each_problem};
 use crate::rng::name_hash;
+
+macro_rules! readers {
+    ($($module:ident :: $Problem:ident,)*) => {
+        [$(Scenario::<problems::$Problem>::read),*]
+    };
+}
 
 /// A case file, read.
 pub struct Case {
@@ -122,13 +128,7 @@ impl Case {
                 sampling: false,
             };
             let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-            let read = match names[index].as_str() {
-                "transmittance" => Scenario::<Transmittance>::read,
-                "free-flight" => Scenario::<FreeFlight>::read,
-                "rod" => Scenario::<Rod>::read,
-                "transmittance-curve" => Scenario::<TransmittanceCurve>::read,
-                _ => Scenario::<SingleScattering>::read,
-            };
+            let read = each_problem!(readers)[index];
             let scenario = read(&settings, body.as_ref(), usual, swept);
             settings.close();
             Some((names[index].clone(), scenario?, sweep?))

@@ -46,6 +46,8 @@ const CASES: &[(&str, &str)] = cases![
     "rod/magnet",
     "single-scattering/homogeneous",
     "single-scattering/magnet",
+    "slab/magnet",
+    "slab/magnet-diffuse",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

@@ -25,6 +25,7 @@ pub mod rod;
 pub mod rules;
 pub mod scores;
 pub mod single_scattering;
+pub mod slab;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -34,7 +35,8 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Problem, Rod, SingleScattering, Transmittance, TransmittanceCurve,
+    FreeFlight, Problem, Rod, SingleScattering, Slab, Transmittance, TransmittanceCurve,
+    each_problem,
 };
 
 pub use fault::{Fault, Honest};
@@ -134,18 +136,24 @@ impl Mutable for SingleScattering {
     }
 }
 
+impl Mutable for Slab {
+    fn mutants() -> Vec<Mutant<Self>> {
+        slab::mutants()
+    }
+}
+
 /// Every mutant of every problem, without the wrong streams.
 #[must_use]
 pub fn all() -> Vec<About> {
-    fn about<P: Mutable>() -> impl Iterator<Item = About> {
-        P::mutants().into_iter().map(|mutant| mutant.about)
+    fn about<P: Mutable>() -> Vec<About> {
+        P::mutants().into_iter().map(|mutant| mutant.about).collect()
     }
-    about::<Transmittance>()
-        .chain(about::<FreeFlight>())
-        .chain(about::<TransmittanceCurve>())
-        .chain(about::<Rod>())
-        .chain(about::<SingleScattering>())
-        .collect()
+    macro_rules! of_all {
+        ($($module:ident :: $Problem:ident,)*) => {
+            [$(about::<crate::problems::$Problem>),*]
+        };
+    }
+    each_problem!(of_all).into_iter().flat_map(|about| about()).collect()
 }
 
 #[cfg(test)]

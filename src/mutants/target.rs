@@ -90,3 +90,13 @@ pub const SINGLE_RATIO: Target =
 /// The same with ratio-tracked shadow rays.
 pub const SINGLE_SHADOW: Target =
     on("single-scattering/magnet", 2, "source-driven (exact camera, ratio shadow 1.5)");
+/// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
+pub const SLAB_ANALOG: Target = on("slab/magnet", 0, "analog");
+/// `σ̂ = 1.2`.
+pub const SLAB_WEIGHTED: Target = on("slab/magnet", 1, "weighted");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const SLAB_NON_TERMINATING: Target = on("slab/magnet", 2, "non-terminating");
+/// `σ̂ = 0.9`, below σ_t at both ends.
+pub const SLAB_ADAPTIVE: Target = on("slab/magnet", 3, "adaptive");
+/// Diffuse light, a σ̂ in steps.
+pub const SLAB_DIFFUSE: Target = on("slab/magnet-diffuse", 0, "non-terminating");

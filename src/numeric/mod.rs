@@ -5,6 +5,7 @@
 pub mod elementary;
 pub mod known;
 pub mod lane;
+pub mod matrix;
 pub mod pack;
 pub mod quadrature;
 pub mod roots;

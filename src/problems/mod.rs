@@ -1,31 +1,37 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
-pub mod free_flight;
-pub mod rod;
-pub mod single_scattering;
-pub mod transmittance;
-pub mod transmittance_curve;
-
-use crate::catalogue::{Catalogue, Settings};
+use crate::catalogue::{Catalogue, Settings, Value};
 use crate::media::{Body, Medium};
 
-pub use free_flight::FreeFlight;
-pub use rod::Rod;
-pub use single_scattering::SingleScattering;
-pub use transmittance::Transmittance;
-pub use transmittance_curve::TransmittanceCurve;
+/// Hands every problem, in the order of the design, to another macro. From its one line here come the
+/// module, the name in case files, the reader of its cases, and its rows in `trueflight list`.
+macro_rules! each_problem {
+    ($then:ident) => {
+        $then! {
+            transmittance::Transmittance,
+            free_flight::FreeFlight,
+            transmittance_curve::TransmittanceCurve,
+            rod::Rod,
+            slab::Slab,
+            single_scattering::SingleScattering,
+        }
+    };
+}
+pub(crate) use each_problem;
 
-/// Every problem, in the order of the design.
-pub const CATALOGUE: Catalogue = Catalogue {
-    name: "problems",
-    pages: &[
-        crate::page!(transmittance),
-        crate::page!(free_flight),
-        crate::page!(transmittance_curve),
-        crate::page!(rod),
-        crate::page!(single_scattering),
-    ],
-};
+macro_rules! pages {
+    ($($module:ident :: $Problem:ident,)*) => {
+        $(
+            pub mod $module;
+            pub use $module::$Problem;
+        )*
+
+        /// Every problem.
+        pub const CATALOGUE: Catalogue =
+            Catalogue { name: "problems", pages: &[$(crate::page!($module)),*] };
+    };
+}
+each_problem!(pages);
 
 /// An integral along one ray.
 ///
@@ -56,5 +62,13 @@ pub trait Problem: Send + Sync + Sized + 'static {
     /// The distance that each channel of a draw is about, for problems that are seen from the side.
     fn distances(&self) -> Vec<f64> {
         vec![self.medium().span().to]
+    }
+}
+
+/// Whether a case sweeps the albedo: then it need not give one.
+fn sweeps_albedo(settings: &Settings) -> bool {
+    match settings.entry("sweep").map(|entry| &entry.node.value) {
+        Some(Value::Table(sweep)) => sweep.iter().any(|entry| entry.key == "albedo"),
+        _ => false,
     }
 }

@@ -31,7 +31,7 @@
 //! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
 //! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
 
-use super::Problem;
+use super::{Problem, sweeps_albedo};
 use crate::catalogue::{Domain, Settings, Value};
 use crate::media::piecewise_constant::read_steps;
 use crate::media::piecewise_linear::read_lines;
@@ -176,7 +176,7 @@ impl Problem for Rod {
 
     #[allow(clippy::cast_possible_truncation)] // at most six and four
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = share(settings, "albedo", is_swept(settings).then_some(0.5));
+        let albedo = share(settings, "albedo", sweeps_albedo(settings).then_some(0.5));
         let forward = share(settings, "forward", Some(0.5));
         let absorbed = settings.flag_or("absorbed", false);
         let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
@@ -199,14 +199,6 @@ impl Problem for Rod {
         let albedo = Piecewise::constant(albedo, self.medium.span());
         let (medium, channels) = (self.medium.clone(), self.channels.clone());
         Some(Self::new(medium, &albedo, &self.forward, channels))
-    }
-}
-
-/// Whether the case sweeps the albedo: then it need not give one.
-fn is_swept(settings: &Settings) -> bool {
-    match settings.entry("sweep").map(|entry| &entry.node.value) {
-        Some(Value::Table(sweep)) => sweep.iter().any(|entry| entry.key == "albedo"),
-        _ => false,
     }
 }
 

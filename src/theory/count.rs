@@ -16,6 +16,8 @@ pub struct CountLaw {
     pub mean: f64,
     /// `Var[M]`.
     pub variance: f64,
+    /// A relative error bound of the mean beyond rounding.
+    pub error: f64,
     /// `μ₄/μ₂²`; 1 where the number is always the same.
     pub kurtosis: f64,
     /// Whether the law is Poisson.
@@ -33,7 +35,7 @@ impl CountLaw {
         if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
             Window::default().add(&mut pmf, 1.0, 0.0, whole(number));
         }
-        Self { mean: number, variance: 0.0, kurtosis: 1.0, poisson: false, pmf }
+        Self { mean: number, variance: 0.0, error: 0.0, kurtosis: 1.0, poisson: false, pmf }
     }
 
     /// Poisson with the given mean: a walk through `∫σ̂` that nothing ends early.
@@ -43,7 +45,7 @@ impl CountLaw {
         if (0.0..=LARGEST_MEAN).contains(&mean) {
             Window::default().add(&mut pmf, 1.0, mean, 0);
         }
-        Self { mean, variance: mean, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
+        Self { mean, variance: mean, error: 0.0, kurtosis: 3.0 + 1.0 / mean, poisson: true, pmf }
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
@@ -58,7 +60,7 @@ impl CountLaw {
         let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
         let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
-        Self { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
+        Self { mean, variance, error: 0.0, kurtosis, poisson: false, pmf: Vec::new() }
     }
 }
 

@@ -6,6 +6,7 @@
 pub mod count;
 pub mod curve;
 pub mod flight;
+pub mod h_function;
 pub mod lookups;
 pub mod mesh;
 pub mod moments;
@@ -16,6 +17,7 @@ pub mod product;
 pub mod rod;
 pub mod rule;
 pub mod single;
+pub mod slab;
 pub mod volterra;
 
 pub use count::CountLaw;

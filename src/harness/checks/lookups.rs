@@ -12,7 +12,7 @@ use crate::estimators::DrawBuffer;
 
 /// The largest relative error of the lookups that is still worth a promise.
 const CAP: f64 = 0.02;
-/// The relative error of a predicted number of lookups.
+/// The relative error of a predicted number of lookups, where theory does not say.
 const ERROR: f64 = 1e-10;
 
 /// The check of the lookups.
@@ -24,7 +24,8 @@ impl Check for Lookups {
         let mean = law.mean;
         let kind = if law.variance > 0.0 {
             let variance = law.variance / (mean * mean);
-            let known = Known { variance, error: ERROR, floor: ERROR };
+            let error = ERROR.max(law.error);
+            let known = Known { variance, error, floor: error };
             let wanted = Wanted { tolerance: subject.tolerance.lookups, cap: CAP };
             let observe = move |counts: &[u32], y: &mut Vec<f64>| {
                 let scale = 1.0 / mean;

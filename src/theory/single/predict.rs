@@ -122,7 +122,8 @@ impl Points {
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
         let channel = Channel::unbiased(self.truth, moments, tails);
         let prediction = Prediction::single(channel, CountLaw::always(0.0));
-        Prediction { lookups: self.lookups.map(count), ..prediction }
+        let lookups = self.lookups.map(|raw| CountLaw { error: self.error, ..count(raw) });
+        Prediction { lookups, ..prediction }
     }
 }
 
@@ -136,5 +137,5 @@ pub fn count([_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
     }
     let central = fourth - 4.0 * third * mean + 6.0 * second * square - 3.0 * square * square;
     let kurtosis = central / (variance * variance);
-    CountLaw { mean, variance, kurtosis, poisson: false, pmf: Vec::new() }
+    CountLaw { mean, variance, kurtosis, error: 0.0, poisson: false, pmf: Vec::new() }
 }

@@ -1,0 +1,105 @@
+//! Walks of the single particle model through a slab.
+
+pub mod walk;
+
+use crate::estimators::{Refusal, Setup, estimators};
+use crate::problems::{Problem, Slab};
+use crate::theory::slab::{self, Answer, Pieces, Walk};
+use crate::theory::{ParticleRule, Prediction};
+
+/// The largest error of an exact answer, relative to it, that is worth drawing against.
+const BLURRED: f64 = 1e-4;
+
+/// The walk of a rule, for theory.
+fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
+    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
+    let ratio =
+        |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
+    Walk {
+        incidence: *setup.problem.incidence(),
+        albedo: setup.problem.albedo(),
+        rule,
+        pieces: Pieces::new(&setup.mesh, &setup.sampling),
+        largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
+        depth: setup.mesh.optical_depth().value,
+        laws: setup.laws,
+    }
+}
+
+/// The exact answer; `None` where theory does not resolve it.
+fn truth(setup: &Setup<Slab>) -> Option<Answer> {
+    let slab = &setup.problem;
+    let answer = slab::cached(slab.incidence(), setup.mesh.optical_depth(), slab.albedo())?;
+    let is_sharp = |known: &crate::numeric::Known| known.error <= BLURRED * known.value;
+    [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
+}
+
+/// Whether a rule exists in a slab, reaches all of it, and has a variance there.
+fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
+    setup.require_coverage()?;
+    if !rule.needs().is_empty() {
+        let limit = rule.limits(setup.problem.albedo())[1];
+        setup.require_ratio_at_most(limit, rule.needs())?;
+    }
+    if truth(setup).is_none() {
+        let needs = "a slab that adding and doubling resolve";
+        let depth = setup.problem.medium().optical_depth(setup.mesh.support()).value;
+        let phase = setup.problem.incidence().phase.label();
+        return Err(Refusal::mismatch(needs, format!("τ = {depth:.6} and phase {phase}")));
+    }
+    if walk_of(setup, rule).diverges() {
+        let needs = "a finite variance";
+        let found = "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them";
+        return Err(Refusal::mismatch(needs, found));
+    }
+    Ok(())
+}
+
+/// What theory says of a rule; without an answer its values are no numbers, and are refused as such.
+fn predict(setup: &Setup<Slab>, rule: ParticleRule) -> Prediction {
+    walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
+}
+
+/// The plumbing of a page: all that differs is the rule, as in `walks!(ParticleRule::Adaptive)`.
+macro_rules! walks {
+    ($rule:expr) => {
+        const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+
+        fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
+            Some(Self)
+        }
+
+        fn domain(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
+        ) -> Result<(), $crate::estimators::Refusal> {
+            $crate::estimators::slab::realisable(setup, $rule)
+        }
+
+        fn predict(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
+        ) -> $crate::theory::Prediction {
+            $crate::estimators::slab::predict(setup, $rule)
+        }
+
+        #[inline(always)]
+        fn draw<M: $crate::media::Extinction>(
+            &self,
+            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
+            medium: &M,
+            rng: &mut $crate::rng::Stream,
+        ) -> $crate::estimators::Draw<[f64; 2]> {
+            $crate::estimators::slab::walk::draw(&$rule, setup, medium, rng)
+        }
+    };
+}
+
+estimators! {
+    Slab:
+    terminating::Terminating,
+    non_terminating::NonTerminating,
+    adaptive::Adaptive,
+    analog::Analog,
+    weighted::Weighted,
+}

@@ -1,0 +1,131 @@
+//! The walk of a particle through a slab, `SimulateParticle` in three dimensions.
+//!
+//! ```text
+//! a flight of optical depth u along a direction of cosine μ goes u|μ| deep through σ̂(z), down for μ > 0;
+//! at a tentative collision r = σ_t/σ̂ and the rule says whether the particle goes straight on, is
+//! scattered or is absorbed, and what becomes of its weight;
+//! scattered by an angle θ at an azimuth φ, μ' = μ cos θ + √(1 − μ²) sin θ cos φ
+//! ```
+//!
+//! A flight and what happens at its end take a random number each; a scattering takes one for θ and one
+//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`.
+
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::numeric::Lane;
+use crate::phase::Phase;
+use crate::phase::isotropic::Isotropic;
+use crate::problems::Slab;
+use crate::problems::slab::Light;
+use crate::rng::Stream;
+use crate::theory::particle::{Event, Odds, ParticleRule};
+
+/// The steps of a walk that a known bug may replace.
+pub trait Steps {
+    /// The odds at a collision with the given ratio `σ_t/σ̂` and albedo.
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds;
+
+    /// The depth of a flight, in optical depth, of the given length along a direction.
+    #[inline(always)]
+    fn descent(&self, length: f64, cosine: f64) -> f64 {
+        length * cosine.abs()
+    }
+
+    /// The cosine of the scattering angle.
+    #[inline(always)]
+    fn deflection(&self, phase: &Phase, rng: &mut Stream) -> f64 {
+        phase.cosine(rng.uniform())
+    }
+
+    /// The cosine of diffuse light, in `(0, 1]`.
+    #[inline(always)]
+    fn diffuse(&self, rng: &mut Stream) -> f64 {
+        (1.0 - rng.uniform()).sqrt()
+    }
+}
+
+impl Steps for ParticleRule {
+    #[inline(always)]
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+        self.odds(ratio, albedo)
+    }
+}
+
+/// The cosine with the normal after a deflection about the direction of travel.
+#[inline(always)]
+#[must_use]
+pub fn turned(cosine: f64, deflection: f64, azimuth: f64) -> f64 {
+    let across = (1.0 - cosine * cosine) * (1.0 - deflection * deflection);
+    // Rounding may carry a sum past 1, and a product below 0.
+    let turned = cosine * deflection + Lane::or_more(across, 0.0).sqrt() * azimuth;
+    Lane::or_more(Lane::or_less(turned, 1.0), -1.0)
+}
+
+/// Makes one draw: reflectance and transmittance.
+#[inline(always)]
+pub fn draw<M: Extinction>(
+    steps: &impl Steps,
+    setup: &Setup<Slab>,
+    medium: &M,
+    rng: &mut Stream,
+) -> Draw<[f64; 2]> {
+    let slab = &*setup.problem;
+    let incidence = slab.incidence();
+    let mut cosine = match incidence.light {
+        Light::Collimated(cosine) => cosine,
+        Light::Diffuse => steps.diffuse(rng),
+    };
+    let mut cursor = setup.sampling.begin();
+    let mut weight = 1.0;
+    let mut lookups = 0;
+    loop {
+        let (length, number) = (-rng.ln_uniform(), rng.uniform());
+        let depth = steps.descent(length, cosine);
+        let is_down = cosine > 0.0;
+        let flown = if is_down {
+            setup.sampling.fly(&mut cursor, depth)
+        } else {
+            setup.sampling.fly_back(&mut cursor, depth)
+        };
+        let Some(sampling) = flown else {
+            let value = if is_down { [0.0, weight] } else { [weight, 0.0] };
+            return Draw::free(value, lookups);
+        };
+        lookups += 1;
+        let odds = steps.odds_at(medium.extinction(cursor.t) / sampling, slab.albedo());
+        match odds.decide(number) {
+            Event::Transmitted => weight *= odds.transmit_weight,
+            Event::Scattered => {
+                weight *= odds.scatter_weight;
+                let deflection = steps.deflection(&incidence.phase, rng);
+                cosine = if incidence.phase == Phase::Isotropic(Isotropic) {
+                    deflection
+                } else {
+                    let azimuth = Lane::cos(std::f64::consts::TAU * rng.uniform());
+                    turned(cosine, deflection, azimuth)
+                };
+            }
+            Event::Absorbed => return Draw::free([0.0; 2], lookups),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_turn_as_on_a_sphere() {
+        // Straight on and straight back, whatever the azimuth.
+        for azimuth in [-1.0, 0.3, 1.0] {
+            assert_eq!(turned(0.6, 1.0, azimuth), 0.6);
+            assert_eq!(turned(0.6, -1.0, azimuth), -0.6);
+            // From the normal the new cosine is that of the deflection.
+            assert_eq!(turned(1.0, 0.25, azimuth), 0.25);
+        }
+        // cos 60° by 30° towards the normal and away from it: cos 30°, cos 90°.
+        let (half, long) = (0.5, 0.75f64.sqrt());
+        assert!((turned(half, long, 1.0) - long).abs() < 1e-15);
+        assert!(turned(half, long, -1.0).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,181 @@
+//! The plane-parallel slab: reflectance and transmittance by adding and doubling, and the moments of
+//! walks in it.
+//!
+//! ```text
+//! μ dI/dτ = −I + (a/2) ∫₋₁¹ p(μ, μ') I(μ') dμ',   light from above at μ₀, or spread like 2μ₀ dμ₀
+//! ```
+//!
+//! A layer so thin that light scatters in it once at most is doubled until it is the slab; layers that
+//! differ are laid upon each other. Any answer is computed twice, with fewer directions and a thicker
+//! first layer the second time, and the difference is stated as its error.
+//!
+//! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
+//! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
+//! 1, see [`crate::theory::particle`]. It may also be too thick for that albedo: then the moment is
+//! infinite.
+//!
+//! Source: H. C. van de Hulst, *Multiple Light Scattering* (Academic Press, 1980), chapters 4 and 9.
+
+pub mod cache;
+pub mod directions;
+pub mod layer;
+pub mod pieces;
+pub mod walk;
+
+use crate::numeric::Known;
+use crate::problems::slab::{Incidence, Light};
+
+use directions::Directions;
+use layer::{Layer, Slice};
+
+pub use cache::cached;
+pub use pieces::{Piece, Pieces};
+pub use walk::Walk;
+
+/// What becomes of light.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Energy {
+    /// The share that comes back.
+    pub reflected: f64,
+    /// The share that passes, unscattered light included.
+    pub transmitted: f64,
+    /// The score of its collisions.
+    pub score: f64,
+}
+
+/// What becomes of light, with error bounds.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The share that comes back.
+    pub reflected: Known,
+    /// The share that passes, unscattered light included.
+    pub transmitted: Known,
+    /// The score of its collisions.
+    pub score: Known,
+}
+
+impl Answer {
+    /// No answer.
+    pub const UNKNOWN: Self = {
+        let nothing = Known { value: f64::NAN, error: f64::INFINITY };
+        Self { reflected: nothing, transmitted: nothing, score: nothing }
+    };
+}
+
+/// How closely a slab is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Resolution {
+    /// Legendre moments of this size are resolved.
+    pub faintest: f64,
+    /// The fewest directions.
+    pub directions: usize,
+    /// The error that the first layer may bring in.
+    pub first_layer: f64,
+}
+
+impl Resolution {
+    /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
+    pub const FINE: Self = Self { faintest: 1e-11, directions: 32, first_layer: 3e-14 };
+    /// For moments: 1e-4 and mostly far better.
+    pub const COARSE: Self = Self { faintest: 1e-5, directions: 16, first_layer: 1e-8 };
+    /// For moments where r varies, of which thirty-six layers are solved, and for differences.
+    pub const LAYERED: Self = Self { faintest: 1e-4, directions: 12, first_layer: 1e-7 };
+
+    fn coarser(self) -> Self {
+        Self {
+            faintest: self.faintest.powf(0.75),
+            directions: self.directions * 3 / 4,
+            first_layer: 4.0 * self.first_layer,
+        }
+    }
+}
+
+/// The error of a first layer of optical depth u, doubled to τ, is about `13 τ u`.
+const FIRST_LAYER: f64 = 13.0;
+/// What fifty doublings of a hundred directions lose in rounding, relative to the energy: measured as
+/// what is missing where nothing is absorbed, twice over.
+const ROUNDING: f64 = 2e-13;
+/// The most doublings: beyond, a share of the slab is lost in rounding.
+const MOST_DOUBLINGS: f64 = 100.0;
+
+/// What becomes of light in a stack of layers, from above; `None` where a share is infinite.
+#[must_use]
+pub fn solve(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Answer> {
+    let fine = energy(incidence, slices, resolution)?;
+    let coarse = energy(incidence, slices, resolution.coarser())?;
+    // Two answers may agree by chance: what is known of the first layer and of rounding is added.
+    let known = |fine: f64, coarse: f64| {
+        let error = (fine - coarse).abs() + (resolution.first_layer + ROUNDING) * fine.abs();
+        Known::new(fine, error)
+    };
+    Some(Answer {
+        reflected: known(fine.reflected, coarse.reflected),
+        transmitted: known(fine.transmitted, coarse.transmitted),
+        score: known(fine.score, coarse.score),
+    })
+}
+
+/// The same at one resolution, without error bounds.
+#[must_use]
+pub fn energy(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Energy> {
+    let count =
+        directions::needed(&incidence.phase, resolution.faintest).max(resolution.directions);
+    let further = match incidence.light {
+        Light::Collimated(cosine) => vec![cosine],
+        Light::Diffuse => Vec::new(),
+    };
+    let directions = Directions::new(&incidence.phase, count, &further);
+    let layer = stack(&directions, slices, resolution.first_layer)?;
+    let share = |f: &dyn Fn(usize) -> f64| match incidence.light {
+        Light::Collimated(_) => f(count),
+        Light::Diffuse => {
+            let nodes = directions.weights.iter().zip(&directions.cosines);
+            nodes.enumerate().map(|(i, (weight, cosine))| 2.0 * weight * cosine * f(i)).sum()
+        }
+    };
+    let energy = Energy {
+        reflected: share(&|i| layer.reflected.row(i).iter().sum()),
+        transmitted: share(&|i| layer.scattered.row(i).iter().sum::<f64>() + layer.direct[i]),
+        score: share(&|i| layer.score[i]),
+    };
+    let is_finite =
+        [energy.reflected, energy.transmitted, energy.score].iter().all(|x| x.is_finite());
+    is_finite.then_some(energy)
+}
+
+/// The layers laid upon each other, the first on top.
+fn stack(directions: &Directions, slices: &[Slice], error: f64) -> Option<Layer> {
+    let homogeneous = |slice: &Slice| {
+        let depth = slice.flown * slice.lost().abs().max(slice.scattered.abs());
+        let doublings = (FIRST_LAYER * depth * depth.max(1.0) / error).log2().ceil();
+        #[allow(clippy::cast_possible_truncation)] // a small number
+        let doublings = doublings.clamp(0.0, MOST_DOUBLINGS) as i32;
+        Layer::homogeneous(directions, slice, doublings)
+    };
+    let (last, above) = slices.split_last()?;
+    let mut stack = homogeneous(last)?;
+    for slice in above.iter().rev() {
+        stack = homogeneous(slice)?.over(&stack)?;
+    }
+    Some(stack)
+}
+
+/// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
+/// number of collisions. `None` where they are infinite, which takes an albedo above 1.
+#[must_use]
+pub fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
+    let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
+    let answer = solve(incidence, &[slice], Resolution::FINE)?;
+    // A layer of optical depth δ more meets light from all directions, and changes no share by more
+    // than the light that collides in it.
+    let steepest = match incidence.light {
+        Light::Collimated(cosine) => 4.0 + 1.0 / cosine,
+        Light::Diffuse => 6.0,
+    };
+    let blurred = |known: Known| Known::new(known.value, known.error + steepest * depth.error);
+    Some(Answer {
+        reflected: blurred(answer.reflected),
+        transmitted: blurred(answer.transmitted),
+        score: blurred(answer.score),
+    })
+}

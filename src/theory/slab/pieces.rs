@@ -1,0 +1,147 @@
+//! A slab cut into layers on which the ratio `r = σ_t/σ̂` is one number, or nearly so.
+
+use super::layer::Slice;
+use crate::media::Piecewise;
+use crate::numeric::Span;
+use crate::numeric::quadrature::GaussLegendre;
+use crate::theory::Mesh;
+use crate::theory::particle::Odds;
+
+/// A ratio that varies by less is one number.
+const SAME: f64 = 1e-12;
+/// More layers than this are averaged.
+const MOST_EXACT: usize = 16;
+/// Layers of the coarser cut where r varies.
+const COARSE: usize = 12;
+/// More breaks than this are averaged over.
+const MOST_BREAKS: usize = 24;
+/// Nodes on a smooth part of a layer.
+const NODES: usize = 6;
+
+/// A layer: what is flown in it, and the ratios in it with their shares, which add up to 1.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Piece {
+    /// `∫σ̂` over the layer.
+    pub flown: f64,
+    /// Shares of `∫σ̂` and the ratios there.
+    pub ratios: Vec<[f64; 2]>,
+}
+
+impl Piece {
+    /// A layer of one ratio.
+    #[must_use]
+    pub fn of(flown: f64, ratio: f64) -> Self {
+        Self { flown, ratios: vec![[1.0, ratio]] }
+    }
+
+    /// The layer with the mean of what collisions in it do.
+    pub(super) fn slice(&self, at: impl Fn(f64) -> [f64; 3]) -> Slice {
+        let mut sums = [0.0; 3];
+        for &[share, ratio] in &self.ratios {
+            for (sum, x) in sums.iter_mut().zip(at(ratio)) {
+                *sum += share * x;
+            }
+        }
+        let [straight, scattered, score] = sums;
+        Slice { flown: self.flown, straight, scattered, score }
+    }
+
+    /// Whether every collision in it is null: then nothing happens to a particle.
+    pub(super) fn is_idle(&self, odds: impl Fn(f64) -> Odds) -> bool {
+        self.ratios.iter().all(|&[_, ratio]| odds(ratio).transmit >= 1.0)
+    }
+}
+
+/// The layers of a slab, the first on top.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Pieces {
+    /// r is one number in each.
+    Exact(Vec<Piece>),
+    /// r varies in them: a coarser cut, and one of twice as many layers.
+    Graded([Vec<Piece>; 2]),
+}
+
+impl Pieces {
+    /// The layers of a medium under a sampling extinction.
+    #[must_use]
+    pub fn new(mesh: &Mesh, sampling: &Piecewise) -> Self {
+        let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
+        let mut exact: Vec<Piece> = Vec::new();
+        let mut is_exact = true;
+        for panel in cut.panels() {
+            let there: Vec<f64> = panel.t.iter().map(|&t| sampling.value(t)).collect();
+            let flown = cut.integral(panel, &there);
+            // What neither collides nor scatters is not there.
+            if flown <= 0.0 {
+                continue;
+            }
+            let mut ratios = panel.extinction.iter().zip(&there).map(|(sigma, here)| sigma / here);
+            let first = ratios.next().unwrap_or(0.0);
+            let same = |ratio: f64| (ratio - first).abs() <= SAME * first.abs();
+            is_exact &= ratios.all(same);
+            match exact.last_mut() {
+                Some(last) if same(last.ratios[0][1]) => last.flown += flown,
+                _ => exact.push(Piece::of(flown, first)),
+            }
+            if !is_exact || exact.len() > MOST_EXACT {
+                return Self::Graded([1, 2].map(|times| graded(mesh, sampling, times)));
+            }
+        }
+        Self::Exact(exact)
+    }
+}
+
+/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂ where these are few.
+fn graded(mesh: &Mesh, sampling: &Piecewise, times: usize) -> Vec<Piece> {
+    let support = mesh.support();
+    let mut breaks = mesh.medium().breaks();
+    breaks.extend(sampling.knots());
+    breaks.retain(|&t| support.contains_inside(t));
+    breaks.extend([support.from, support.to]);
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup();
+    let few = breaks.len() <= MOST_BREAKS;
+    let ends = if few { breaks.clone() } else { vec![support.from, support.to] };
+    let rule = GaussLegendre::new(NODES);
+    let mut pieces = Vec::new();
+    for stretch in ends.windows(2) {
+        let share = (stretch[1] - stretch[0]) / support.length();
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
+        let parts = times * ((COARSE as f64 * share).ceil() as usize).max(1);
+        let step = (stretch[1] - stretch[0]) / parts as f64;
+        for part in 0..parts {
+            let from = stretch[0] + step * part as f64;
+            let within = Span::new(from, if part + 1 == parts { stretch[1] } else { from + step });
+            pieces.extend(piece(mesh, sampling, within, &breaks, &rule));
+        }
+    }
+    pieces
+}
+
+/// One layer by quadrature between the breaks inside it; `None` where nothing is flown.
+fn piece(
+    mesh: &Mesh,
+    sampling: &Piecewise,
+    within: Span,
+    breaks: &[f64],
+    rule: &GaussLegendre,
+) -> Option<Piece> {
+    let mut ends = vec![within.from];
+    ends.extend(breaks.iter().copied().filter(|&t| within.contains_inside(t)));
+    ends.push(within.to);
+    let mut ratios: Vec<[f64; 2]> = Vec::new();
+    for ends in ends.windows(2) {
+        let width = ends[1] - ends[0];
+        let at: Vec<f64> = rule.nodes.iter().map(|x| ends[0] + width * x).collect();
+        let extinction = mesh.medium().extinctions(&at);
+        for ((&t, sigma), weight) in at.iter().zip(extinction).zip(&rule.weights) {
+            let here = sampling.value(t);
+            if here > 0.0 {
+                ratios.push([width * weight * here, sigma / here]);
+            }
+        }
+    }
+    let flown: f64 = ratios.iter().map(|[share, _]| share).sum();
+    ratios.iter_mut().for_each(|[share, _]| *share /= flown);
+    (flown > 0.0).then_some(Piece { flown, ratios })
+}

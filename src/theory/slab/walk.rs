@@ -1,0 +1,265 @@
+//! A walk in a slab: mean, variance and cost of what it says of reflectance and transmittance.
+//!
+//! With `Q_k`, `S_k` the k-th moments of what a tentative collision leaves, `E[X^k]` is reflectance or
+//! transmittance of the slab that is `∫σ̂(1 − Q_k)` thick and has the albedo `S_k/(1 − Q_k)`, layer by
+//! layer where `r = σ_t/σ̂` changes from layer to layer. Of rules that leave no weight at a null
+//! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies
+//! continuously, layers have the mean `Q_k` and `S_k`; the error is of second order in their
+//! thickness, and is extrapolated from two cuts and bounded by their difference.
+//!
+//! A walk leaves on one side only: `X_R X_T = 0`, which makes the covariance.
+//!
+//! ```text
+//! Cov[X_R, X_T] = −RT,   E[(X_R − R)²(X_T − T)²] = E[X_R²]T² + E[X_T²]R² − 3R²T²
+//! ```
+//!
+//! The number M of collisions has the generating function `G(z) = E[z^M]`, which is what a slab with
+//! `zQ_0`, `zS_0` and the score `z(1 − Q_0 − S_0)` makes of one particle. Its cumulants are derivatives
+//! of `ln G(e^θ)`, taken from θ = 0, ±h, ±2h:
+//!
+//! ```text
+//! Var[M] = (16(f(h) + f(−h)) − f(2h) − f(−2h) − 30 f(0))/(12h²),   f(θ) = ln G(e^θ)
+//! ```
+//!
+//! Source: Szirmay-Kalos et al. 2017, sections 3.1–3.3; that moments are slabs again, the covariance and
+//! the cost are derived here.
+
+use super::layer::Slice;
+use super::pieces::{Piece, Pieces};
+use super::{Answer, Energy, Incidence, Resolution, energy, solve};
+use crate::numeric::Known;
+use crate::theory::particle::{Odds, ParticleRule};
+use crate::theory::prediction::Covariance;
+use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
+
+/// The channels of a draw, in their order.
+pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
+
+/// A walk in a slab.
+#[derive(Debug, Clone)]
+pub struct Walk {
+    /// Light and phase function.
+    pub incidence: Incidence,
+    /// a.
+    pub albedo: f64,
+    /// What happens at a collision.
+    pub rule: ParticleRule,
+    /// The layers.
+    pub pieces: Pieces,
+    /// The largest r.
+    pub largest_ratio: f64,
+    /// τ of the slab.
+    pub depth: f64,
+    /// Whether tails and the law of the cost are asked for, too.
+    pub laws: bool,
+}
+
+impl Walk {
+    /// What theory says, given the exact answer.
+    #[must_use]
+    pub fn predict(&self, truth: &Answer) -> Prediction {
+        let truths = [truth.reflected, truth.transmitted];
+        let raw = [2, 3, 4, 8].map(|k| self.moments(k, truth));
+        let channels: Vec<Channel> = (0..2)
+            .map(|i| channel(CHANNELS[i], truths[i], raw.map(|both| both.map(|both| both[i]))))
+            .collect();
+        let [r, t] = truths.map(|known| known.value);
+        let covariances = raw[0].map(|[second_r, second_t]| {
+            let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
+            Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
+        });
+        Prediction {
+            channels,
+            lookups: self.lookups(),
+            layers: None,
+            random_numbers: None,
+            law: None,
+            covariances: covariances.into_iter().filter(|c| c.variance.is_finite()).collect(),
+            increments: Vec::new(),
+            stable_share: None,
+        }
+    }
+
+    fn odds(&self, ratio: f64) -> Odds {
+        self.rule.odds(ratio, self.albedo)
+    }
+
+    /// Whether null collisions leave the weight alone.
+    fn is_tracking(&self) -> bool {
+        use ParticleRule::{Analog, Terminating, Weighted};
+        matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
+    }
+
+    /// Whether the second moments are known to be infinite: no number of draws would settle.
+    #[must_use]
+    pub fn diverges(&self) -> bool {
+        // A weight that never grows stays at 1 at most.
+        let grows = |ratio: f64| {
+            let odds = self.odds(ratio);
+            odds.transmit_weight.abs() > 1.0 || odds.scatter_weight.abs() > 1.0
+        };
+        let pieces = match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
+        };
+        let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
+        may_grow && self.powers(2).is_none()
+    }
+
+    /// `E[X_R^k]` and `E[X_T^k]`; `None` where they are infinite.
+    fn powers(&self, k: i32) -> Option<[Known; 2]> {
+        let moments = |odds: Odds| [odds.transmitted(k), odds.scattered(k), 0.0];
+        let layers = |pieces: &[Piece]| -> Vec<Slice> {
+            pieces.iter().map(|piece| piece.slice(|ratio| moments(self.odds(ratio)))).collect()
+        };
+        let exact = |slices: &[Slice]| {
+            let answer = solve(&self.incidence, slices, Resolution::COARSE)?;
+            Some([answer.reflected, answer.transmitted])
+        };
+        if self.is_tracking() {
+            return exact(&[Piece::of(self.depth, 1.0).slice(|ratio| moments(self.odds(ratio)))]);
+        }
+        match &self.pieces {
+            Pieces::Exact(pieces) => exact(&layers(pieces)),
+            Pieces::Graded(cuts) => {
+                let energy = |cut: &Vec<Piece>| -> Option<Energy> {
+                    energy(&self.incidence, &layers(cut), Resolution::LAYERED)
+                };
+                let [coarse, fine] = [energy(&cuts[0])?, energy(&cuts[1])?];
+                Some([
+                    extrapolated(coarse.reflected, fine.reflected),
+                    extrapolated(coarse.transmitted, fine.transmitted),
+                ])
+            }
+        }
+    }
+
+    /// The same, infinite where they are; `None` where they are not asked for.
+    fn moments(&self, k: i32, truth: &Answer) -> Option<[Known; 2]> {
+        let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
+        if k > 4 && (is_graded || !self.laws) {
+            return None;
+        }
+        if self.is_tracking() && self.odds(1.0).scatter_weight == 1.0 {
+            // Draws are 0 or 1.
+            return Some([truth.reflected, truth.transmitted]);
+        }
+        let infinite = Known::new(f64::INFINITY, f64::INFINITY);
+        Some(self.powers(k).unwrap_or([infinite; 2]))
+    }
+
+    /// The law of the number of collisions without its probabilities; `None` where it is not known, or
+    /// has an infinite variance.
+    fn lookups(&self) -> Option<CountLaw> {
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
+        // Along a layer of null collisions only there is no end to them.
+        let odds = |ratio: f64| self.odds(ratio);
+        if pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds)) {
+            return None;
+        }
+        let slices = |z: f64, score: fn(&Odds) -> f64| -> Vec<Slice> {
+            let at = |ratio: f64| {
+                let odds = self.odds(ratio);
+                [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
+            };
+            pieces.iter().map(|piece| piece.slice(at)).collect()
+        };
+        let mean = solve(&self.incidence, &slices(1.0, |_| 1.0), Resolution::COARSE)?.score;
+        let error = mean.error / mean.value;
+        let mean = mean.value;
+        let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
+        let f = |theta: f64| -> Option<f64> {
+            let slices = slices(theta.exp(), ends);
+            let found = energy(&self.incidence, &slices, Resolution::LAYERED)?;
+            Some((found.reflected + found.transmitted + found.score).ln())
+        };
+        let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
+        let kurtosis = 3.0 + fourth / (variance * variance);
+        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
+    }
+}
+
+/// What two cuts say together: the error of the finer one is a quarter of the other's.
+fn extrapolated(coarse: f64, fine: f64) -> Known {
+    Known::new(fine + (fine - coarse) / 3.0, (fine - coarse).abs() + 1e-4 * fine.abs())
+}
+
+/// The step of θ in units of the number of collisions over which the law decays.
+const STEP: f64 = 0.02;
+
+/// The second and the fourth cumulant from the cumulant-generating function; `None` where that is
+/// infinite too near to 0.
+fn cumulants(mean: f64, f: impl Fn(f64) -> Option<f64>) -> Option<[f64; 2]> {
+    let at = |h: f64| -> Option<[f64; 2]> {
+        let [far, near, here, before, back] = [2.0 * h, h, 0.0, -h, -2.0 * h].map(&f);
+        let (outer, inner, here) = (far? + back?, near? + before?, here?);
+        let second = (16.0 * inner - outer - 30.0 * here) / (12.0 * h * h);
+        Some([second, (outer - 4.0 * inner + 6.0 * here) / (h * h * h * h)])
+    };
+    let mut scale = 1.0 + mean;
+    let mut found = at(STEP / scale);
+    for _ in 0..4 {
+        // The decay of a long tail is variance over mean.
+        let wanted = found.map_or(8.0 * scale, |[variance, _]| 1.0 + variance / mean);
+        if found.is_some() && wanted <= 2.0 * scale {
+            break;
+        }
+        scale = wanted;
+        found = at(STEP / scale);
+    }
+    found.filter(|[variance, fourth]| *variance > 0.0 && fourth.is_finite())
+}
+
+/// A channel with its central moments from `E[X²]`, `E[X³]`, `E[X⁴]` and `E[X⁸]`.
+fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
+    let t = truth.value;
+    let unit = |k: i32, known: Known| Known::new(known.value / t.powi(k), known.error / t.powi(k));
+    let [second, third, fourth, eighth] = raw;
+    let moments = second.zip(third).zip(fourth).map(|((second, third), fourth)| {
+        let (second, third, fourth) = (unit(2, second), unit(3, third), unit(4, fourth));
+        let blur = truth.error / t;
+        let [a, b, c] = [second, third, fourth].map(|known| known.value);
+        let variance = (a - 1.0).max(0.0);
+        if c.is_infinite() || b.is_infinite() {
+            let error = (second.error + 2.0 * blur * a) / variance;
+            let error = if error.is_nan() { 0.0 } else { error };
+            let higher = f64::INFINITY;
+            return Moments { scale: t, relative: [variance, higher, higher], error };
+        }
+        let skew = b - 3.0 * a + 2.0;
+        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
+        let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
+        let errors = [
+            (second.error + 2.0 * blur * a + rounding) / variance,
+            (fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding)
+                / peak,
+        ];
+        let error = errors[0].max(errors[1]);
+        Moments { scale: t, relative: [variance, skew, peak], error }
+    });
+    let tails = match (moments, fourth, eighth) {
+        (Some(moments), Some(fourth), Some(eighth)) => Tails {
+            rare_event_size: moments.kurtosis().unwrap_or(1.0),
+            eighth_moment_ratio: eighth.value / (fourth.value * fourth.value),
+        },
+        _ => Tails { rare_event_size: f64::INFINITY, eighth_moment_ratio: f64::INFINITY },
+    };
+    let tails = Tails {
+        eighth_moment_ratio: if tails.eighth_moment_ratio.is_nan() {
+            f64::INFINITY
+        } else {
+            tails.eighth_moment_ratio
+        },
+        ..tails
+    };
+    Channel {
+        name: name.to_owned(),
+        truth,
+        mean: truth,
+        moments,
+        most_variance: None,
+        tails,
+        unit: t,
+        log_unit: 0.0,
+        losses: None,
+    }
+}

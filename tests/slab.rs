@@ -1,0 +1,293 @@
+//! Slabs against reference values that were computed by other means: reflectance, transmittance, the
+//! H-function and the second moments of walks.
+
+use serde::Deserialize;
+
+use trueflight::numeric::Known;
+use trueflight::phase::Phase;
+use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
+use trueflight::phase::isotropic::Isotropic;
+use trueflight::phase::rayleigh::Rayleigh;
+use trueflight::problems::slab::{Incidence, Light};
+use trueflight::theory::h_function::h_function;
+use trueflight::theory::particle::ParticleRule;
+use trueflight::theory::slab::{Piece, Pieces, Walk, cached};
+
+#[derive(Deserialize)]
+struct Reference {
+    id: String,
+    params: Params,
+    value: Vec<f64>,
+}
+
+#[derive(Deserialize)]
+struct Params {
+    a: f64,
+    tau: Option<f64>,
+    g: Option<f64>,
+    #[serde(rename = "D")]
+    thickness: Option<f64>,
+}
+
+const COSINES: [f64; 6] = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0];
+
+fn references() -> Vec<Reference> {
+    serde_json::from_str(include_str!("data/slabs.json")).expect("the reference values")
+}
+
+/// The phase function of a slab, and how near its values must come.
+fn phase(reference: &Reference) -> Option<(Phase, f64)> {
+    let isotropic = Phase::Isotropic(Isotropic);
+    match reference.id.as_str() {
+        "slab_iso" => Some((isotropic, 1e-10)),
+        "slab_rayleigh" => Some((Phase::Rayleigh(Rayleigh), 1e-10)),
+        "slab_hg" => {
+            let phase = HenyeyGreenstein::new(reference.params.g?)?;
+            Some((Phase::HenyeyGreenstein(phase), 1e-8))
+        }
+        _ => None,
+    }
+}
+
+#[test]
+fn reflectance_and_transmittance_are_those_of_the_references() {
+    let mut count = 0;
+    for reference in references() {
+        let Some((phase, tolerance)) = phase(&reference) else { continue };
+        let depth = Known::exact(reference.params.tau.expect("an optical depth"));
+        let lights = COSINES.map(Light::Collimated).into_iter().chain([Light::Diffuse]);
+        for (i, light) in lights.enumerate() {
+            let incidence = Incidence { light, phase };
+            let answer = cached(&incidence, depth, reference.params.a).expect("finite");
+            // Six reflectances, six transmittances, and both for diffuse light.
+            let places = if i < 6 { [i, 6 + i] } else { [12, 13] };
+            for (known, place) in [answer.reflected, answer.transmitted].into_iter().zip(places) {
+                let expected = reference.value[place];
+                let error = (known.value - expected).abs();
+                let context = format!("{} {:?} {light:?}", reference.id, reference.params.tau);
+                assert!(error <= tolerance, "{context}: {} for {expected}", known.value);
+                // The bound that the answer states of itself holds, and is no excuse.
+                assert!(error <= known.error, "{context}: {error:e} > {:e}", known.error);
+                assert!(known.error <= tolerance, "{context}: {:e}", known.error);
+                count += 1;
+            }
+        }
+    }
+    assert!(count >= 14 * 15, "{count}");
+}
+
+#[test]
+fn the_h_function_is_that_of_the_references() {
+    let mut count = 0;
+    for reference in references().iter().filter(|reference| reference.id == "H_iso") {
+        for (cosine, expected) in COSINES.iter().zip(&reference.value) {
+            let found = h_function(reference.params.a, *cosine);
+            assert!((found / expected - 1.0).abs() < 1e-13, "{cosine}: {found} for {expected}");
+            count += 1;
+        }
+    }
+    assert!(count >= 30);
+}
+
+#[test]
+fn a_thick_slab_reflects_like_a_semi_infinite_one() {
+    // Van de Hulst's e^{−2kτ} is below 1e-16 here.
+    for (albedo, depth) in [(0.5, 25.0), (0.9, 40.0)] {
+        for cosine in COSINES {
+            let light = Light::Collimated(cosine);
+            let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
+            let answer = cached(&incidence, Known::exact(depth), albedo).expect("finite");
+            let exact = 1.0 - h_function(albedo, cosine) * f64::sqrt(1.0 - albedo);
+            assert!((answer.reflected.value - exact).abs() < 1e-12, "a = {albedo}, μ₀ = {cosine}");
+        }
+    }
+}
+
+#[test]
+fn all_light_leaves_a_slab_that_absorbs_none() {
+    for g in [0.0, 0.5, 0.9, -0.4] {
+        let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"));
+        for light in [Light::Diffuse, Light::Collimated(0.05), Light::Collimated(1.0)] {
+            let answer =
+                cached(&Incidence { light, phase }, Known::exact(3.0), 1.0).expect("finite");
+            let sum = answer.reflected.value + answer.transmitted.value;
+            assert!((sum - 1.0).abs() < 2e-13, "g = {g}, {light:?}: {sum}");
+        }
+    }
+}
+
+#[test]
+fn sharp_phase_functions_meet_their_error_bound() {
+    for light in [Light::Diffuse, Light::Collimated(0.3)] {
+        let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(0.9).expect("in range"));
+        let answer = cached(&Incidence { light, phase }, Known::exact(4.0), 0.95).expect("finite");
+        for known in [answer.reflected, answer.transmitted] {
+            assert!(known.error < 1e-8, "{known:?}");
+        }
+    }
+}
+
+/// The walk through σ_t = 1 on a slab of thickness D.
+fn walk(reference: &Reference, cosine: f64) -> Walk {
+    let (name, sampling) = reference.id["spm_slab/".len()..].split_once('/').expect("a rule");
+    let sampling: f64 = sampling.parse().expect("σ̂");
+    let rule = match name {
+        "term" => ParticleRule::Terminating,
+        "non" => ParticleRule::NonTerminating,
+        other => panic!("{other}"),
+    };
+    let thickness = reference.params.thickness.expect("a thickness");
+    Walk {
+        incidence: Incidence {
+            light: Light::Collimated(cosine),
+            phase: Phase::Isotropic(Isotropic),
+        },
+        albedo: reference.params.a,
+        rule,
+        pieces: Pieces::Exact(vec![Piece::of(sampling * thickness, 1.0 / sampling)]),
+        largest_ratio: 1.0 / sampling,
+        depth: thickness,
+        laws: true,
+    }
+}
+
+#[test]
+fn second_moments_of_walks_are_those_of_the_references() {
+    let mut count = 0;
+    for reference in references().iter().filter(|r| r.id.starts_with("spm_slab/")) {
+        for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
+            let walk = walk(reference, cosine);
+            let truth = cached(&walk.incidence, Known::exact(walk.depth), walk.albedo);
+            let prediction = walk.predict(&truth.expect("finite"));
+            for (channel, expected) in prediction.channels.iter().zip(expected) {
+                let moments = channel.moments.expect("r is constant");
+                let mean = channel.mean.value;
+                let second = moments.variance() + mean * mean;
+                let bound = moments.error * moments.variance();
+                let error = (second - expected).abs();
+                assert!(error < 1e-8 * expected, "{}: {second} for {expected}", reference.id);
+                assert!(error <= bound, "{}: {error:e} > {bound:e}", reference.id);
+                count += 1;
+            }
+        }
+    }
+    assert_eq!(count, 12);
+}
+
+/// A walk by the non-terminating rule at a = 0.8 through layers.
+fn through(light: Light, pieces: Vec<Piece>) -> Walk {
+    Walk {
+        incidence: Incidence { light, phase: Phase::Rayleigh(Rayleigh) },
+        albedo: 0.8,
+        rule: ParticleRule::NonTerminating,
+        depth: 1.0,
+        largest_ratio: 2.0,
+        pieces: Pieces::Exact(pieces),
+        laws: true,
+    }
+}
+
+fn lookups(walk: &Walk) -> Known {
+    let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
+    let law = walk.predict(&truth).lookups.expect("r is constant in each layer");
+    assert!(law.error < 1e-6, "{:e}", law.error);
+    Known::new(law.mean, law.mean * law.error)
+}
+
+/// Whether a number is known to be what it should be.
+fn is(known: Known, expected: f64) -> bool {
+    (known.value - expected).abs() <= known.error
+}
+
+#[test]
+fn a_walk_without_end_looks_up_the_mean_chord() {
+    // Lambertian light on both sides: 4V/S = 2D, times the mean σ̂, whatever is in the slab.
+    let layers = [(0.7, 0.3), (0.2, 0.9), (1.1, 0.6)];
+    let of = |order: &[usize]| {
+        let pieces = order.iter().map(|&i| Piece::of(layers[i].0, layers[i].1)).collect();
+        lookups(&through(Light::Diffuse, pieces))
+    };
+    let (there, back) = (of(&[0, 1, 2]), of(&[2, 1, 0]));
+    let both = there + back;
+    assert!(is(both, 2.0 * 2.0 * 2.0), "{both:?}");
+    assert!((there.value - back.value).abs() > 1e-3);
+    assert!(is(lookups(&through(Light::Diffuse, vec![Piece::of(1.7, 0.5)])), 3.4));
+}
+
+#[test]
+fn the_law_of_the_lookups_is_poisson_without_scattering() {
+    // r = 10⁻¹² below every collision: all is null but for the rarest, and the path is D/μ₀.
+    let light = Light::Collimated(0.4);
+    let walk = Walk { albedo: 1.0, ..through(light, vec![Piece::of(1.2, 1e-12)]) };
+    let truth = cached(&walk.incidence, Known::exact(1.0), 1.0).expect("finite");
+    let law = walk.predict(&truth).lookups.expect("r is constant");
+    assert!((law.mean - 3.0).abs() < 1e-7, "{}", law.mean);
+    assert!((law.variance - 3.0).abs() < 1e-5, "{}", law.variance);
+    assert!((law.kurtosis - 3.0 - 1.0 / 3.0).abs() < 1e-2, "{}", law.kurtosis);
+}
+
+#[test]
+fn layers_of_one_kind_are_one_layer() {
+    let light = Light::Collimated(0.3);
+    let moments = |pieces: Vec<Piece>| {
+        let walk = through(light, pieces);
+        let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
+        let channels = walk.predict(&truth).channels;
+        let variances = channels.iter().map(|channel| {
+            let moments = channel.moments.expect("r is constant");
+            assert!(moments.error < 1e-4, "{:e}", moments.error);
+            Known::new(moments.variance(), moments.variance() * moments.error)
+        });
+        (variances.collect::<Vec<Known>>(), lookups(&walk))
+    };
+    let (whole, cut) = (
+        moments(vec![Piece::of(1.6, 0.7)]),
+        moments(vec![Piece::of(0.5, 0.7), Piece::of(0.1, 0.7), Piece::of(1.0, 0.7)]),
+    );
+    for (a, b) in whole.0.iter().zip(&cut.0) {
+        assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
+    }
+    let (a, b) = (whole.1, cut.1);
+    assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
+}
+
+#[test]
+fn a_varying_ratio_is_averaged_to_its_error() {
+    // Weighted delta tracking: E[X^k] is the energy of the slab of albedo a^k, whatever r(z) ≤ 1.
+    let ramp = |count: usize| -> Vec<Piece> {
+        let layer = |i: usize| {
+            let at = |x: f64| (i as f64 + x) / count as f64;
+            // r from 0.2 to 1 with σ̂ = 1.5 on [0, 1]; two-point Gauss in each layer.
+            let nodes = [0.5 - 0.75f64.sqrt() / 3.0, 0.5 + 0.75f64.sqrt() / 3.0];
+            let ratios = nodes.map(|x| [0.5, 0.2 + 0.8 * at(x)]).to_vec();
+            Piece { flown: 1.5 / count as f64, ratios }
+        };
+        (0..count).map(layer).collect()
+    };
+    let graded = Walk {
+        rule: ParticleRule::Weighted,
+        depth: 0.9,
+        pieces: Pieces::Graded([ramp(12), ramp(24)]),
+        ..through(Light::Collimated(0.6), Vec::new())
+    };
+    let exact = Walk { largest_ratio: 1.0, ..graded.clone() };
+    let truth = cached(&graded.incidence, Known::exact(0.9), 0.8).expect("finite");
+    let (graded, exact) = (graded.predict(&truth), exact.predict(&truth));
+    for (graded, exact) in graded.channels.iter().zip(&exact.channels) {
+        let (graded, exact) = (graded.moments.expect("known"), exact.moments.expect("known"));
+        let difference = (graded.variance() / exact.variance() - 1.0).abs();
+        assert!(difference <= graded.error + exact.error, "{difference:e} > {:e}", graded.error);
+        assert!(graded.error < 0.01, "{:e}", graded.error);
+    }
+}
+
+#[test]
+fn a_walk_far_below_the_extinction_diverges() {
+    let of = |sampling: f64| Walk {
+        largest_ratio: 1.0 / sampling,
+        depth: 3.0,
+        ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
+    };
+    assert!(!of(1.0).diverges() && !of(0.9).diverges());
+    assert!(of(0.5).diverges() && of(0.3).diverges());
+}
