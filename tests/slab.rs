@@ -9,9 +9,11 @@ use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
 use trueflight::phase::isotropic::Isotropic;
 use trueflight::phase::rayleigh::Rayleigh;
 use trueflight::problems::slab::{Incidence, Light};
+use trueflight::theory::CountLaw;
 use trueflight::theory::h_function::h_function;
 use trueflight::theory::particle::ParticleRule;
-use trueflight::theory::slab::{Piece, Pieces, Walk, cached};
+use trueflight::theory::slab::layer::Slice;
+use trueflight::theory::slab::{Piece, Pieces, Resolution, Walk, cached, solve};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -174,6 +176,27 @@ fn second_moments_of_walks_are_those_of_the_references() {
     assert_eq!(count, 12);
 }
 
+#[test]
+fn second_moments_are_met_to_their_digits_where_they_are_asked_for() {
+    for reference in references().iter().filter(|r| r.id.starts_with("spm_slab/")) {
+        for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
+            let walk = walk(reference, cosine);
+            let odds = walk.rule.odds(walk.largest_ratio, walk.albedo);
+            let slice = Slice {
+                flown: walk.depth / walk.largest_ratio,
+                straight: odds.transmitted(2),
+                scattered: odds.scattered(2),
+                score: 0.0,
+            };
+            let answer = solve(&walk.incidence, &[slice], Resolution::FINE).expect("finite");
+            for (known, expected) in [answer.reflected, answer.transmitted].iter().zip(expected) {
+                let error = (known.value - expected).abs();
+                assert!(error <= known.error && known.error < 1e-10, "{known:?} for {expected}");
+            }
+        }
+    }
+}
+
 /// A walk by the non-terminating rule at a = 0.8 through layers.
 fn through(light: Light, pieces: Vec<Piece>) -> Walk {
     Walk {
@@ -215,15 +238,27 @@ fn a_walk_without_end_looks_up_the_mean_chord() {
 }
 
 #[test]
-fn the_law_of_the_lookups_is_poisson_without_scattering() {
-    // r = 10⁻¹² below every collision: all is null but for the rarest, and the path is D/μ₀.
+fn the_law_of_the_lookups_is_that_of_a_line_without_scattering() {
+    // Black, r = 0.4: each of Poisson(∫σ̂/μ₀) collisions is the last with chance r.
     let light = Light::Collimated(0.4);
-    let walk = Walk { albedo: 1.0, ..through(light, vec![Piece::of(1.2, 1e-12)]) };
-    let truth = cached(&walk.incidence, Known::exact(1.0), 1.0).expect("finite");
+    let black = through(light, vec![Piece::of(1.2, 0.4)]);
+    let walk = Walk { albedo: 0.0, rule: ParticleRule::Terminating, ..black };
+    let truth = cached(&walk.incidence, Known::exact(0.48), 0.0).expect("finite");
     let law = walk.predict(&truth).lookups.expect("r is constant");
-    assert!((law.mean - 3.0).abs() < 1e-7, "{}", law.mean);
-    assert!((law.variance - 3.0).abs() < 1e-5, "{}", law.variance);
-    assert!((law.kurtosis - 3.0 - 1.0 / 3.0).abs() < 1e-2, "{}", law.kurtosis);
+    let line = CountLaw::in_layers(3.0, 0.4 * 3.0);
+    assert!((law.mean / line.mean - 1.0).abs() < 1e-8, "{} {}", law.mean, line.mean);
+    assert!(
+        (law.variance / line.variance - 1.0).abs() < 1e-5,
+        "{} {}",
+        law.variance,
+        line.variance
+    );
+    assert!(
+        (law.kurtosis / line.kurtosis - 1.0).abs() < 1e-2,
+        "{} {}",
+        law.kurtosis,
+        line.kurtosis
+    );
 }
 
 #[test]

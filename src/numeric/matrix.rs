@@ -164,7 +164,9 @@ fn eliminate(left: &mut [f64], n: usize, right: &mut [f64], columns: usize) -> b
         let (above, solved) = right.split_at_mut(k * columns);
         let row = &mut solved[..columns];
         let scale = 1.0 / left[k * n + k];
-        row.iter_mut().for_each(|entry| *entry *= scale);
+        for entry in row.iter_mut() {
+            *entry *= scale;
+        }
         for (i, target) in above.chunks_exact_mut(columns).enumerate() {
             let factor = -left[i * n + k];
             for (entry, x) in target.iter_mut().zip(row.iter()) {

@@ -10,7 +10,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `medium` with `span = [from, to]` | σ_t as a function of the depth z, and the slab | one of the two |
-//! | `volume` with `ray = { origin, direction, length }` | σ_t(z) as a ray through a 3-D field sees it | is required |
+//! | `volume` with `ray = { origin, direction, length }` | `σ_t(z)` as a ray through a 3-D field sees it | is required |
 //! | `albedo` | a in [0, 1], the same everywhere | required unless swept |
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `incidence.collimated = { cosine = μ₀ }` | light from one direction, 0 < μ₀ ≤ 1; 1 is straight down | one of the two |
@@ -131,9 +131,9 @@ mod tests {
         Entry { key: key.into(), key_span: 0..3, node: Node { value, span: 5..6 } }
     }
 
-    fn light(table: Vec<Entry>) -> (Option<Light>, Vec<String>) {
+    fn light(table: &[Entry]) -> (Option<Light>, Vec<String>) {
         let faults = RefCell::default();
-        let read = read_light(&Settings::new(&table, Path::new("."), &faults));
+        let read = read_light(&Settings::new(table, Path::new("."), &faults));
         (read, faults.into_inner().into_iter().map(|fault| fault.message).collect())
     }
 
@@ -141,10 +141,10 @@ mod tests {
     fn light_comes_from_one_direction_or_from_all_sides() {
         let collimated = |cosine: f64| {
             let inner = Value::Table(vec![entry("cosine", Value::Number(cosine))]);
-            light(vec![entry("collimated", inner)])
+            light(&[entry("collimated", inner)])
         };
         assert_eq!(collimated(0.25), (Some(Light::Collimated(0.25)), vec![]));
-        assert_eq!(light(vec![entry("diffuse", Value::Table(vec![]))]).0, Some(Light::Diffuse));
+        assert_eq!(light(&[entry("diffuse", Value::Table(vec![]))]).0, Some(Light::Diffuse));
         for cosine in [1.5, 0.0, -0.3] {
             assert_eq!(collimated(cosine), (None, vec![format!("`cosine` is {cosine}")]));
         }

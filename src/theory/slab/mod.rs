@@ -77,7 +77,7 @@ impl Resolution {
     /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
     pub const FINE: Self = Self { faintest: 1e-11, directions: 32, first_layer: 3e-14 };
     /// For moments: 1e-4 and mostly far better.
-    pub const COARSE: Self = Self { faintest: 1e-5, directions: 16, first_layer: 1e-8 };
+    pub const COARSE: Self = Self { faintest: 1e-5, directions: 16, first_layer: 1e-10 };
     /// For moments where r varies, of which thirty-six layers are solved, and for differences.
     pub const LAYERED: Self = Self { faintest: 1e-4, directions: 12, first_layer: 1e-7 };
 

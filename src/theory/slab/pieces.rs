@@ -142,6 +142,8 @@ fn piece(
         }
     }
     let flown: f64 = ratios.iter().map(|[share, _]| share).sum();
-    ratios.iter_mut().for_each(|[share, _]| *share /= flown);
+    for [share, _] in &mut ratios {
+        *share /= flown;
+    }
     (flown > 0.0).then_some(Piece { flown, ratios })
 }
