@@ -7,6 +7,8 @@ use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// The agreement that is asked of two resolutions, relative to the whole: of moments.
 pub const MOMENT: f64 = 1e-11;
+/// Moments with a larger relative error are not told.
+const BLURRED: f64 = 1e-3;
 /// Of lookups.
 pub const LOOKUPS: f64 = 1e-12;
 
@@ -117,10 +119,13 @@ impl Points {
             relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
             error: self.error * sensitivity,
         };
+        // A spread that rounding hides is not known to be none.
+        let moments = (moments.error < BLURRED).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
         // How rare the draws are that make the variance is not worked out.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
-        let channel = Channel::unbiased(self.truth, moments, tails);
+        let certain = Channel::unbiased(self.truth, Moments::certain(mean), tails);
+        let channel = Channel { moments, ..certain };
         let prediction = Prediction::single(channel, CountLaw::always(0.0));
         let lookups = self.lookups.map(|raw| CountLaw { error: self.error, ..count(raw) });
         Prediction { lookups, ..prediction }
@@ -138,4 +143,39 @@ pub fn count([_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
     let central = fourth - 4.0 * third * mean + 6.0 * second * square - 3.0 * square * square;
     let kurtosis = central / (variance * variance);
     CountLaw { mean, variance, kurtosis, error: 0.0, poisson: false, pmf: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn points(powers: [f64; 5]) -> Points {
+        Points {
+            truth: Known::exact(powers[1]),
+            powers,
+            error: 1e-14,
+            eighth: None,
+            lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
+        }
+    }
+
+    #[test]
+    fn two_coins_make_a_binomial_number() {
+        // X = 0 or 1 with chance ½: variance ¼; two of them: mean 1, variance ½, kurtosis 2.
+        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let both = coin.plus(&coin);
+        assert_eq!(both.powers, [1.0, 1.0, 1.5, 2.5, 4.5]);
+        let prediction = both.prediction();
+        let moments = prediction.channels[0].moments.expect("moments");
+        assert!((moments.variance() - 0.5).abs() < 1e-15);
+        assert!((moments.kurtosis().expect("spread") - 2.0).abs() < 1e-14);
+        let lookups = prediction.lookups.expect("lookups");
+        assert_eq!([lookups.mean, lookups.variance], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn a_spread_that_rounding_hides_is_unknown() {
+        let faint = points([1.0, 1.0, 1.0 + 1e-16, 1.0, 1.0]);
+        assert!(faint.prediction().channels[0].moments.is_none());
+    }
 }
