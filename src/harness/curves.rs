@@ -5,9 +5,9 @@ use rayon::prelude::*;
 use super::case::Case;
 use super::plan::pilot_address;
 use super::record::{Curve, CurvePoint, Sweep};
-use super::scenario::Variation;
+use super::scenario::{Names, Variation};
 use super::sweep::{SweepAxis, What};
-use crate::theory::Prediction;
+use crate::theory::Channel;
 use crate::theory::optimum::{Optimum, best_constant};
 
 /// Points of a line.
@@ -23,10 +23,10 @@ pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
     let x = abscissae(axis);
     let curves = swept
         .par_iter()
-        .map(|&estimator| {
-            let points: Vec<CurvePoint> = x
+        .flat_map_iter(|&estimator| {
+            let predicted: Vec<Vec<(String, Option<CurvePoint>)>> = x
                 .par_iter()
-                .filter_map(|&x| point(case, seed, estimator, Some((axis.what, x)), x))
+                .map(|&x| points(case, seed, estimator, Some((axis.what, x)), x))
                 .collect();
             let names =
                 case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
@@ -36,9 +36,20 @@ pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
             };
             let optimum = best.get(estimator).copied().flatten().filter(inside).and_then(|best| {
                 let at = best.sampling;
-                point(case, seed, estimator, Some((What::Sampling, at)), at)
+                points(case, seed, estimator, Some((What::Sampling, at)), at).pop()?.1
             });
-            Curve { estimator: names.estimator, control: names.control, points, optimum }
+            let named = predicted.iter().max_by_key(|channels| channels.len());
+            let named = named.map_or(&[][..], Vec::as_slice);
+            let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
+                estimator: names.estimator.clone(),
+                control: names.control.clone(),
+                channel: channel.clone(),
+                points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
+                // The figure of merit is that of the last channel.
+                optimum: optimum.filter(|_| index + 1 == named.len()),
+            };
+            let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
+            if curves.is_empty() { vec![refused(names)] } else { curves }
         })
         .collect();
     Some(Sweep {
@@ -68,19 +79,33 @@ pub fn best_of_each(case: &Case, seed: u64) -> Vec<Option<Optimum>> {
         .collect()
 }
 
-fn point(
+/// The line of an estimator that is refused everywhere: it has no points.
+fn refused(names: Names) -> Curve {
+    let Names { estimator, control, .. } = names;
+    Curve { estimator, control, channel: String::new(), points: Vec::new(), optimum: None }
+}
+
+/// The channels with their points; nothing where the estimator is refused.
+fn points(
     case: &Case,
     seed: u64,
     estimator: usize,
     variation: Variation,
     x: f64,
-) -> Option<CurvePoint> {
-    let prediction: Prediction =
-        case.scenario.predict(estimator, variation, pilot_address(seed, case, estimator))?;
-    let variance = prediction.channels.last()?.moments?.variance();
-    let lookups = prediction.lookups.as_ref()?.mean;
-    let fom = 1.0 / (variance * lookups);
-    (variance.is_finite() && fom.is_finite()).then_some(CurvePoint { x, variance, lookups, fom })
+) -> Vec<(String, Option<CurvePoint>)> {
+    let pilots = pilot_address(seed, case, estimator);
+    let Some(prediction) = case.scenario.predict(estimator, variation, pilots) else {
+        return Vec::new();
+    };
+    let lookups = prediction.lookups.as_ref().map(|law| law.mean);
+    let point = |channel: &Channel| {
+        let (variance, lookups) = (channel.moments?.variance(), lookups?);
+        let fom = 1.0 / (variance * lookups);
+        let is_finite = variance.is_finite() && fom.is_finite();
+        is_finite.then_some(CurvePoint { x, variance, lookups, fom })
+    };
+    let channels = prediction.channels.iter();
+    channels.map(|channel| (channel.name.clone(), point(channel))).collect()
 }
 
 /// The values at which lines are computed: the sweep's own, and more between them.

@@ -306,17 +306,20 @@ pub struct Sweep {
     pub log: bool,
     /// The z-score that is as rare as a false alarm of the gate.
     pub z_limit: Option<f64>,
-    /// One curve per estimator.
+    /// One curve per estimator and channel.
     pub curves: Vec<Curve>,
 }
 
-/// What theory says of one estimator along the sweep.
+/// What theory says of one estimator along the sweep, one channel of its value.
 #[derive(Debug, Clone, Serialize)]
 pub struct Curve {
     /// The estimator's label: the same as in its rows.
     pub estimator: String,
     /// Its control in words: the same as in its rows.
     pub control: String,
+    /// The channel: the same as in its rows.
+    #[serde(skip_serializing_if = "String::is_empty")]
+    pub channel: String,
     /// Points in ascending order; refused stretches are left out.
     pub points: Vec<CurvePoint>,
     /// Where the figure of merit is largest, if it has a maximum inside the sweep.

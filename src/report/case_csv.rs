@@ -54,12 +54,16 @@ fn case_rows<'a>(
 }
 
 fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
-    let header = ["estimator", "control", "x", "variance", "lookups", "fom"];
+    // Problems with one channel have no name for it.
+    let is_named = sweep.curves.iter().any(|curve| !curve.channel.is_empty());
+    let words = ["estimator", "control", "channel"];
+    let words = &words[..if is_named { 3 } else { 2 }];
+    let header = words.iter().copied().chain(["x", "variance", "lookups", "fom"]);
     let lines = sweep.curves.iter().flat_map(|curve| {
         curve.points.iter().map(|point| {
-            let words = [curve.estimator.clone(), curve.control.clone()];
+            let texts = [curve.estimator.clone(), curve.control.clone(), curve.channel.clone()];
             let numbers = [point.x, point.variance, point.lookups, point.fom].map(exact);
-            words.into_iter().chain(numbers)
+            texts.into_iter().take(words.len()).chain(numbers)
         })
     });
     table(&case.name, header, lines)

@@ -153,6 +153,7 @@ fn sweep() -> CaseRecord {
         Curve {
             estimator: estimator.to_owned(),
             control: control.to_owned(),
+            channel: String::new(),
             points: [0.5, 0.75, 1.0, 1.5, 2.0]
                 .into_iter()
                 .filter(|x| *x >= from)

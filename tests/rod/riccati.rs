@@ -16,6 +16,8 @@ pub struct Rod {
     pub forward: f64,
     pub sampling: f64,
     pub length: f64,
+    /// Where r passes 1: there the adaptive rule's chances jump, and Runge–Kutta must not step over it.
+    pub jump: f64,
 }
 
 /// `(chance, weight)` straight on, and scattered.
@@ -59,10 +61,26 @@ fn slope(rod: &Rod, odds: Odds, k: i32, x: f64, [rho, eta, nu]: [f64; 3]) -> [f6
 }
 
 fn march(rod: &Rod, odds: Odds, k: i32, steps: usize) -> [f64; 3] {
-    let h = -rod.length / steps as f64;
-    let mut y = [0.0, 1.0, 0.0];
+    let after = stretch(rod, odds, k, steps, [rod.length, rod.jump], [0.0, 1.0, 0.0]);
+    stretch(rod, odds, k, steps, [rod.jump, 0.0], after)
+}
+
+/// From one distance down to another, never looking at either from outside.
+fn stretch(
+    rod: &Rod,
+    odds: Odds,
+    k: i32,
+    steps: usize,
+    [from, to]: [f64; 2],
+    start: [f64; 3],
+) -> [f64; 3] {
+    let h = (to - from) / steps as f64;
+    let inside = |x: f64| x.clamp(to + 1e-12, from - 1e-12);
+    let slope =
+        |rod: &Rod, odds: Odds, k: i32, x: f64, y: [f64; 3]| slope(rod, odds, k, inside(x), y);
+    let mut y = start;
     for i in 0..steps {
-        let x = rod.length + h * i as f64;
+        let x = from + h * i as f64;
         let moved = |d: [f64; 3], by: f64| std::array::from_fn(|j| y[j] + by * d[j]);
         let k1 = slope(rod, odds, k, x, y);
         let k2 = slope(rod, odds, k, x + 0.5 * h, moved(k1, 0.5 * h));

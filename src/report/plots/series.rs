@@ -91,22 +91,44 @@ pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
             None => groups.push((key, vec![row])),
         }
     }
-    let curves = |estimator: &str| -> Vec<&Curve> {
-        sweep.curves.iter().filter(|curve| curve.estimator == estimator).collect()
+    join_refused(&mut groups);
+    let curves = |estimator: &str, channel: &str| -> Vec<&Curve> {
+        let same = |curve: &&Curve| curve.estimator == estimator && curve.channel == channel;
+        sweep.curves.iter().filter(same).collect()
     };
     for curve in &sweep.curves {
-        let twin = curves(&curve.estimator).iter().position(|c| std::ptr::eq(*c, curve));
+        let (estimator, channel) = (curve.estimator.as_str(), curve.channel.as_str());
+        let twin = curves(estimator, channel).iter().position(|c| std::ptr::eq(*c, curve));
         let nth = twin.unwrap_or(0);
-        if !groups.iter().any(|((estimator, _, n), _)| *estimator == curve.estimator && *n == nth) {
-            groups.push(((&curve.estimator, "", nth), Vec::new()));
+        if !groups.iter().any(|(key, _)| *key == (estimator, channel, nth)) {
+            groups.push(((estimator, channel, nth), Vec::new()));
         }
     }
     let series = groups.into_iter().enumerate().map(|(i, ((estimator, channel, nth), rows))| {
-        let curve = curves(estimator).get(nth).copied();
+        let curve = curves(estimator, channel).get(nth).copied();
         let label = label(estimator, channel, &rows, curve);
         Series { label, style: Style::of(i), rows, curve }
     });
     series.collect()
+}
+
+/// A refused experiment has no channels: where others of its estimator have, it stands with their first.
+fn join_refused<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
+    let mut index = 0;
+    while index < groups.len() {
+        let (estimator, channel, nth) = groups[index].0;
+        let home = groups.iter().position(|((other, named, n), _)| {
+            *other == estimator && !named.is_empty() && *n == nth
+        });
+        match home.filter(|_| channel.is_empty()) {
+            Some(home) => {
+                let refused = std::mem::take(&mut groups[index].1);
+                groups[home].1.extend(refused);
+                groups.remove(index);
+            }
+            None => index += 1,
+        }
+    }
 }
 
 fn label(estimator: &str, channel: &str, rows: &[&Row], curve: Option<&Curve>) -> String {
@@ -145,6 +167,11 @@ mod tests {
         ]);
         let labels: Vec<_> = collect(&twins, &sweep).into_iter().map(|s| s.label).collect();
         assert_eq!(labels, ["residual, constant 1", "residual, constant 2", "regular"]);
+        let channel = |channel: &str| Row { channel: channel.into(), ..row("walk", "", Some(2.0)) };
+        let refused = case(vec![row("walk", "", Some(1.0)), channel("R"), channel("T")]);
+        let series = collect(&refused, &sweep);
+        let labels: Vec<_> = series.iter().map(|s| (s.label.as_str(), s.rows.len())).collect();
+        assert_eq!(labels, [("walk, R", 2), ("walk, T", 1)]);
         let swept =
             case(vec![row("r", "constant 1", Some(1.0)), row("r", "constant 2", Some(2.0))]);
         let series = collect(&swept, &sweep);
