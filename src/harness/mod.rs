@@ -25,6 +25,7 @@ pub mod reuse;
 pub mod run;
 pub mod scenario;
 pub mod self_test;
+mod shown;
 pub mod source;
 pub mod suite;
 pub mod summary;
