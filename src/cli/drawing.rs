@@ -1,6 +1,7 @@
 //! Drawing a plan with a bar of progress, and the limits of it.
 
 use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
 use std::time::Instant;
 
@@ -34,10 +35,17 @@ pub fn draw_the_rest(plan: &Plan, kept: &mut Kept, console: &Console) -> Record 
 
 /// What this program has drawn for the results in a folder.
 pub fn kept(out: &Path) -> anyhow::Result<Kept> {
-    let program = fingerprint()?;
-    // Without a file there is nothing to reuse, and that is no mistake.
-    let bytes = fs::read(out.join(KEPT)).unwrap_or_default();
-    Ok(Kept::read(&bytes, &program))
+    let path = out.join(KEPT);
+    let bytes = match fs::read(&path) {
+        Ok(bytes) => bytes,
+        // There is nothing to reuse, and that is no mistake.
+        Err(error) if error.kind() == ErrorKind::NotFound => Vec::new(),
+        Err(error) => {
+            let cure = || format!("cannot read {}; move it away", path.display());
+            return Err(error).with_context(cure);
+        }
+    };
+    Ok(Kept::read(&bytes, &fingerprint()?))
 }
 
 /// Writes what was drawn beside the results.

@@ -5,9 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use trueflight::harness::Options;
-use trueflight::harness::baseline::fingerprint;
 use trueflight::harness::options::DRAWS;
-use trueflight::harness::reuse::Kept;
 use trueflight::report::{self, console::View};
 
 use super::baseline::BaselineArguments;
@@ -59,12 +57,9 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
     let baselines = arguments.baseline.open()?;
+    let mut kept = drawing::kept(&arguments.out)?;
     // A comparison wants times and evidence of its own.
-    let mut kept = if arguments.fresh || arguments.baseline.is_used() {
-        Kept::new(&fingerprint()?)
-    } else {
-        drawing::kept(&arguments.out)?
-    };
+    kept.is_fresh = arguments.fresh || arguments.baseline.is_used();
     let (record, [reused, ready]) = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         let counts = kept.count(&plan);

@@ -45,17 +45,16 @@ impl Refusal {
 const MOST_COLLISIONS: f64 = 1e6;
 
 impl<P: Problem> Setup<P> {
-    /// Whether a table of the numbers of collisions is small enough for order-free draws.
+    /// Whether a ray has so few collisions that their numbers fit a table, and that walks end.
     ///
     /// # Errors
     ///
-    /// Λ and its limit.
-    pub fn require_few_collisions(&self) -> Result<(), Refusal> {
+    /// What is needed, and Λ.
+    pub fn require_few_collisions(&self, needs: &'static str) -> Result<(), Refusal> {
         let collisions = Placement::new(&self.sampling).depth();
         if collisions <= MOST_COLLISIONS {
             return Ok(());
         }
-        let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
         Err(Refusal::mismatch(needs, format!("∫σ̂ = {collisions:e}")))
     }
 

@@ -22,13 +22,19 @@ pub struct Kept {
     /// The fingerprint of the program's file.
     program: String,
     experiments: BTreeMap<u64, Drawn>,
+    /// Whether all is to be drawn anew, whatever is kept.
+    #[serde(skip)]
+    pub is_fresh: bool,
 }
+
+/// More experiments than this are not kept: a file of some 20 MB.
+const MOST: usize = 2000;
 
 impl Kept {
     /// Nothing yet, drawn by a program of that fingerprint.
     #[must_use]
     pub fn new(program: &str) -> Self {
-        Self { program: program.to_owned(), experiments: BTreeMap::new() }
+        Self { program: program.to_owned(), ..Self::default() }
     }
 
     /// What the same program wrote with [`Kept::bytes`]. What another one wrote, and what is broken,
@@ -52,7 +58,7 @@ impl Kept {
     /// What an experiment drew.
     #[must_use]
     pub fn drawn(&self, plan: &Plan, case: &PlannedCase, planned: &Planned) -> Option<Drawn> {
-        if self.experiments.is_empty() {
+        if self.is_fresh || self.experiments.is_empty() {
             return None;
         }
         let drawn = self.experiments.get(&self.key(plan, case, planned)?)?;
@@ -68,10 +74,14 @@ impl Kept {
         [kept.count(), ready().count()]
     }
 
-    /// Keeps what a plan drew, unless a limit of time or of draws cut it short.
+    /// Keeps what a plan drew, unless a limit of time or of draws cut it short. Where that would be too
+    /// many, those of earlier runs go.
     pub fn keep(&mut self, plan: &Plan, draws: &Draws) {
         if draws.cut_by_time || draws.cut_by_budget {
             return;
+        }
+        if self.experiments.len() + plan.experiments().count() > MOST {
+            self.experiments.clear();
         }
         for (case, drawn) in plan.cases.iter().zip(&draws.cases) {
             for (planned, drawn) in case.experiments.iter().zip(drawn) {

@@ -314,7 +314,8 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         let expect_biased = written.expect_biased;
         let outcome = self.setup(estimator, variation, address).and_then(|setup| {
             if order == Order::Free {
-                setup.require_few_collisions()?;
+                let needs = "∫σ̂ ≤ 1e6 for order-free draws (the ordered kernel has no such limit)";
+                setup.require_few_collisions(needs)?;
             }
             let refusal = entry.domain(&setup).err();
             if let Some(refusal) = refusal {

@@ -25,8 +25,9 @@
 //! ray inside the field's bounds is the rod.
 //!
 //! The answer is exact. Where a and `p_f` are constant it is a closed form that depends on the optical
-//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. Of `a = 1`
-//! nothing is absorbed: that channel, and any other whose answer is 0, is refused.
+//! depth only; elsewhere, and by order, two coupled equations are solved to a stated error. An
+//! experiment with a channel whose answer is 0 is refused: `absorbed` where `a = 1`, `reflectance` where
+//! `a = 0` or `p_f = 1`.
 //!
 //! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
 //! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).

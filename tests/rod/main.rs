@@ -313,3 +313,20 @@ fn every_setting_is_checked() {
         assert!(found.contains(expected), "{line}: {found}");
     }
 }
+
+/// An answer that theory does not know is no answer that draws could agree with.
+#[test]
+fn a_truth_that_is_not_known_passes_nothing() {
+    let text = "medium.constant.extinction = 100\nspan = [0, 3]\nalbedo = 0.7
+        sampling.constant.value = 100";
+    let rows = planned(text, "analog");
+    let through = rows.iter().find(|row| row.channel == "transmittance").expect("a row");
+    assert_ne!(through.verdict, Some(Verdict::Pass));
+    let case = common::case(
+        "unknown",
+        &format!("title = \"t\"\n[problem.rod]\n{text}\nestimators = [{{ analog = {{}} }}]"),
+    );
+    let record = common::judged(&[case], &common::options(1, 20_000));
+    let through = record.results.cases[0].rows.iter().find(|row| row.channel == "transmittance");
+    assert_ne!(through.and_then(|row| row.verdict), Some(Verdict::Pass));
+}

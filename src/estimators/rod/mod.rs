@@ -10,6 +10,7 @@ use crate::theory::rod;
 /// Whether a rule exists on a rod, reaches all of it, and has a variance there.
 fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
     setup.require_coverage()?;
+    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
     if !rule.needs().is_empty() {
         let albedo = setup.problem.albedo();
         let limit = |t: f64| rule.limits(albedo.value(t))[1];

@@ -79,6 +79,7 @@ impl Estimator<Rod> for Roulette {
                 "what is scored on the way has no bound",
             ));
         }
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         super::realisable(setup, ParticleRule::NonTerminating)
     }

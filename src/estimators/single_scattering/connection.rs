@@ -65,12 +65,19 @@ pub fn shadow_label(shadow: Tracking) -> String {
     }
 }
 
-/// Delta tracking needs a majorant on every shadow ray.
+/// Delta tracking needs a majorant on every shadow ray, and walks along them must end.
 ///
 /// # Errors
 ///
-/// The bound on σ_t that it does not reach.
+/// The bound on σ_t that it does not reach, or how many collisions there would be.
 pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Result<(), Refusal> {
+    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
+        let collisions = sampling * setup.mesh.support().length();
+        if collisions.is_nan() || collisions > 1e6 {
+            let needs = "a shadow's σ̂ of at most 1e6 collisions on the ray's length";
+            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
+        }
+    }
     let Tracking::Delta { sampling } = shadow else { return Ok(()) };
     let bound = setup.problem.shadow_majorant();
     if sampling >= bound * (1.0 - 1e-12) {

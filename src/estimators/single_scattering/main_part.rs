@@ -73,11 +73,17 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
     if lowest < 0.0 {
         return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
     }
-    if setup.control_transmittance >= 1.0 {
-        return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
+    let absorbed = 1.0 - setup.control_transmittance;
+    if absorbed < THINNEST {
+        // What is left of 1 − e^{−τ_m} has too few digits to place points by.
+        let needs = "a control with ∫σ_m ≥ 1e-6";
+        return Err(Refusal::mismatch(needs, format!("1 − exp(−∫σ_m) = {absorbed:e}")));
     }
     Ok(())
 }
+
+/// The least `1 − e^{−τ_m}` whose digits place points well.
+const THINNEST: f64 = 1e-6;
 
 /// Straight pieces that are positive wherever there is anything to scatter.
 ///

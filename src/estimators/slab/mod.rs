@@ -29,6 +29,9 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
 /// The exact answer; `None` where theory does not resolve it.
 fn truth(setup: &Setup<Slab>) -> Option<Answer> {
     let slab = &setup.problem;
+    if !slab::resolves(&slab.incidence().phase) {
+        return None;
+    }
     let answer = slab::cached(slab.incidence(), setup.mesh.optical_depth(), slab.albedo())?;
     let is_sharp = |known: &crate::numeric::Known| known.error <= BLURRED * known.value;
     [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
@@ -37,12 +40,14 @@ fn truth(setup: &Setup<Slab>) -> Option<Answer> {
 /// Whether a rule exists in a slab, reaches all of it, and has a variance there.
 fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
     setup.require_coverage()?;
+    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
     if !rule.needs().is_empty() {
         let limit = rule.limits(setup.problem.albedo())[1];
         setup.require_ratio_at_most(limit, rule.needs())?;
     }
     if truth(setup).is_none() {
-        let needs = "a slab that adding and doubling resolve";
+        let needs =
+            "a reflectance and a transmittance that adding and doubling resolve (|g| ≤ 0.93)";
         let depth = setup.problem.medium().optical_depth(setup.mesh.support()).value;
         let phase = setup.problem.incidence().phase.label();
         return Err(Refusal::mismatch(needs, format!("τ = {depth:.6} and phase {phase}")));

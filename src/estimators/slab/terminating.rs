@@ -7,8 +7,7 @@
 //!
 //! It takes σ̂ and no settings. It exists for `0 ≤ r ≤ 2/(a + 1)`, where the chances add up to at most
 //! 1, and is refused elsewhere. Draws lie in {−1, 0, 1}, the negative ones only where σ̂ < σ_t. Where
-//! σ̂ ≥ σ_t it is `analog`. Even so its second moment may be infinite below σ_t: `E[X²]` is the energy of
-//! a slab of albedo `a r/(1 − |1 − r|)`, which exceeds 1 for `r > 2/(a + 1)` only.
+//! σ̂ ≥ σ_t it is `analog`. `X²` is 0 or 1, so that its moments are all finite.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

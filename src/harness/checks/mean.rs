@@ -54,6 +54,11 @@ impl Check for Mean {
 fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
     let floor = floor(subject, channel);
+    let blur = channel.truth.error / channel.unit;
+    if blur > subject.tolerance.mean.unwrap_or(CAP) {
+        // Whatever the draws say, it would be within the truth's own error.
+        return Kind::Untestable(format!("the exact answer is known to {blur:.1e} only"));
+    }
     if let Some(furthest) = deviation(channel).map(|d| FURTHEST * d).filter(|&far| far <= floor) {
         let largest = move |draws: &DrawBuffer| {
             draws.values[index].iter().fold(0.0, |most: f64, x| {

@@ -96,6 +96,12 @@ pub fn needed(phase: &Phase, faintest: f64) -> usize {
     (last / 2 + 1).clamp(FEWEST, MOST)
 }
 
+/// Whether so many directions can be had.
+#[must_use]
+pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
+    phase.moment(2 * MOST).abs() < faintest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -134,5 +140,6 @@ mod tests {
         assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), FEWEST);
         assert!(needed(&of(0.75), 1e-12) < needed(&of(0.9), 1e-12));
         assert_eq!(needed(&of(0.999), 1e-12), MOST);
+        assert!(are_enough(&of(0.9), 1e-12) && !are_enough(&of(-0.95), 1e-12));
     }
 }

@@ -23,6 +23,7 @@ pub mod pieces;
 pub mod walk;
 
 use crate::numeric::Known;
+use crate::phase::Phase;
 use crate::problems::slab::{Incidence, Light};
 
 use directions::Directions;
@@ -88,6 +89,13 @@ impl Resolution {
             first_layer: 4.0 * self.first_layer,
         }
     }
+}
+
+/// Whether two answers of different resolution tell the error of an exact one: not where both would
+/// have the most directions, as for Henyey–Greenstein of |g| > 0.935.
+#[must_use]
+pub fn resolves(phase: &Phase) -> bool {
+    directions::are_enough(phase, Resolution::FINE.coarser().faintest)
 }
 
 /// The error of a first layer of optical depth u, doubled to τ, is about `13 τ u`.

@@ -11,8 +11,9 @@ use crate::theory::particle::Odds;
 const SAME: f64 = 1e-12;
 /// More layers than this are averaged.
 const MOST_EXACT: usize = 16;
-/// Layers of the coarser cut where r varies.
-const COARSE: usize = 12;
+/// Layers of the coarser cut where r varies: so many, or two for each smooth panel of σ_t, but not more
+/// than the most.
+const COARSE: [usize; 2] = [12, 48];
 /// More breaks than this are averaged over.
 const MOST_BREAKS: usize = 24;
 /// Nodes on a smooth part of a layer.
@@ -103,11 +104,12 @@ fn graded(mesh: &Mesh, sampling: &Piecewise, times: usize) -> Vec<Piece> {
     let few = breaks.len() <= MOST_BREAKS;
     let ends = if few { breaks.clone() } else { vec![support.from, support.to] };
     let rule = GaussLegendre::new(NODES);
+    let layers = (2 * mesh.panels().len()).clamp(COARSE[0], COARSE[1]);
     let mut pieces = Vec::new();
     for stretch in ends.windows(2) {
         let share = (stretch[1] - stretch[0]) / support.length();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
-        let parts = times * ((COARSE as f64 * share).ceil() as usize).max(1);
+        let parts = times * ((layers as f64 * share).ceil() as usize).max(1);
         let step = (stretch[1] - stretch[0]) / parts as f64;
         for part in 0..parts {
             let from = stretch[0] + step * part as f64;
