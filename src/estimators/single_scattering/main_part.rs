@@ -74,6 +74,9 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
         return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
     }
     let absorbed = 1.0 - setup.control_transmittance;
+    if setup.control.optical_depth(setup.mesh.support()).value == 0.0 {
+        return Err(Refusal::mismatch("a control σ_m > 0 somewhere", "it is zero throughout"));
+    }
     if absorbed < THINNEST {
         // What is left of 1 − e^{−τ_m} has too few digits to place points by.
         let needs = "a control with ∫σ_m ≥ 1e-6";

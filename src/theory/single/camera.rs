@@ -30,6 +30,7 @@ pub struct Camera<'a> {
     control: &'a Control,
     along: Along,
     rule: GaussLegendre,
+    cuts: Vec<f64>,
     ends: Vec<f64>,
     sums: Vec<[f64; COUNT]>,
 }
@@ -51,6 +52,7 @@ impl<'a> Camera<'a> {
             control,
             along,
             rule,
+            cuts: Vec::new(),
             ends: vec![support.from],
             sums: vec![[0.0; COUNT]],
         };
@@ -59,7 +61,12 @@ impl<'a> Camera<'a> {
         }
         let mut cuts = sampling.knots().to_vec();
         cuts.extend(control.breaks());
+        if along == Along::Ratio {
+            // Where w changes its sign, its size has a kink.
+            cuts.extend(mesh.roots(|t, x| sampling.value(t) - (x - control.extinction(t))));
+        }
         cuts.retain(|&t| support.contains_inside(t));
+        camera.cuts.clone_from(&cuts);
         let fine = mesh.refined(&cuts, &|_, panel| {
             let nodes = panel.t.iter().zip(panel.extinction);
             let rows: Vec<[f64; COUNT]> = nodes.map(|(&t, &x)| camera.integrand(t, x)).collect();
@@ -172,9 +179,9 @@ impl<'a> Camera<'a> {
         self.sums[self.sums.len() - 1][FLOWN]
     }
 
-    /// The distances where σ̂ or the control have kinks.
+    /// The distances where σ̂, the control or the size of a weight have kinks.
     #[must_use]
-    pub fn cuts(&self) -> Vec<f64> {
-        if self.along == Along::Exact { Vec::new() } else { self.ends.clone() }
+    pub fn cuts(&self) -> &[f64] {
+        &self.cuts
     }
 }
