@@ -36,7 +36,7 @@ pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks
         roulette: particle.roulette,
         splits: particle.splitting != Splitting::None,
         largest_ratio: majorants.largest_ratio(),
-        albedo: scene.albedo.range(&scene.volume),
+        albedo: scene.albedo.range(),
         depth: majorants.largest() * across,
     }
 }
