@@ -98,7 +98,11 @@ impl Problem for InfiniteMedium {
         }
         if !radii.is_empty() && !matches!(scene.phase, Phase::Isotropic(_)) {
             let help = "leave `radii` out, or take `phase.isotropic = {}`";
-            settings.fault("radii", "collisions within a radius are known for isotropic scattering", help);
+            settings.fault(
+                "radii",
+                "collisions within a radius are known for isotropic scattering",
+                help,
+            );
             return None;
         }
         Some(Self { scene, medium: body?.medium(), extinction, radii })

@@ -81,7 +81,8 @@ impl Lambertian {
     pub fn place(&self, u: f64, v: f64) -> (Point, Point) {
         match self.bounds() {
             Bounds::Sphere { centre, radius } => {
-                let outward = crate::geometry::frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * u - 1.0, v);
+                let outward =
+                    crate::geometry::frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * u - 1.0, v);
                 (centre + outward * radius, outward * -1.0)
             }
             Bounds::Box(within) => {
@@ -147,7 +148,8 @@ mod tests {
 
     fn under_light(volume: Volume) -> Lambertian {
         let volume = Arc::new(volume);
-        let ray = crate::geometry::Ray::new(Point([0.5; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("");
+        let ray =
+            crate::geometry::Ray::new(Point([0.5; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("");
         let body = Body::Volume { name: String::new(), volume: volume.clone(), ray };
         let scene = Scene {
             volume,
@@ -165,7 +167,9 @@ mod tests {
             assert!(((place - Point([0.0, 0.0, 10.0])).norm() - 10.0).abs() < 1e-13);
             assert!((place + inward * 10.0 - Point([0.0, 0.0, 10.0])).norm() < 1e-13);
         }
-        assert!((sphere.four_over_surface() * 4.0 * std::f64::consts::PI * 100.0 - 4.0).abs() < 1e-14);
+        assert!(
+            (sphere.four_over_surface() * 4.0 * std::f64::consts::PI * 100.0 - 4.0).abs() < 1e-14
+        );
     }
 
     #[test]

@@ -98,7 +98,10 @@ pub(super) fn domain(setup: &Setup<Lambertian>, particle: &Particle) -> Result<(
     let seen = Seen::of(setup, particle);
     if seen.white && held(setup).is_none() {
         let needs = "a volume whose ∫σ_t dV is known to 1e-3";
-        return Err(Refusal::mismatch(needs, "cubature over its chords does not settle, or it is empty"));
+        return Err(Refusal::mismatch(
+            needs,
+            "cubature over its chords does not settle, or it is empty",
+        ));
     }
     if seen.any() {
         return Ok(());
@@ -116,7 +119,10 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
         channels.extend(bound.map(|bound| named("energy", space::energy_channel(bound))));
         let over = problem.four_over_surface();
         let times = |known: Known| {
-            Known::new(over * known.value, over * known.error + 4.0 * f64::EPSILON * over * known.value)
+            Known::new(
+                over * known.value,
+                over * known.error + 4.0 * f64::EPSILON * over * known.value,
+            )
         };
         if seen.white {
             let unknown = Known::new(f64::NAN, f64::NAN);
@@ -147,7 +153,11 @@ fn piloted(name: &str, truth: Known) -> Channel {
 }
 
 /// Makes a draw by the honest walk.
-pub(super) fn draw(particle: &Particle, setup: &Setup<Lambertian>, rng: &mut Stream) -> Draw<Values> {
+pub(super) fn draw(
+    particle: &Particle,
+    setup: &Setup<Lambertian>,
+    rng: &mut Stream,
+) -> Draw<Values> {
     let Some(majorants) = setup.space.as_deref() else { return NOTHING };
     let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, lambertian));
     let scene = setup.problem.scene();
