@@ -179,7 +179,8 @@ fn walks_are_refused_where_nothing_is_known_of_them() {
 
 #[test]
 fn a_volume_without_bounds_is_a_mistake_with_a_cure() {
-    let text = furnace("volume.constant = { extinction = 1 }", 0.5, "isotropic = {}", "particle = {}");
+    let text =
+        furnace("volume.constant = { extinction = 1 }", 0.5, "isotropic = {}", "particle = {}");
     let error = common::mistakes(&text).expect("a mistake").render(false);
     assert!(error.contains("never leave a volume without bounds"), "{error}");
     assert!(error.contains("bounds.sphere"), "{error}");
@@ -198,7 +199,10 @@ fn every_rule_passes_in_every_shipped_case() {
     for case in &record.results.cases {
         for row in &case.rows {
             if row.verdict == Some(Verdict::Fail) {
-                wrong.push(format!("{} {} {}: {}", case.name, row.estimator, row.channel, row.reason));
+                wrong.push(format!(
+                    "{} {} {}: {}",
+                    case.name, row.estimator, row.channel, row.reason
+                ));
             }
             // By their own standard error: most of these variances theory does not know.
             let (Some(mean), Some(error), Some(truth)) = (row.mean, row.standard_error, row.truth)
