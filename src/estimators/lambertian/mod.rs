@@ -29,7 +29,9 @@ impl Seen {
         };
         let scene = setup.problem.scene();
         let walks = space::walks(scene, majorants, particle);
-        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating);
+        // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
+        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
+            && scene.albedo.even() != Some(0.0);
         Self {
             energy: walks.is_tame(),
             white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
