@@ -345,6 +345,8 @@ fn every_setting_is_checked() {
         ("albedo = 0.5\norders = 7", "`orders` is 7"),
         ("albedo = 0.5\nflux = 5", "`flux` is 5"),
         ("albedo = 0.5\nabsorbed = 1", "`absorbed` is 1"),
+        ("albedo = 0.5\ncontrol.mean = {}", "no estimator of this case takes a control"),
+        ("albedo = 0.5\nsweep.control.values = [1]", "no estimator of this case takes a control"),
         ("albedo.piecewise-linear = { knots = [0, 1], values = [0.5, 1.1] }", "exceeds 1"),
         ("albedo.gaussian = {}", "`gaussian` is not known"),
     ] {
