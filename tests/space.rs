@@ -187,6 +187,42 @@ fn a_volume_without_bounds_is_a_mistake_with_a_cure() {
 }
 
 #[test]
+fn what_no_page_takes_is_a_mistake_with_its_place() {
+    let wrong = |text: &str, expected: &str| {
+        let error = common::mistakes(text).map(|error| error.render(false)).unwrap_or_default();
+        assert!(error.contains(expected), "{expected} is not in: {error}");
+    };
+    let eq21 = |estimator: &str| furnace("volume.eq21 = {}", 0.5, "isotropic = {}", estimator);
+    let sampling = "sampling.constant.value = 1";
+    wrong(
+        &eq21(&format!("particle = {{ rule = \"analog\", roulette = 1.5, {sampling} }}")),
+        "`roulette` is above 1",
+    );
+    wrong(
+        &eq21(&format!("splitting = {{ rule = \"analog\", {sampling} }}")),
+        "splitting needs a bound",
+    );
+    let particle = format!("particle = {{ rule = \"analog\", {sampling} }}");
+    wrong(
+        &eq21(&particle).replace("albedo = 0.5", "albedo.constant = { extinction = 1.5 }"),
+        "the field may exceed 1 in the volume",
+    );
+    let infinite = |volume: &str, phase: &str, albedo: &str| {
+        format!(
+            "title = \"t\"\n[problem.infinite-medium]\n{volume}\n{RAY}\nalbedo{albedo}\n\
+             phase.{phase}\nradii = [1, 2]\nestimators = [{{ {particle} }}]\n"
+        )
+    };
+    let whole = "volume.constant = { extinction = 1 }";
+    let forward = "henyey-greenstein = { g = 0.5 }";
+    wrong(&infinite(whole, forward, " = 0.5"), "known for isotropic scattering");
+    wrong(&infinite("volume.eq21 = {}", "isotropic = {}", " = 0.5"), "has no end");
+    let field = ".constant = { extinction = 0.5 }";
+    wrong(&infinite(whole, "isotropic = {}", field), "albedo");
+    assert!(common::mistakes(&infinite(whole, "isotropic = {}", " = 0.5")).is_none());
+}
+
+#[test]
 fn every_rule_passes_in_every_shipped_case() {
     let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium"];
     let cases = Case::read_all(&folders).unwrap_or_else(|errors| {
