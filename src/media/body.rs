@@ -128,7 +128,12 @@ fn read_line(settings: &Settings) -> Option<(String, Profile)> {
 }
 
 fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
-    let (index, field) = settings.table("volume")?.choice(&names())?;
+    read_field(settings, "volume")
+}
+
+/// Reads a field in space, `KEY.NAME = { … }`.
+pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Volume)> {
+    let (index, field) = settings.table(key)?.choice(&names())?;
     let volume = Volume::read(index, &field);
     field.close();
     Some((names().swap_remove(index), volume?))

@@ -19,6 +19,7 @@ pub mod rule;
 pub mod single;
 pub mod slab;
 pub mod sphere;
+pub mod space;
 pub mod volterra;
 
 pub use count::CountLaw;
