@@ -48,6 +48,8 @@ const CASES: &[(&str, &str)] = cases![
     "single-scattering/magnet",
     "slab/magnet",
     "slab/magnet-diffuse",
+    "sphere/magnet",
+    "sphere/environment",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

@@ -27,6 +27,7 @@ pub mod rules;
 pub mod scores;
 pub mod single_scattering;
 pub mod slab;
+pub mod sphere;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -36,7 +37,7 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Furnace, Problem, Rod, SingleScattering, Slab, Transmittance, TransmittanceCurve,
+    FreeFlight, Furnace, Problem, Rod, SingleScattering, Slab, Sphere, Transmittance, TransmittanceCurve,
     each_problem,
 };
 
@@ -146,6 +147,12 @@ impl Mutable for Furnace {
 impl Mutable for Slab {
     fn mutants() -> Vec<Mutant<Self>> {
         slab::mutants()
+    }
+}
+
+impl Mutable for Sphere {
+    fn mutants() -> Vec<Mutant<Self>> {
+        sphere::mutants()
     }
 }
 

@@ -100,3 +100,9 @@ pub const SLAB_NON_TERMINATING: Target = on("slab/magnet", 2, "non-terminating")
 pub const SLAB_ADAPTIVE: Target = on("slab/magnet", 3, "adaptive");
 /// Diffuse light, a σ̂ in steps.
 pub const SLAB_DIFFUSE: Target = on("slab/magnet-diffuse", 0, "non-terminating");
+/// A weighted walk in a ball, ratio-tracked shadow rays to a black light sphere.
+pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ratio shadow 2)");
+/// The same with exact shadow rays.
+pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
+/// The same ball in an environment.
+pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");

@@ -19,6 +19,7 @@ macro_rules! each_problem {
             slab::Slab,
             single_scattering::SingleScattering,
             furnace::Furnace,
+            sphere::Sphere,
         }
     };
 }

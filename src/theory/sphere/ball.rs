@@ -12,6 +12,8 @@ const SMOOTH: f64 = 2.0;
 const BEYOND: usize = 5;
 /// The fewest nodes: they integrate σ_t exactly where it is cubic in `r²`.
 const FEWEST: usize = 9;
+/// The most nodes.
+pub(super) const MOST: usize = 32;
 
 /// A ball with a radial extinction.
 pub struct Ball<'a> {
@@ -87,7 +89,8 @@ impl Ball<'_> {
         let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
         let length = (to - from) / parts;
         let rule = rules.of(nodes);
-        let mut sigma = vec![0.0; rule.nodes.len()];
+        let mut sigma = [0.0; MOST];
+        let sigma = &mut sigma[..rule.nodes.len().min(MOST)];
         for part in 0..parts as usize {
             let begin = from + length * part as f64;
             for (sigma, x) in sigma.iter_mut().zip(&rule.nodes) {
@@ -96,11 +99,11 @@ impl Ball<'_> {
             }
             for (i, x) in rule.nodes.iter().enumerate() {
                 let t = begin + length * x;
-                let running: f64 = rule.running[i].iter().zip(&sigma).map(|(w, s)| w * s).sum();
+                let running: f64 = rule.running[i].iter().zip(&*sigma).map(|(w, s)| w * s).sum();
                 let share = rule.weights[i] * length * sigma[i];
                 each(offset2 + t * t, share * (-*depth - length * running).exp());
             }
-            let mean: f64 = rule.weights.iter().zip(&sigma).map(|(w, s)| w * s).sum();
+            let mean: f64 = rule.weights.iter().zip(&*sigma).map(|(w, s)| w * s).sum();
             *depth += length * mean;
         }
     }

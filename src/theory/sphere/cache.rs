@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
 
 use super::ball::Ball;
 use super::shells::Resolution;
-use super::{Asked, Lights, answers, centre_of};
+use super::{Asked, Lights, Solved, Spread, centre_of};
 use crate::numeric::Known;
 
 /// More answers than this are forgotten, all together.
@@ -22,11 +22,22 @@ pub struct Scene {
     pub albedo: f64,
     /// Who shines.
     pub lights: Lights,
+    /// Whether the environment stands for a distant light, looked at from the centre.
+    pub is_distant: bool,
     /// What is asked about.
     pub asked: Asked,
 }
 
-type Slot = Arc<OnceLock<Option<Known>>>;
+/// What there is to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The value.
+    pub value: Known,
+    /// How far draws of next-event estimation stray from it.
+    pub spread: Spread,
+}
+
+type Slot = Arc<OnceLock<Option<Answer>>>;
 
 static ANSWERS: LazyLock<Mutex<HashMap<Vec<u64>, Slot>>> = LazyLock::new(Mutex::default);
 
@@ -39,7 +50,8 @@ impl Scene {
         };
         let lights = [self.lights.environment, self.lights.core];
         let core = self.core.unwrap_or(-1.0);
-        let mut numbers = vec![self.radius, core, self.albedo, kind];
+        let distant = f64::from(u8::from(self.is_distant));
+        let mut numbers = vec![self.radius, core, self.albedo, kind, distant];
         numbers.extend(lights);
         numbers.extend(asked);
         let outer = self.radius * self.radius;
@@ -47,17 +59,20 @@ impl Scene {
         numbers.into_iter().map(f64::to_bits).collect()
     }
 
-    fn answer(&self, extinction: &dyn Fn(f64) -> f64) -> Option<Known> {
+    fn answer(&self, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
         let centre = centre_of(self.core);
         let ball = Ball { radius: self.radius, centre, extinction };
-        let found = answers(&ball, self.albedo, self.lights, Resolution::COARSE, &[self.asked])?;
-        found.first().copied()
+        let solve = |resolution| Solved::new(&ball, self.albedo, self.lights, resolution);
+        let fine = solve(Resolution::COARSE)?;
+        let coarse = solve(Resolution::COARSE.coarser())?;
+        let value = Resolution::COARSE.known(fine.answer(self.asked), coarse.answer(self.asked));
+        Some(Answer { value, spread: fine.spread(self.asked, self.is_distant)? })
     }
 }
 
 /// The answer, which is worked out once and only once, whoever asks.
 #[must_use]
-pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Known> {
+pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
     let slot = {
         // A panic of someone else leaves whole slots behind.
         let mut answers = ANSWERS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -76,13 +91,19 @@ mod tests {
     #[test]
     fn what_differs_is_kept_apart() {
         let sky = Lights { environment: 1.0, core: 0.0 };
-        let scene =
-            Scene { radius: 1.0, core: None, albedo: 0.5, lights: sky, asked: Asked::Mean(0.5) };
+        let scene = Scene {
+            radius: 1.0,
+            core: None,
+            albedo: 0.5,
+            lights: sky,
+            is_distant: false,
+            asked: Asked::Mean(0.5),
+        };
         let of = |scene: &Scene, sigma: f64| {
             let found = cached(scene, &|_| sigma).expect("a medium");
             assert_eq!(Some(found), cached(scene, &|_| sigma));
             assert_eq!(Some(found), scene.answer(&|_| sigma));
-            found.value
+            found.value.value
         };
         let values = [
             of(&scene, 1.0),

@@ -32,7 +32,7 @@ use crate::numeric::matrix::Matrix;
 use ball::Ball;
 use shells::{Centre, Resolution, Row, Rules, Shells};
 
-pub use cache::{Scene, cached};
+pub use cache::{Answer, Scene, cached};
 
 /// The radiances at the ends of lines of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,12 +64,23 @@ pub struct Solved<'a> {
     resolution: Resolution,
     shells: Shells,
     rules: Rules,
-    /// aJ at the nodes.
+    albedo: f64,
+    /// `r²` of the nodes.
+    nodes: Vec<f64>,
+    /// What `aJ` at the nodes adds to `aJ` at the nodes.
+    matrix: Matrix,
+    /// Unscattered light at the nodes, `J₀`.
+    direct: Vec<f64>,
+    /// `aJ` at the nodes.
     source: Vec<f64>,
 }
 
 /// Light that arrives unscattered, and the weights of aJ at the nodes in the light that is scattered.
 type Arriving = (f64, Vec<f64>);
+
+fn product(weights: &[f64], values: &[f64]) -> f64 {
+    weights.iter().zip(values).map(|(w, x)| w * x).sum()
+}
 
 impl<'a> Solved<'a> {
     /// Solves the equation; `None` where the medium is no medium: σ_t or a negative, or a above 1.
@@ -82,14 +93,27 @@ impl<'a> Solved<'a> {
     ) -> Option<Self> {
         let shells = Shells::new(ball.radius, ball.centre, ball.extinction, resolution);
         let rules = Rules::new(resolution.nodes + 8);
-        let mut solved = Self { ball, lights, resolution, shells, rules, source: Vec::new() };
-        let nodes = solved.shells.nodes(&solved.rules);
-        let rows: Vec<Arriving> = nodes.iter().map(|r2| solved.mean_row(r2.sqrt())).collect();
-        let matrix = Matrix::new(nodes.len(), nodes.len(), |i, j| albedo * rows[i].1[j]);
-        let direct = Matrix::new(nodes.len(), 1, |i, _| albedo * rows[i].0);
-        let found = matrix.series_times(&direct)?;
-        solved.source = (0..nodes.len()).map(|i| found.at(i, 0)).collect();
-        solved.source.iter().all(|x| x.is_finite()).then_some(solved)
+        let nodes = shells.nodes(&rules);
+        let (direct, source) = (Vec::new(), Vec::new());
+        let matrix = Matrix::new(1, 1, |_, _| 0.0);
+        let mut solved =
+            Self { ball, lights, resolution, shells, rules, albedo, nodes, matrix, direct, source };
+        let rows: Vec<Arriving> =
+            solved.nodes.iter().map(|r2| solved.mean_row(r2.sqrt())).collect();
+        let count = rows.len();
+        solved.matrix = Matrix::new(count, count, |i, j| albedo * rows[i].1[j]);
+        solved.direct = rows.into_iter().map(|row| row.0).collect();
+        solved.source = solved.gathered(&solved.direct)?;
+        Some(solved)
+    }
+
+    /// What a score g at each scattering, a function of the place given at the nodes, comes to:
+    /// `aY` of `Y = g + K aY`.
+    fn gathered(&self, score: &[f64]) -> Option<Vec<f64>> {
+        let scattered = Matrix::new(score.len(), 1, |i, _| self.albedo * score[i]);
+        let found = self.matrix.series_times(&scattered)?;
+        let found: Vec<f64> = (0..score.len()).map(|i| found.at(i, 0)).collect();
+        found.iter().all(|x| x.is_finite()).then_some(found)
     }
 
     /// Adds what arrives along one line of sight to a row; answers the unscattered part.
@@ -111,23 +135,86 @@ impl<'a> Solved<'a> {
         (direct, row.weights(&self.shells, &self.rules))
     }
 
-    /// The answer to a question.
-    #[must_use]
-    pub fn answer(&self, asked: Asked) -> f64 {
-        let (direct, weights) = match asked {
+    fn arriving(&self, asked: Asked) -> Arriving {
+        match asked {
             Asked::Mean(r) => self.mean_row(r),
             Asked::Radiance { offset, from } => {
                 let mut row = Row::new(self.shells.count);
                 let direct = self.sight(offset * offset, from, 1.0, &mut row);
                 (direct, row.weights(&self.shells, &self.rules))
             }
+        }
+    }
+
+    /// The answer to a question.
+    #[must_use]
+    pub fn answer(&self, asked: Asked) -> f64 {
+        let (direct, weights) = self.arriving(asked);
+        direct + product(&weights, &self.source)
+    }
+
+    /// What bounds the square of what next-event estimation says, see [`Spread`].
+    fn spread(&self, asked: Asked, is_distant: bool) -> Option<Spread> {
+        let brightest = |r2: f64| match self.ball.centre {
+            Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
+            _ => 1.0,
         };
-        direct + weights.iter().zip(&self.source).map(|(w, x)| w * x).sum::<f64>()
+        let crossed = |most: f64, direct: f64, all: f64| {
+            2.0 * (all - direct).max(0.0) * if is_distant { most } else { direct }
+        };
+        let (mut lit_scores, mut crossed_scores) = (Vec::new(), Vec::new());
+        let scattered = self.matrix.applied(&self.source);
+        for ((&r2, &direct), &more) in self.nodes.iter().zip(&self.direct).zip(&scattered) {
+            lit_scores.push(brightest(r2) * direct);
+            // The matrix has the albedo in it.
+            let all = if self.albedo > 0.0 { direct + more / self.albedo } else { direct };
+            crossed_scores.push(crossed(brightest(r2), direct, all));
+        }
+        let (direct, weights) = self.arriving(asked);
+        let lit = product(&weights, &self.gathered(&lit_scores)?);
+        let more = product(&weights, &self.gathered(&crossed_scores)?);
+        let found = Spread { unscattered: 0.0, lit, crossed: more };
+        Some(match asked {
+            Asked::Radiance { .. } => Spread { unscattered: direct, ..found },
+            Asked::Mean(r) => {
+                let (most, all) = (brightest(r * r), direct + product(&weights, &self.source));
+                let lit = lit + most * direct;
+                Spread { lit, crossed: more + crossed(most, direct, all), ..found }
+            }
+        })
     }
 }
 
-/// What a thousand nodes lose in rounding, relative to the answer.
-const ROUNDING: f64 = 1e-13;
+/// What bounds `E[X²]` of next-event estimation by walks whose weights stay in `[0, 1]`.
+///
+/// With h what a shadow ray brings at a scattering and X' what is still to come there, in units of the
+/// weight w, `X = Σ w h` and
+///
+/// ```text
+/// E[X²] = E[Σ w² (h² + 2 h̄ (X̄' − h̄))] ≤ unscattered + G lit + crossed
+/// lit = E[Σ w H h̄],   crossed = E[Σ w 2 h̄ (J − h̄)],   h̄ = J₀, H the brightest that h may be untracked
+/// ```
+///
+/// since `w² ≤ w` and, for a tracked transmittance T̂, `E[T̂²] ≤ G T`. Both sums are answers of the same
+/// equation. For walks of weight 0 or 1 and delta-tracked shadow rays, `G = 1`, both sides are equal. A
+/// distant light is not even, `h̄ ≤ H` instead of J₀.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// What arrives without a scattering.
+    pub unscattered: f64,
+    /// `E[Σ w H h̄]`.
+    pub lit: f64,
+    /// `E[Σ w 2 h̄ (J − h̄)]`.
+    pub crossed: f64,
+}
+
+impl Spread {
+    /// The bound on `E[X²]`, given that on `E[T̂²]/T`.
+    #[must_use]
+    pub fn square(&self, gain: f64) -> f64 {
+        self.unscattered + gain * self.lit + self.crossed
+    }
+}
 
 /// Answers to several questions about one ball, with their errors; `None` where it is no medium.
 #[must_use]
@@ -140,10 +227,7 @@ pub fn answers(
 ) -> Option<Vec<Known>> {
     let fine = Solved::new(ball, albedo, lights, resolution)?;
     let coarse = Solved::new(ball, albedo, lights, resolution.coarser())?;
-    let known = |&asked: &Asked| {
-        let value = fine.answer(asked);
-        Known::new(value, (value - coarse.answer(asked)).abs() + ROUNDING * value.abs())
-    };
+    let known = |&asked: &Asked| resolution.known(fine.answer(asked), coarse.answer(asked));
     Some(asked.iter().map(known).collect())
 }
 
@@ -222,5 +306,16 @@ mod tests {
         let received = flux(&sky, 0.0, 0.4, near);
         let sent = flux(&lamp, 0.0, 0.4, far) + flux(&lamp, 0.4, 1.5, far);
         assert!((received - sent).abs() < 1e-5 * sent, "{received} {sent}");
+    }
+
+    #[test]
+    fn the_square_of_what_a_thin_ball_scatters_is_a_hand_value() {
+        // One scattering at most, h = 1 almost surely: X = 1 unscattered or scattered, never both.
+        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-6 };
+        let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
+        let through = Asked::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
+        let spread = solved.spread(through, false).expect("finite");
+        assert!((spread.square(1.0) - 1.0).abs() < 1e-10, "{spread:?}");
+        assert!((spread.lit - 2e-6).abs() < 1e-11 && spread.crossed < 1e-11);
     }
 }

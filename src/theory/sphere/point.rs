@@ -107,8 +107,7 @@ pub fn orders(
     }
     let fine = radiances(ball, albedo, offsets, orders, resolution)?;
     let coarse = radiances(ball, albedo, offsets, orders, resolution.coarser())?;
-    let known =
-        |(&fine, &coarse): (&f64, &f64)| Known::new(fine, (fine - coarse).abs() + 1e-13 * fine);
+    let known = |(&fine, &coarse): (&f64, &f64)| resolution.known(fine, coarse);
     let rows = fine.iter().zip(&coarse);
     Some(rows.map(|(fine, coarse)| fine.iter().zip(coarse).map(known).collect()).collect())
 }

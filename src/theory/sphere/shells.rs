@@ -6,6 +6,7 @@
 //! distance from the centre and t the distance from its foot: what is smooth in `r²` is smooth along
 //! the ray, even where it passes the centre.
 
+use crate::numeric::Known;
 use crate::numeric::quadrature::GaussLegendre;
 
 /// One shell: `from ≤ r² ≤ to`.
@@ -34,13 +35,22 @@ pub struct Resolution {
     pub core: usize,
     /// How often they are halved towards a point source.
     pub centre: usize,
+    /// What two answers may agree by chance, relative to the answer: measured, several times over.
+    pub chance: f64,
 }
 
 impl Resolution {
     /// For reference values: about twelve digits.
-    pub const FINE: Self = Self { nodes: 12, directions: 12, surface: 15, core: 23, centre: 30 };
-    /// To be compared with draws: about eight digits.
-    pub const COARSE: Self = Self { nodes: 9, directions: 9, surface: 11, core: 16, centre: 24 };
+    pub const FINE: Self =
+        Self { nodes: 12, directions: 12, surface: 15, core: 23, centre: 30, chance: 2e-13 };
+    /// To be compared with draws: about seven digits.
+    pub const COARSE: Self =
+        Self { nodes: 7, directions: 7, surface: 8, core: 9, centre: 20, chance: 1e-8 };
+
+    /// What an answer and one of a coarser resolution say together.
+    pub(super) fn known(self, fine: f64, coarse: f64) -> Known {
+        Known::new(fine, (fine - coarse).abs() + self.chance * fine.abs())
+    }
 
     /// What the error is told by: the answers of both differ by more than the finer one is off.
     pub(super) fn coarser(self) -> Self {
@@ -50,6 +60,7 @@ impl Resolution {
             surface: self.surface - 2,
             core: self.core - 3,
             centre: self.centre - 4,
+            chance: self.chance,
         }
     }
 }
