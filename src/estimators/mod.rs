@@ -8,6 +8,8 @@ pub mod controls;
 pub mod domain;
 pub mod free_flight;
 pub mod furnace;
+pub mod infinite_medium;
+pub mod lambertian;
 pub mod layers;
 pub mod ledger;
 pub mod packet;

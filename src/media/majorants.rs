@@ -77,9 +77,8 @@ impl Majorants {
         let within = bounds.enclosing_box()?;
         let (low, size) = (within.low, within.high - within.low);
         let width: [f64; 3] = std::array::from_fn(|i| size.0[i] / cells[i] as f64);
-        let corner = |at: [usize; 3]| {
-            Point(std::array::from_fn(|i| low.0[i] + width[i] * at[i] as f64))
-        };
+        let corner =
+            |at: [usize; 3]| Point(std::array::from_fn(|i| low.0[i] + width[i] * at[i] as f64));
         let mut values = Vec::with_capacity(cells.iter().product());
         for k in 0..cells[2] {
             for j in 0..cells[1] {
@@ -125,6 +124,19 @@ impl Majorants {
     #[must_use]
     pub fn largest_ratio(&self) -> f64 {
         self.largest_ratio
+    }
+
+    /// `∫σ̂ dV`; `None` for cells over a ball, of which its boundary cuts off parts.
+    #[must_use]
+    pub fn content(&self) -> Option<f64> {
+        match (self.single_value(), self.bounds) {
+            (Some(value), _) => Some(value * self.bounds.content()),
+            (None, Bounds::Box(_)) => {
+                let cell: f64 = self.width.iter().product();
+                Some(cell * self.values.iter().sum::<f64>())
+            }
+            (None, _) => None,
+        }
     }
 
     /// The share of the box in which σ̂ is 0.
@@ -262,6 +274,7 @@ mod tests {
         // 0.25 up to the plane, 0.5 in the second cell: a quarter of it.
         assert_eq!(grid.fly(&mut flight, 0.75), Some(2.0));
         assert_eq!(flight.place(), Point([1.25, 0.5, 0.5]));
+        assert_eq!(grid.content(), Some(2.5));
         assert_eq!(grid.fly(&mut flight, 1.6), None);
         assert_eq!(flight.t, 2.0);
         let mut back = grid.enter(Point([2.0, 0.5, 0.5]), Point([-1.0, 0.0, 0.0]));
@@ -293,7 +306,9 @@ mod tests {
             seen += 1;
         }
         assert!(seen > 100);
-        assert!((cells.bounds.clip(&Ray { length: 99.0, ..ray(&flight) }).to - flight.t).abs() < 1e-9);
+        assert!(
+            (cells.bounds.clip(&Ray { length: 99.0, ..ray(&flight) }).to - flight.t).abs() < 1e-9
+        );
         // A sphere is left at its own boundary, not at that of its box.
         assert!((flight.place() - Point([0.0, 0.0, 10.0])).norm() - 10.0 < 1e-9);
         let one = Majorants::constant(0.8, &volume);

@@ -20,6 +20,8 @@ pub mod fault;
 pub mod flight;
 pub mod free_flight;
 pub mod furnace;
+pub mod infinite_medium;
+pub mod lambertian;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
@@ -37,8 +39,8 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Furnace, Problem, Rod, SingleScattering, Slab, Sphere, Transmittance, TransmittanceCurve,
-    each_problem,
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
+    Sphere, Transmittance, TransmittanceCurve, each_problem,
 };
 
 pub use fault::{Fault, Honest};
@@ -141,6 +143,18 @@ impl Mutable for SingleScattering {
 impl Mutable for Furnace {
     fn mutants() -> Vec<Mutant<Self>> {
         furnace::mutants()
+    }
+}
+
+impl Mutable for Lambertian {
+    fn mutants() -> Vec<Mutant<Self>> {
+        lambertian::mutants()
+    }
+}
+
+impl Mutable for InfiniteMedium {
+    fn mutants() -> Vec<Mutant<Self>> {
+        infinite_medium::mutants()
     }
 }
 

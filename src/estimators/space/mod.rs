@@ -6,6 +6,7 @@ pub mod walk;
 use std::sync::Arc;
 
 use super::{Refusal, Setup};
+use crate::geometry::Bounds;
 use crate::media::Majorants;
 use crate::numeric::Known;
 use crate::problems::{Problem, Scene};
@@ -28,15 +29,17 @@ pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusa
 /// What bounds on the walks of a particle depend on.
 #[must_use]
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
-    let across = majorants.bounds().enclosing_box().map_or(f64::INFINITY, |within| {
-        (within.high - within.low).norm()
-    });
+    let across = match majorants.bounds() {
+        Bounds::Everywhere => f64::INFINITY,
+        Bounds::Sphere { radius, .. } => 2.0 * radius,
+        Bounds::Box(within) => (within.high - within.low).norm(),
+    };
     Walks {
         rule: particle.rule,
         roulette: particle.roulette,
         splits: particle.splitting != Splitting::None,
         largest_ratio: majorants.largest_ratio(),
-        albedo: scene.albedo.range(&scene.volume),
+        albedo: scene.albedo.range(),
         depth: majorants.largest() * across,
     }
 }
@@ -73,10 +76,8 @@ pub fn realisable<P: Problem>(
 pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
     let Some(bound) = walks.energy_variance() else {
         let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
-        let found = format!(
-            "σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants",
-            walks.ratio()
-        );
+        let found =
+            format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
         return Err(Refusal::mismatch(needs, found));
     };
     Ok(energy_channel(bound))
