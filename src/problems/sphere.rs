@@ -189,7 +189,7 @@ impl Sphere {
 
 fn read_light(settings: &Settings) -> Option<Light> {
     let names = ["environment", "black-sphere", "distant", "point"].map(str::to_owned);
-    let (index, light) = settings.table("light")?.choice(&names)?;
+    let (index, light) = settings.chosen("light", &names)?;
     let read = match index {
         0 => Some(Light::Environment),
         1 => light.number("radius", Domain::Positive).map(Light::BlackSphere),
