@@ -23,6 +23,8 @@ const BLURRED: f64 = 1e-4;
 const DEEPEST: f64 = 30.0;
 /// A tracked transmittance may have this second moment, relative to that of an untracked one.
 const WILDEST: f64 = 1e3;
+/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+const SLACK: f64 = 1e-9;
 /// More tentative collisions than this on a shadow ray are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 
@@ -82,13 +84,19 @@ fn domain(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
     realisable(setup, particle)
 }
 
-/// G, a bound on `E[T̂²]/T` of tracked shadow rays: `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
-fn gain(sphere: &Sphere, shadow: Tracking) -> f64 {
+/// G, a bound on `E[T̂²]/T` of tracked shadow rays through σ_t up to a majorant and a length:
+/// `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
+fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
     let Tracking::Ratio { sampling, control } = shadow else { return 1.0 };
     // It is convex in σ_t: largest at an end.
     let at = |sigma: f64| (sigma - control) * (sigma - control) / sampling - sigma;
-    let worst = at(0.0).max(at(sphere.majorant())).max(0.0);
-    (2.0 * sphere.radius() * worst).exp()
+    let worst = at(0.0).max(at(majorant)).max(0.0);
+    (length * worst).exp()
+}
+
+/// The same on any shadow ray through a ball.
+fn gain_in(sphere: &Sphere, shadow: Tracking) -> f64 {
+    gain(sphere.majorant(), 2.0 * sphere.radius(), shadow)
 }
 
 /// Whether shadow rays are unbiased and end, beside what the walk needs.
@@ -107,12 +115,12 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
         }
     }
     if let Tracking::Delta { sampling } = shadow
-        && sampling < sphere.majorant() * (1.0 - 1e-12)
+        && sampling < sphere.majorant() * (1.0 - SLACK)
     {
         let found = format!("σ̄ = {sampling} and σ_t is bounded by {:.6} only", sphere.majorant());
         return Err(Refusal::mismatch("σ̄ ≥ σ_t on every shadow ray", found));
     }
-    let gain = gain(sphere, shadow);
+    let gain = gain_in(sphere, shadow);
     if gain > WILDEST {
         let needs = "a shadow's σ̂ and σ_c that keep E[T̂²] below 1e3 T";
         return Err(Refusal::mismatch(needs, format!("it is bounded by {gain:.3e} T only")));
@@ -168,7 +176,7 @@ fn all_or_nothing(value: Known) -> Prediction {
 /// Next-event estimation.
 fn predict_connected(setup: &Setup<Sphere>, shadow: Tracking) -> Prediction {
     let answer = truth(&setup.problem).unwrap_or(UNKNOWN);
-    prediction(answer.value, answer.spread.square(gain(&setup.problem, shadow)))
+    prediction(answer.value, answer.spread.square(gain_in(&setup.problem, shadow)))
 }
 
 /// A particle that a black sphere stops.
@@ -238,4 +246,30 @@ estimators! {
     Sphere:
     particle::Walker,
     next_event::NextEvent,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_of_a_shadow_is_a_hand_value() {
+        let ratio = |sampling: f64, control: f64| Tracking::Ratio { sampling, control };
+        assert_eq!(gain(1.0, 2.0, Tracking::Exact), 1.0);
+        assert_eq!(gain(1.0, 2.0, Tracking::Delta { sampling: 1.0 }), 1.0);
+        // A majorant keeps T̂ in [0, 1]; half of σ_t makes E[T̂²] = e^(1/0.5 − 1) T per length.
+        assert_eq!(gain(1.0, 2.0, ratio(1.0, 0.0)), 1.0);
+        assert!((gain(1.0, 2.0, ratio(0.5, 0.0)) - 2f64.exp()).abs() < 1e-14);
+        // A control of 1 where there is nothing: E[T̂²] = e^(1/2) per length.
+        assert!((gain(1.0, 3.0, ratio(2.0, 1.0)) - 1.5f64.exp()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_draw_of_chance_has_the_variance_of_a_coin() {
+        let found = all_or_nothing(Known::new(0.2, 1e-9));
+        let moments = found.channels[0].moments.expect("known");
+        assert!((moments.variance() - 0.16).abs() < 1e-15);
+        // (1 − 3p(1 − p))/(p(1 − p)).
+        assert!((moments.kurtosis().expect("known") - 0.52 / 0.16).abs() < 1e-12);
+    }
 }
