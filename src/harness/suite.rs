@@ -48,6 +48,10 @@ const CASES: &[(&str, &str)] = cases![
     "single-scattering/magnet",
     "slab/magnet",
     "slab/magnet-diffuse",
+    "furnace/eq21",
+    "furnace/magnet",
+    "lambertian/magnet",
+    "infinite-medium/magnet",
     "sphere/magnet",
     "sphere/environment",
 ];

@@ -3,7 +3,7 @@
 //! ```text
 //! particles enter evenly over the boundary, with the Lambertian law cos θ/π about its normal
 //! a = 1:                   mean path Σ w ℓ = 4V/S,   mean collisions Σ w r = (4/S) ∫σ_t dV
-//! every a, non-terminating: mean tentative collisions = (4/S) ∫σ̂ dV
+//! a > 0, non-terminating:   mean tentative collisions = (4/S) ∫σ̂ dV
 //! every a, every rule:      Σ w r (1 − a) + w where it leaves = 1
 //! ```
 //!
@@ -24,7 +24,7 @@
 //! |---|---|
 //! | `energy` | every experiment whose spread theory bounds, see `trueflight explain furnace` |
 //! | `path length`, `collisions` | a = 1 everywhere and `σ̂ ≥ σ_t` |
-//! | `tentative collisions` | the rule `non-terminating` alone, any a, any σ̂ that is constant or, in a box, local |
+//! | `tentative collisions` | the rule `non-terminating` alone, a > 0, any σ̂ that is constant or, in a box, local |
 //!
 //! `∫σ_t dV` is a cubature over chords of exact optical depths, with a stated error. How far counts and
 //! lengths of a walk scatter about their mean theory does not know; their tails are light, and they are

@@ -103,7 +103,9 @@ pub(super) fn predict(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Pre
     let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
     channels.push(unknown("squared distance".to_owned(), rounded(square)));
     let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
-    let end = end(setup, particle).filter(|&end| end > 0.0);
+    // Where every collision is real and nothing is scattered, there is one of them.
+    let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
+    let end = if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
     let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
     // A real collision counts r: then all walks of equal length count the same.
     channels.push(match end.filter(|_| is_majorant) {

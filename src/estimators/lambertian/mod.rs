@@ -29,7 +29,9 @@ impl Seen {
         };
         let scene = setup.problem.scene();
         let walks = space::walks(scene, majorants, particle);
-        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating);
+        // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
+        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
+            && scene.albedo.even() != Some(0.0);
         Self {
             energy: walks.is_tame(),
             white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
@@ -116,7 +118,8 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
     if let Some(majorants) = setup.space.as_deref() {
         let walks = space::walks(problem.scene(), majorants, particle);
         let bound = walks.energy_variance().filter(|_| seen.energy);
-        channels.extend(bound.map(|bound| named("energy", space::energy_channel(bound))));
+        let named = |bound| Channel { name: "energy".to_owned(), ..space::energy_channel(bound) };
+        channels.extend(bound.map(named));
         let over = problem.four_over_surface();
         let times = |known: Known| {
             Known::new(
@@ -142,14 +145,10 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
     Prediction { channels, lookups: None, ..prediction }
 }
 
-fn named(name: &str, channel: Channel) -> Channel {
-    Channel { name: name.to_owned(), ..channel }
-}
-
 /// A channel whose spread theory does not know, with light tails.
 fn piloted(name: &str, truth: Known) -> Channel {
     let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-    named(name, Channel { moments: None, by_pilots: true, ..certain })
+    Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
 }
 
 /// Makes a draw by the honest walk.

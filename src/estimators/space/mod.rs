@@ -22,6 +22,10 @@ const ROUNDING: f64 = 1e-12;
 const MOST_COLLISIONS: f64 = 1e4;
 
 /// σ̂ in space, which every estimator that walks takes.
+///
+/// # Errors
+///
+/// That there is none.
 pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
     setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
 }

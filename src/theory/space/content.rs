@@ -60,9 +60,10 @@ fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> f64 {
 }
 
 fn ball(volume: &Volume, within: &Aabb, centre: Point, radius: f64, n: usize) -> f64 {
-    let (tilts, turns) = (4 * n, 8 * n);
-    let rule = GaussLegendre::new(tilts);
-    rule.integrate(0.0, FRAC_PI_2, |tilt| {
+    let (panels, turns) = ((n / 4).max(1), 8 * n);
+    let rule = GaussLegendre::new(16);
+    let width = FRAC_PI_2 / panels as f64;
+    let ring = |tilt: f64| {
         let across = radius * tilt.sin();
         let mut around = Sum::default();
         for turn in 0..turns {
@@ -73,7 +74,9 @@ fn ball(volume: &Volume, within: &Aabb, centre: Point, radius: f64, n: usize) ->
             around.add(depth(volume, within, x, y));
         }
         TAU / turns as f64 * around.value() * across * radius * tilt.cos()
-    })
+    };
+    let ends = (0..panels).map(|i| (width * i as f64, width * (i + 1) as f64));
+    ends.map(|(from, to)| rule.integrate(from, to, ring)).sum()
 }
 
 fn cuboid(volume: &Volume, within: &Aabb, n: usize) -> f64 {

@@ -88,9 +88,8 @@ impl Walks {
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {
-            return self
-                .never_grows()
-                .then(|| if extremes.spread <= NOTHING { below * below } else { 1.0 });
+            let bound = if extremes.spread <= NOTHING { below * below } else { 1.0 };
+            return self.never_grows().then_some(bound);
         }
         if extremes.spread <= NOTHING {
             return Some(0.0);

@@ -82,7 +82,7 @@ pub fn collisions_within(albedo: f64, distance: f64) -> Known {
     Known::new(value, ROUNDING * value / (1.0 - albedo))
 }
 
-/// The fluence at an optical distance from a source of power 1, in units of σ_t²; for an albedo in
+/// The fluence at an optical distance from a source of power 1, in units of `σ_t²`; for an albedo in
 /// `[0, 1)`.
 #[must_use]
 pub fn fluence(albedo: f64, distance: f64) -> Known {
@@ -97,7 +97,7 @@ pub fn fluence(albedo: f64, distance: f64) -> Known {
     Known::new(value, ROUNDING * value / (1.0 - albedo))
 }
 
-/// `E[r²]` at absorption, in units of 1/σ_t², for any phase function of mean cosine g.
+/// `E[r²]` at absorption, in units of `1/σ_t²`, for any phase function of mean cosine g.
 #[must_use]
 pub fn square_at_absorption(albedo: f64, mean_cosine: f64) -> f64 {
     2.0 / ((1.0 - albedo) * (1.0 - albedo * mean_cosine))
