@@ -20,6 +20,7 @@ pub mod setup;
 pub mod single_scattering;
 pub mod slab;
 pub mod space;
+pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;

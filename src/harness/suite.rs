@@ -53,6 +53,8 @@ const CASES: &[(&str, &str)] = cases![
     "lambertian/magnet",
     "lambertian/magnet-cells",
     "infinite-medium/magnet",
+    "sphere/magnet",
+    "sphere/environment",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

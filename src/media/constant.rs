@@ -86,6 +86,10 @@ impl Field for Constant {
     fn along(&self, _: &Ray, _: Span) -> Homogeneous {
         Homogeneous { extinction: self.extinction }
     }
+
+    fn is_radial(&self) -> bool {
+        matches!(self.bounds, Bounds::Sphere { .. })
+    }
 }
 
 #[cfg(test)]

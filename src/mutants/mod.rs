@@ -29,6 +29,7 @@ pub mod rules;
 pub mod scores;
 pub mod single_scattering;
 pub mod slab;
+pub mod sphere;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -39,7 +40,7 @@ pub mod weights;
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
     FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
-    Transmittance, TransmittanceCurve, each_problem,
+    Sphere, Transmittance, TransmittanceCurve, each_problem,
 };
 
 pub use fault::{Fault, Honest};
@@ -160,6 +161,12 @@ impl Mutable for InfiniteMedium {
 impl Mutable for Slab {
     fn mutants() -> Vec<Mutant<Self>> {
         slab::mutants()
+    }
+}
+
+impl Mutable for Sphere {
+    fn mutants() -> Vec<Mutant<Self>> {
+        sphere::mutants()
     }
 }
 

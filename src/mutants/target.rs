@@ -118,3 +118,9 @@ pub const INFINITE_ANALOG: Target = on("infinite-medium/magnet", 0, "particle (a
 /// Roulette below 0.5.
 pub const INFINITE_WEIGHTED: Target =
     on("infinite-medium/magnet", 1, "particle (weighted, roulette 0.5)");
+/// A weighted walk in a ball, ratio-tracked shadow rays to a black light sphere.
+pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ratio shadow 2)");
+/// The same with exact shadow rays.
+pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
+/// The same ball in an environment.
+pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");

@@ -21,6 +21,7 @@ macro_rules! each_problem {
             furnace::Furnace,
             lambertian::Lambertian,
             infinite_medium::InfiniteMedium,
+            sphere::Sphere,
         }
     };
 }
