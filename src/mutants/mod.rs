@@ -39,8 +39,8 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
-    Sphere, Transmittance, TransmittanceCurve, each_problem,
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab, Sphere,
+    Transmittance, TransmittanceCurve, each_problem,
 };
 
 pub use fault::{Fault, Honest};
