@@ -7,6 +7,7 @@
 pub mod controls;
 pub mod domain;
 pub mod free_flight;
+pub mod furnace;
 pub mod layers;
 pub mod ledger;
 pub mod packet;
@@ -16,6 +17,7 @@ pub mod sampling;
 pub mod setup;
 pub mod single_scattering;
 pub mod slab;
+pub mod space;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;

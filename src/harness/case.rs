@@ -10,7 +10,7 @@
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
 //! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
-//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `single-scattering`, `slab` | required |
+//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `single-scattering`, `slab`, `furnace` | required |
 //!
 //! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
 //! others need, at most `draws`.

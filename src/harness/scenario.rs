@@ -218,6 +218,11 @@ impl<P: Mutable> Scenario<P> {
         let problem = self.varied_problem(variation);
         let setup = Setup::new(problem, self.mesh().clone(), sampling, control);
         let setup = if self.written[index].entry.skips() { setup.skipping() } else { setup };
+        let swept = match variation {
+            Some((What::Sampling, value)) if takes_sampling => Some(value),
+            _ => None,
+        };
+        let setup = setup.in_space(swept, self.sampling_of(index), factor)?;
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
         if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {

@@ -138,9 +138,14 @@ fn read_line(settings: &Settings) -> Option<(String, Profile)> {
     Some((names().swap_remove(index), profile?))
 }
 
-/// Reads `volume.NAME = { … }`: the field's name in the catalogue and the field.
+/// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
 pub fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
-    let (index, field) = settings.table("volume")?.choice(&names())?;
+    read_field(settings, "volume")
+}
+
+/// Reads a field in space, `KEY.NAME = { … }`.
+pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Volume)> {
+    let (index, field) = settings.table(key)?.choice(&names())?;
     let volume = Volume::read(index, &field);
     field.close();
     Some((names().swap_remove(index), volume?))

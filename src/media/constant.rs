@@ -66,6 +66,7 @@ impl Field for Constant {
         self.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, _: Point) -> f64 {
         self.extinction
     }

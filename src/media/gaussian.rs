@@ -108,6 +108,7 @@ impl Field for Gaussian {
         self.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         let u = (p - self.centre) * (1.0 / self.width);
         self.peak * Lane::exp(-0.5 * u.dot(u))

@@ -16,6 +16,7 @@ pub mod cursor;
 pub mod even;
 pub mod grid_file;
 pub mod lattice;
+pub mod majorants;
 pub mod medium;
 pub mod piecewise;
 pub mod placement;
@@ -33,6 +34,7 @@ pub use body::Body;
 pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
+pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
 pub use placement::Placement;
@@ -162,6 +164,15 @@ pub trait Visitor {
     fn visit<F: FreeFlight>(self, field: &F) -> Self::Output;
 }
 
+/// A computation that is compiled once for each type of volume.
+pub trait VolumeVisitor {
+    /// What it answers.
+    type Output;
+
+    /// The computation.
+    fn visit<F: Field>(self, field: &F) -> Self::Output;
+}
+
 /// Lists the pages: from one line each come the module, the variants of [`Profile`] and
 /// [`Volume`], the name in case files and the row in `trueflight list`.
 macro_rules! media {
@@ -203,6 +214,11 @@ macro_rules! media {
         pub enum Volume { $($Field($module::$Field)),* }
 
         impl Volume {
+            /// Runs a computation on the concrete type: names become types here, once.
+            pub fn visit<V: VolumeVisitor>(&self, visitor: V) -> V::Output {
+                match self { $(Self::$Field(field) => visitor.visit(field)),* }
+            }
+
             /// Where the volume may be non-zero.
             #[must_use]
             pub fn bounds(&self) -> Bounds {

@@ -243,6 +243,7 @@ impl Field for Noise {
         3f64.sqrt() * length * frequency * f64::from(1u32 << octaves)
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.spectrum.value((p * self.spectrum.frequency).0, self.unit)
     }

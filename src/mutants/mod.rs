@@ -19,6 +19,7 @@ pub mod decisions;
 pub mod fault;
 pub mod flight;
 pub mod free_flight;
+pub mod furnace;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
@@ -35,7 +36,7 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Problem, Rod, SingleScattering, Slab, Transmittance, TransmittanceCurve,
+    FreeFlight, Furnace, Problem, Rod, SingleScattering, Slab, Transmittance, TransmittanceCurve,
     each_problem,
 };
 
@@ -133,6 +134,12 @@ impl Mutable for Rod {
 impl Mutable for SingleScattering {
     fn mutants() -> Vec<Mutant<Self>> {
         single_scattering::mutants()
+    }
+}
+
+impl Mutable for Furnace {
+    fn mutants() -> Vec<Mutant<Self>> {
+        furnace::mutants()
     }
 }
 
