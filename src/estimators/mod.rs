@@ -10,6 +10,7 @@ pub mod free_flight;
 pub mod furnace;
 pub mod layers;
 pub mod ledger;
+pub mod multiple_scattering;
 pub mod packet;
 pub mod rod;
 pub mod rules;

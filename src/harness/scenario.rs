@@ -6,7 +6,7 @@ use super::computable::{FAINTEST, refuse_what_cannot_be_computed};
 use super::mutation::Walk;
 use super::sweep::What;
 pub use super::written::Names;
-use super::written::{Usual, Written, predict, read_if};
+use super::written::{Usual, Written, predict, read_if, refuse_idle_controls};
 use crate::catalogue::Settings;
 use crate::estimators::trial::Entry;
 use crate::estimators::{Experiment, Order, Portrait, Refusal, Setup, Site, controls, sampling};
@@ -130,6 +130,7 @@ impl<P: Mutable> Scenario<P> {
             );
         }
         let written: Option<Vec<Written<P>>> = estimators.into_iter().collect();
+        refuse_idle_controls(settings, written.as_deref().unwrap_or_default(), swept);
         Some(Box::new(Self {
             problem: Arc::new(problem?),
             mesh: OnceLock::new(),

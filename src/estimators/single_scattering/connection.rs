@@ -36,7 +36,7 @@ pub fn read_shadow(settings: &Settings) -> Option<Tracking> {
         return Some(Tracking::Exact);
     }
     let names = ["exact", "ratio", "delta"].map(str::to_owned);
-    let (index, tracking) = settings.table("shadow")?.choice(&names)?;
+    let (index, tracking) = settings.chosen("shadow", &names)?;
     let read = match index {
         0 => Some(Tracking::Exact),
         1 => {

@@ -2,22 +2,20 @@
 
 use std::sync::Arc;
 
-use super::scene::Scene;
+use super::scene::{Called, Scene};
 use super::subject::Subject;
 use super::view::View;
 use crate::estimators::{DrawBuffer, Order, Refusal, Setup, Site};
 use crate::geometry::Ray;
 use crate::harness::written::Written;
-use crate::media::{Body, Control};
+use crate::media::{Body, Control, Majorants};
 use crate::rng::Address;
 use crate::theory::Mesh;
 
-/// A ray of more pieces than this is looked at through even panels.
-const MANY_PIECES: f64 = 2000.0;
-/// So many, of 16 nodes.
+/// Panels of 16 nodes on each ray, for what theory expects of its draws.
 const PANELS: usize = 16;
 /// A pixel of every so many columns and rows makes a pilot draw.
-const PILOTS_EVERY: u64 = 4;
+const PILOTS_EVERY: usize = 2;
 
 /// No pilot rays: recipes that learn are not read.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
@@ -40,9 +38,8 @@ impl<P: Subject> Seen<P> {
     pub fn new(view: &View, shared: &P::Shared, pixel: usize) -> Option<Self> {
         let ray = view.covered(pixel)?;
         let problem = Arc::new(P::at(shared, &view.volume, &ray)?);
-        let medium = problem.medium().clone();
-        let is_intricate = view.volume.pieces(medium.support().length()) > MANY_PIECES;
-        let mesh = if is_intricate { Mesh::even(medium, PANELS) } else { Mesh::new(medium) };
+        let panels = if P::ALONG_RAY { PANELS } else { 1 };
+        let mesh = Mesh::even(problem.medium().clone(), panels);
         let body = |ray: Ray| {
             let (name, volume) = (view.medium.clone(), view.volume.clone());
             Body::Volume { name, volume, ray }
@@ -56,6 +53,20 @@ impl<P: Subject> Seen<P> {
         let sky = if P::BEFORE_SKY { view.behind(pixel) } else { 1.0 };
         Some(Self { problem, sky, mesh: Arc::new(mesh), body: body(ray), leader, pixel })
     }
+}
+
+/// An estimator of a picture.
+pub struct Listed<'a, P> {
+    /// As written.
+    pub written: &'a Written<P>,
+    /// Its name.
+    pub called: Called,
+    /// Lookups per pixel that it is to take.
+    pub lookups: u64,
+    /// σ̂ in space, for draws that leave the ray: the same for all pixels.
+    pub space: Option<Arc<Majorants>>,
+    /// Where its random numbers are found, but for the pixel: those of pilots, and those of the image.
+    pub addresses: [Address; 2],
 }
 
 /// What is expected of a draw at a pixel.
@@ -111,7 +122,17 @@ pub struct Exposed {
 }
 
 impl<P: Subject> Scene<P> {
-    fn setup(&self, seen: &Seen<P>, written: &Written<P>) -> Result<Setup<P>, Refusal> {
+    fn setup(&self, seen: &Seen<P>, listed: &Listed<P>) -> Result<Setup<P>, Refusal> {
+        let written = listed.written;
+        if !P::ALONG_RAY {
+            let recipe = self.sampling_of(written);
+            let setup =
+                Setup::new(seen.problem.clone(), seen.mesh.clone(), None, Control::None);
+            return match &listed.space {
+                Some(space) => Ok(Setup { space: Some(space.clone()), ..setup }),
+                None => setup.in_space(None, recipe, 1.0),
+            };
+        }
         let site = Site { body: &seen.body, mesh: &seen.mesh, address: NOWHERE };
         let control = self.with_control(written, |recipe| match &seen.leader {
             Some((body, mesh)) if recipe.lookups() > 0 => {
@@ -133,13 +154,14 @@ impl<P: Subject> Scene<P> {
     /// What a draw is expected to cost and to be spread by; or why the estimator is refused.
     pub(super) fn forecast(
         &self,
+        number: usize,
         seen: &Seen<P>,
-        written: &Written<P>,
-        pilot: Address,
+        listed: &Listed<P>,
     ) -> Result<Forecast, String> {
+        let written = listed.written;
         let [column, row] = [seen.pixel % self.view.size[0], seen.pixel / self.view.size[0]];
         let refused = |refusal: Refusal| format!("pixel ({column}, {row}) {refusal}");
-        let setup = self.setup(seen, written).map_err(refused)?;
+        let setup = self.setup(seen, listed).map_err(refused)?;
         if !written.expect_biased {
             written.entry.domain(&setup).map_err(refused)?;
         }
@@ -155,8 +177,9 @@ impl<P: Subject> Scene<P> {
                 pilots: 0,
             });
         }
-        let is_pilot = [column, row].iter().all(|&at| at as u64 % PILOTS_EVERY == 1);
-        let lookups = is_pilot.then(|| self.drawn(seen, written, setup, 1, pilot).lookups);
+        let is_pilot = [column, row].iter().all(|at| at % PILOTS_EVERY == 0);
+        let address = Address { block: number as u64, ..listed.addresses[0] };
+        let lookups = is_pilot.then(|| self.drawn(seen, written, setup, 1, address).lookups);
         let pilots = lookups.unwrap_or(0);
         let lookups = lookups.map(|lookups| lookups as f64);
         Ok(Forecast { lookups, variance: None, bias: 0.0, leads, pilots })
@@ -165,13 +188,14 @@ impl<P: Subject> Scene<P> {
     /// So many draws at a pixel.
     pub(super) fn draw(
         &self,
+        number: usize,
         seen: &Seen<P>,
-        written: &Written<P>,
+        listed: &Listed<P>,
         draws: u64,
-        address: Address,
     ) -> Option<Pixel> {
-        let setup = self.setup(seen, written).ok()?;
-        Some(self.drawn(seen, written, setup, draws, address))
+        let setup = self.setup(seen, listed).ok()?;
+        let address = Address { block: number as u64, ..listed.addresses[1] };
+        Some(self.drawn(seen, listed.written, setup, draws, address))
     }
 
     fn drawn(

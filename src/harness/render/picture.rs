@@ -3,7 +3,7 @@
 //! | key | meaning | default |
 //! |---|---|---|
 //! | `title` | one line above the picture | required |
-//! | `picture.NAME` | what is shown: `transmittance` (before the sky) or `single-scattering` | required |
+//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
 //!
 //! Within `[picture.NAME]`:
 //!
@@ -17,10 +17,10 @@
 //! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
 //! | `sampling`, `control`, `estimators` | as in a case; an estimator may have its own `expect = "biased"` | |
 //! | `shared-control` | so many columns and rows of pixels use the control that is fitted to the ray in their middle | 1 |
-//! | `reference.closed-form = {}` | from the exact optical depth: transmittance only | |
-//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray; its error is what half as many panels differ by | 16 panels |
+//! | `reference.closed-form = {}` | from the exact optical depth, or for a white furnace | |
+//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is what half as many panels differ by | 16 panels |
 //! | `reference.draws = { lookups, estimator }` | many draws of one estimator, with their measured error | |
-//! | `light`, `albedo`, `phase` | as in the problem `single-scattering` | |
+//! | `light`, `albedo`, `phase` | as in the problem `single-scattering`; multiple scattering takes no light | |
 //!
 //! Every pixel gets the same number of draws, to within one: so many that the estimator takes
 //! `lookups` per covered pixel on average, as the paper compares. The number is fixed before the first
@@ -46,7 +46,7 @@ use super::record::PictureRecord;
 use super::scene::{AnyScene, Request, Scene};
 use crate::catalogue::Settings;
 use crate::harness::source::{CaseError, Source};
-use crate::problems::{SingleScattering, Transmittance};
+use crate::problems::{MultipleScattering, SingleScattering, Transmittance};
 
 /// A picture file, read.
 pub struct Picture {
@@ -62,9 +62,10 @@ pub struct Picture {
 type Reader = fn(&Settings) -> Option<Box<dyn AnyScene>>;
 
 /// What can be shown.
-const SUBJECTS: [(&str, Reader); 2] = [
+const SUBJECTS: [(&str, Reader); 3] = [
     ("transmittance", Scene::<Transmittance>::read),
     ("single-scattering", Scene::<SingleScattering>::read),
+    ("multiple-scattering", Scene::<MultipleScattering>::read),
 ];
 
 impl Picture {
@@ -98,9 +99,8 @@ impl Picture {
             return None;
         }
         let title = root.text("title");
-        let scene = root.table("picture").and_then(|picture| {
-            let names = SUBJECTS.map(|(name, _)| name.to_owned());
-            let (index, settings) = picture.choice(&names)?;
+        let names = SUBJECTS.map(|(name, _)| name.to_owned());
+        let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
             let (name, read) = SUBJECTS[index];
             let scene = read(&settings);
             settings.close();

@@ -25,14 +25,26 @@ pub enum Reference<P> {
 
 impl<P: Subject> Reference<P> {
     /// Reads `reference`; estimators find a σ̂ that they need in the picture if it has one.
-    pub fn read(settings: &Settings, body: Option<&Body>, usual: Usual) -> Option<Self> {
+    pub fn read(
+        settings: &Settings,
+        shared: Option<&P::Shared>,
+        body: Option<&Body>,
+        usual: Usual,
+    ) -> Option<Self> {
         let names = ["closed-form", "quadrature", "draws"].map(str::to_owned);
-        let (index, reference) = settings.table("reference")?.choice(&names)?;
+        let (index, reference) = settings.chosen("reference", &names)?;
         let read = match index {
-            0 if P::IS_PREDICTED => Some(Self::Exact),
+            // What cannot be read has been told.
+            0 if shared.is_none_or(P::has_exact) => Some(Self::Exact),
             0 => {
                 let help = "use `quadrature = {}` or `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no closed form", help);
+                None
+            }
+            1 if !P::ALONG_RAY => {
+                let help = "use `draws = { lookups, estimator }`";
+                reference.fault_at(reference.span.clone(), "", "there is no quadrature", help);
+                reference.has("panels");
                 None
             }
             1 => {

@@ -1,14 +1,16 @@
 //! A picture's subject with its estimators: where names become types.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
-use super::expose::{Exposed, Pixel, Plan, Seen};
+use super::expose::{Exposed, Listed, Pixel, Plan, Seen};
 use super::reference::Reference;
 use super::subject::Subject;
 use super::view::View;
 use crate::catalogue::Settings;
 use crate::estimators::{controls, sampling};
-use crate::harness::written::{Usual, Written, read_if};
+use crate::harness::written::{Usual, Written, read_if, refuse_idle_controls};
 use crate::media::Body;
 use crate::numeric::Known;
 use crate::rng::{Address, name_hash};
@@ -75,8 +77,8 @@ pub struct Scene<P: Subject> {
 impl<P: Subject> Scene<P> {
     /// Reads all that `[picture.NAME]` holds.
     pub fn read(settings: &Settings) -> Option<Box<dyn AnyScene>> {
-        let view = View::read(settings, P::BEFORE_SKY);
-        let shared = P::read_shared(settings);
+        let view = View::read(settings, P::SHOWS_SKY);
+        let shared = P::read_shared(settings, view.as_ref());
         if let (Some(view), Some(shared)) = (&view, &shared) {
             let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
             if let Some([found, help]) =
@@ -107,13 +109,14 @@ impl<P: Subject> Scene<P> {
         if let Some(Some(sampling)) = &sampling {
             countable(settings, Some(sampling.as_ref()))?;
         }
-        let reference = Reference::read(settings, body, usual);
+        let reference = Reference::read(settings, shared.as_ref(), body, usual);
         let estimators = estimators?;
         if estimators.is_empty() {
             let help = "list one, as in { ratio = {} }";
             settings.fault("estimators", "no estimator is listed", help);
         }
         let written: Option<Vec<Written<P>>> = estimators.into_iter().collect();
+        refuse_idle_controls(settings, written.as_deref().unwrap_or_default(), None);
         Some(Box::new(Self {
             view: view?,
             shared: shared?,
@@ -126,7 +129,10 @@ impl<P: Subject> Scene<P> {
     }
 
     fn called(&self, written: &Written<P>) -> Called {
-        let sampling = self.sampling_of(written).map(|recipe| recipe.label());
+        let sampling = self.sampling_of(written).map(|recipe| match recipe.constant() {
+            Some(value) => value.to_string(),
+            None => recipe.label(),
+        });
         Called {
             estimator: written.label(true),
             sampling: sampling.unwrap_or_default(),
@@ -183,9 +189,28 @@ impl<P: Subject> Scene<P> {
         rows.into_iter().flatten().collect()
     }
 
-    fn address(request: &Request, called: &Called, twin: usize, what: &str) -> Address {
-        let name = format!("picture|{}|{}|{twin}|{what}", request.name, called.in_one());
-        Address { seed: request.seed, experiment: name_hash(&name), block: 0, lane: 0 }
+    /// The estimators, and after them that of the reference if it is drawn.
+    fn listed(&self, request: &Request) -> Vec<Listed<'_, P>> {
+        let mut listed: Vec<Listed<P>> = Vec::new();
+        let reference = match &self.reference {
+            Reference::Draws { lookups, written } => Some((&**written, *lookups, "reference")),
+            _ => None,
+        };
+        let images = self.written.iter().map(|written| (written, self.lookups, "image"));
+        for (written, lookups, kind) in images.chain(reference) {
+            let called = self.called(written);
+            let twins = listed.iter().filter(|other| other.called == called).count();
+            let name = format!("picture|{}|{}|{twins}|{kind}", request.name, called.in_one());
+            let address = |what: &str| {
+                let experiment = name_hash(&format!("{name}|{what}"));
+                Address { seed: request.seed, experiment, block: 0, lane: 0 }
+            };
+            let recipe = self.sampling_of(written).filter(|_| !P::ALONG_RAY);
+            let space = recipe.and_then(|recipe| recipe.in_space(&self.view.volume)).map(Arc::new);
+            let addresses = ["pilot", "draws"].map(address);
+            listed.push(Listed { written, called, lookups, space, addresses });
+        }
+        listed
     }
 }
 
@@ -207,52 +232,35 @@ impl<P: Subject> AnyScene for Scene<P> {
     fn render(&self, request: &Request) -> Rendered {
         let covered: Vec<usize> =
             (0..self.view.pixels()).filter(|&pixel| self.view.covered(pixel).is_some()).collect();
-        let mut listed: Vec<(&Written<P>, Called, u64, &str)> =
-            self.written.iter().map(|w| (w, self.called(w), self.lookups, "image")).collect();
-        if let Reference::Draws { lookups, written } = &self.reference {
-            listed.push((written, self.called(written), *lookups, "reference"));
-        }
-        let addresses = |index: usize, what: &str| {
-            let (_, called, _, kind) = &listed[index];
-            let twins = listed[..index].iter().filter(|other| other.1 == *called).count();
-            Self::address(request, called, twins, &format!("{kind}|{what}"))
-        };
+        let listed = self.listed(request);
         // First pass: what a draw costs at every pixel, and how far it is spread.
-        let forecasts = self.over(&covered, request.progress, |i, seen| {
-            let forecast = |(index, (written, ..)): (usize, &(&Written<P>, Called, u64, &str))| {
-                let pilot = Address { block: i as u64, ..addresses(index, "pilot") };
-                self.forecast(seen, written, pilot)
-            };
-            listed.iter().enumerate().map(forecast).collect::<Vec<_>>()
+        let forecasts = self.over(&covered, request.progress, |number, seen| {
+            let forecast = |listed: &Listed<P>| self.forecast(number, seen, listed);
+            listed.iter().map(forecast).collect::<Vec<_>>()
         });
-        let plans: Vec<Result<Plan, String>> = listed
-            .iter()
-            .enumerate()
-            .map(|(index, (written, _, lookups, _))| {
-                let points = self.with_control(written, |recipe| recipe.lookups());
-                Plan::new(forecasts.iter().map(|all| &all[index]), points, *lookups)
-            })
-            .collect();
+        let plan = |(index, listed): (usize, &Listed<P>)| {
+            let points = self.with_control(listed.written, |recipe| recipe.lookups());
+            Plan::new(forecasts.iter().map(|all| &all[index]), points, listed.lookups)
+        };
+        let plans: Vec<Result<Plan, String>> = listed.iter().enumerate().map(plan).collect();
         // Second pass: the draws.
-        let streams: Vec<Address> = (0..listed.len()).map(|i| addresses(i, "draws")).collect();
-        let pixels = self.over(&covered, request.progress, |i, seen| {
-            let draw = |(index, plan): (usize, &Result<Plan, String>)| {
-                let plan = plan.as_ref().ok()?;
-                let address = Address { block: i as u64, ..streams[index] };
-                self.draw(seen, listed[index].0, plan.draws_of(i), address)
+        let pixels = self.over(&covered, request.progress, |number, seen| {
+            let draw = |(listed, plan): (&Listed<P>, &Result<Plan, String>)| {
+                let draws = plan.as_ref().ok()?.draws_of(number);
+                self.draw(number, seen, listed, draws)
             };
-            let drawn: Vec<Option<Pixel>> = plans.iter().enumerate().map(draw).collect();
+            let drawn: Vec<Option<Pixel>> = listed.iter().zip(&plans).map(draw).collect();
             (drawn, self.answer(seen))
         });
         let (pixels, answers): (Vec<_>, Vec<_>) = pixels.into_iter().unzip();
         let mut exposures: Vec<(Called, Result<Exposed, String>)> = Vec::new();
-        for (index, ((_, called, ..), plan)) in listed.iter().zip(&plans).enumerate() {
+        for (index, (listed, plan)) in listed.iter().zip(&plans).enumerate() {
             let of_pixel = |all: &Vec<Option<Pixel>>| all[index];
             let exposed = plan.as_ref().map_err(String::clone).and_then(|plan| {
                 let pixels: Option<Vec<Pixel>> = pixels.iter().map(of_pixel).collect();
                 pixels.map(|pixels| plan.expose(&pixels)).ok_or_else(|| "no image".to_owned())
             });
-            exposures.push((called.clone(), exposed));
+            exposures.push((listed.called.clone(), exposed));
         }
         let reference = self.reference_of(&mut exposures, &answers);
         Rendered { budget: self.lookups, covered, reference, exposures }
@@ -264,7 +272,7 @@ impl<P: Subject> Scene<P> {
     fn answer(&self, seen: &Seen<P>) -> Option<Known> {
         let found = match self.reference {
             Reference::Exact => seen.problem.exact(),
-            Reference::Quadrature { panels } => Some(seen.problem.by_quadrature(panels)),
+            Reference::Quadrature { panels } => seen.problem.by_quadrature(panels),
             Reference::Draws { .. } => None,
         };
         found.map(|known| Known::new(known.value * seen.sky, known.error * seen.sky))

@@ -2,14 +2,18 @@
 
 use std::sync::Arc;
 
+use super::view::View;
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::Estimated;
 use crate::geometry::Ray;
 use crate::media::{Medium, Volume};
 use crate::numeric::{Known, Lane};
 use crate::phase::Phase;
+use crate::problems::scene::read_albedo;
 use crate::problems::single_scattering::{Lamp, OnTheLine};
-use crate::problems::{Problem, SingleScattering, Transmittance};
+use crate::problems::{
+    Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, Transmittance,
+};
 use crate::theory::Mesh;
 use crate::theory::single::glance;
 
@@ -18,44 +22,59 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
     /// What all its rays share beside the volume.
     type Shared: Send + Sync;
 
-    /// Whether draws weight the light of the sky behind the volume; else what the ray gathers is
-    /// shown on black.
+    /// Whether draws weight the light of the sky behind the volume.
     const BEFORE_SKY: bool;
+    /// Whether the sky is seen beside the volume; else it is black there.
+    const SHOWS_SKY: bool;
+    /// Whether its draws walk along the ray, which is then looked at first.
+    const ALONG_RAY: bool = true;
     /// Whether theory is quick enough to be asked at every pixel.
     const IS_PREDICTED: bool;
 
     /// Reads what all rays share.
-    fn read_shared(settings: &Settings) -> Option<Self::Shared>;
+    fn read_shared(settings: &Settings, view: Option<&View>) -> Option<Self::Shared>;
 
     /// Whether a ray can be asked about.
     ///
     /// # Errors
     ///
     /// What is wrong and the cure.
-    fn allows(shared: &Self::Shared, ray: &Ray) -> Result<(), [String; 2]>;
+    fn allows(shared: &Self::Shared, ray: &Ray) -> Result<(), [String; 2]> {
+        let _ = (shared, ray);
+        Ok(())
+    }
 
     /// The problem of one ray; `None` where it is not allowed.
     fn at(shared: &Self::Shared, volume: &Arc<Volume>, ray: &Ray) -> Option<Self>;
 
-    /// The exact answer, from closed forms; `None` where there are none.
-    fn exact(&self) -> Option<Known>;
+    /// Whether [`Subject::exact`] knows all answers.
+    fn has_exact(shared: &Self::Shared) -> bool {
+        let _ = shared;
+        false
+    }
 
-    /// The answer by a quadrature of so many panels with 16 nodes, and what half as many differ by.
-    fn by_quadrature(&self, panels: usize) -> Known;
+    /// The exact answer, from closed forms; `None` where there are none.
+    fn exact(&self) -> Option<Known> {
+        None
+    }
+
+    /// The answer by a quadrature of twice so many panels with 16 nodes, and what half of them differ
+    /// by; `None` where there is no such thing.
+    fn by_quadrature(&self, panels: usize) -> Option<Known> {
+        let _ = panels;
+        None
+    }
 }
 
 impl Subject for Transmittance {
     type Shared = ();
 
     const BEFORE_SKY: bool = true;
+    const SHOWS_SKY: bool = true;
     const IS_PREDICTED: bool = true;
 
-    fn read_shared(_: &Settings) -> Option<()> {
+    fn read_shared(_: &Settings, _: Option<&View>) -> Option<()> {
         Some(())
-    }
-
-    fn allows((): &(), _: &Ray) -> Result<(), [String; 2]> {
-        Ok(())
     }
 
     fn at((): &(), volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
@@ -64,16 +83,20 @@ impl Subject for Transmittance {
         Some(Self::new(Medium::new(profile, ray.span(), support)))
     }
 
+    fn has_exact((): &()) -> bool {
+        true
+    }
+
     fn exact(&self) -> Option<Known> {
         Some(self.medium().optical_depth(self.medium().support()).exp_neg())
     }
 
-    fn by_quadrature(&self, panels: usize) -> Known {
+    fn by_quadrature(&self, panels: usize) -> Option<Known> {
         let transmittance = |panels: usize| {
             Lane::exp(-Mesh::even(self.medium().clone(), panels).optical_depth().value)
         };
         let fine = transmittance(2 * panels);
-        Known::new(fine, (fine - transmittance(panels)).abs())
+        Some(Known::new(fine, (fine - transmittance(panels)).abs()))
     }
 }
 
@@ -88,9 +111,10 @@ impl Subject for SingleScattering {
     type Shared = Lit;
 
     const BEFORE_SKY: bool = false;
+    const SHOWS_SKY: bool = false;
     const IS_PREDICTED: bool = false;
 
-    fn read_shared(settings: &Settings) -> Option<Lit> {
+    fn read_shared(settings: &Settings, _: Option<&View>) -> Option<Lit> {
         let lamp = Lamp::read(settings);
         let albedo = settings.number("albedo", Domain::Unit);
         let phase = Phase::read(settings);
@@ -113,11 +137,44 @@ impl Subject for SingleScattering {
         Self::new(volume.clone(), *ray, shared.lamp, shared.albedo, shared.phase).ok()
     }
 
-    fn exact(&self) -> Option<Known> {
-        None
-    }
-
-    fn by_quadrature(&self, panels: usize) -> Known {
-        glance::radiance(self, panels)
+    fn by_quadrature(&self, panels: usize) -> Option<Known> {
+        Some(glance::radiance(self, panels))
     }
 }
+
+impl Subject for MultipleScattering {
+    type Shared = Sunlit;
+
+    const BEFORE_SKY: bool = false;
+    const SHOWS_SKY: bool = true;
+    const ALONG_RAY: bool = false;
+    const IS_PREDICTED: bool = false;
+
+    fn read_shared(settings: &Settings, view: Option<&View>) -> Option<Sunlit> {
+        let phase = Phase::read(settings);
+        let albedo = read_albedo(settings, view.map(|view| &*view.volume));
+        Some(Sunlit { albedo: albedo?, phase: phase?, sky: view?.sky })
+    }
+
+    fn at(shared: &Sunlit, volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
+        let (albedo, phase) = (shared.albedo.clone(), shared.phase);
+        Some(Self::new(Scene { volume: volume.clone(), albedo, phase }, shared.sky, *ray))
+    }
+
+    /// A white furnace: nothing is absorbed, and it is as bright as its walls.
+    fn has_exact(shared: &Sunlit) -> bool {
+        shared.albedo.even() == Some(1.0) && matches!(shared.sky, Sky::Constant { .. })
+    }
+
+    fn exact(&self) -> Option<Known> {
+        Some(Known::exact(self.background()))
+    }
+}
+
+/// A sky and how the medium scatters it.
+pub struct Sunlit {
+    albedo: Albedo,
+    phase: Phase,
+    sky: Sky,
+}
+

@@ -1,4 +1,4 @@
-//! Where a picture is taken from, and what is behind the volume.
+//! Where a picture is taken from.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -8,6 +8,7 @@ use crate::geometry::{Aabb, Point, Ray};
 use crate::media::Volume;
 use crate::media::body::read_volume;
 use crate::numeric::Lane;
+use crate::problems::Sky;
 
 /// Pictures of more pixels along a side are a mistake.
 const LARGEST: u64 = 4096;
@@ -80,81 +81,6 @@ impl Camera {
     }
 }
 
-/// What light comes from outside, a function of the direction in which it is looked for.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sky {
-    /// The same from everywhere.
-    Constant {
-        /// Its radiance.
-        radiance: f64,
-    },
-    /// From the ground over the horizon to the zenith, and a soft sun.
-    Gradient {
-        /// Straight below, at the horizon, and straight above.
-        ground: f64,
-        /// At the horizon.
-        horizon: f64,
-        /// Straight above.
-        zenith: f64,
-        /// Upwards.
-        up: Point,
-        /// Towards the sun.
-        sun: Point,
-        /// The radiance of the sun's middle.
-        glare: f64,
-        /// How narrow the sun is: `glare · exp(sharpness (cos − 1))`.
-        sharpness: f64,
-    },
-}
-
-impl Sky {
-    fn read(settings: &Settings) -> Option<Self> {
-        if !settings.has("sky") {
-            return Some(Self::Constant { radiance: 1.0 });
-        }
-        let (index, sky) =
-            settings.table("sky")?.choice(&["constant".into(), "gradient".into()])?;
-        let radiance = |key, default| sky.number_or(key, Domain::NonNegative, default);
-        let read = if index == 0 {
-            radiance("radiance", 1.0).map(|radiance| Self::Constant { radiance })
-        } else {
-            let (ground, horizon, zenith) =
-                (radiance("ground", 0.2), radiance("horizon", 1.0), radiance("zenith", 0.5));
-            let (glare, sharpness) = (radiance("glare", 0.0), radiance("sharpness", 50.0));
-            let up = direction(&sky, "up", [0.0, 1.0, 0.0]);
-            let sun = direction(&sky, "sun", [0.0, 1.0, 0.0]);
-            let (ground, horizon, zenith) = (ground?, horizon?, zenith?);
-            let (up, sun, glare, sharpness) = (up?, sun?, glare?, sharpness?);
-            Some(Self::Gradient { ground, horizon, zenith, up, sun, glare, sharpness })
-        };
-        sky.close();
-        read
-    }
-
-    /// The radiance that comes against a direction of looking.
-    #[must_use]
-    pub fn radiance(&self, direction: Point) -> f64 {
-        match *self {
-            Self::Constant { radiance } => radiance,
-            Self::Gradient { ground, horizon, zenith, up, sun, glare, sharpness } => {
-                let height = direction.dot(up);
-                let end = if height < 0.0 { ground } else { zenith };
-                let share = height.abs().sqrt();
-                let shine = Lane::exp(sharpness * (direction.dot(sun) - 1.0));
-                horizon + (end - horizon) * share + glare * shine
-            }
-        }
-    }
-}
-
-fn direction(settings: &Settings, key: &'static str, default: [f64; 3]) -> Option<Point> {
-    let direction = Point(settings.triple_or(key, default)?).normalised();
-    if direction.is_none() {
-        settings.fault(key, format!("`{key}` has no direction"), "it is a vector, as [0, 1, 0]");
-    }
-    direction
-}
-
 /// A volume as a camera sees it.
 pub struct View {
     /// The field's name in the catalogue.
@@ -167,8 +93,8 @@ pub struct View {
     pub size: [usize; 2],
     /// So many columns and rows of pixels share a control that takes lookups.
     pub shared_control: usize,
-    /// Whether the sky is seen behind it; else black is.
-    pub before_sky: bool,
+    /// Whether the sky is seen beside it; else it is black there.
+    pub shows_sky: bool,
     camera: Camera,
     /// The length of all rays: they leave the volume before.
     length: f64,
@@ -176,11 +102,11 @@ pub struct View {
 
 impl View {
     /// Reads `size`, `camera`, `volume` and, where it is seen, `sky`.
-    pub fn read(settings: &Settings, before_sky: bool) -> Option<Self> {
+    pub fn read(settings: &Settings, shows_sky: bool) -> Option<Self> {
         let size = read_size(settings);
         let camera = Camera::read(settings, size);
         let black = Sky::Constant { radiance: 0.0 };
-        let sky = if before_sky { Sky::read(settings) } else { Some(black) };
+        let sky = if shows_sky { Sky::read(settings) } else { Some(black) };
         let shared = settings.count_or("shared-control", 1..=1024, 1);
         let field = read_volume(settings);
         let (medium, volume) = field?;
@@ -193,7 +119,7 @@ impl View {
         let length = furthest(&about, camera.position);
         let (volume, sky, size) = (Arc::new(volume), sky?, size?);
         let shared_control = usize::try_from(shared?).ok()?;
-        Some(Self { medium, volume, sky, size, shared_control, before_sky, camera, length })
+        Some(Self { medium, volume, sky, size, shared_control, shows_sky, camera, length })
     }
 
     /// How many pixels there are.
@@ -229,7 +155,7 @@ impl View {
     /// What is seen at a pixel that the volume does not cover.
     #[must_use]
     pub fn background(&self, pixel: usize) -> f64 {
-        if self.before_sky { self.behind(pixel) } else { 0.0 }
+        if self.shows_sky { self.behind(pixel) } else { 0.0 }
     }
 
     /// The radiance of the sky behind a pixel.
@@ -293,25 +219,5 @@ mod tests {
         let (o, z) = (Point([0.0; 3]), Point([0.0, 0.0, 1.0]));
         assert!(Camera::new(o, o, z, 40.0, [2, 2]).is_none());
         assert!(Camera::new(o, z, z, 40.0, [2, 2]).is_none());
-    }
-
-    #[test]
-    fn the_sky_meets_itself_at_the_horizon() {
-        let (up, sun) = (Point([0.0, 1.0, 0.0]), Point([1.0, 0.0, 0.0]));
-        let sky = Sky::Gradient {
-            ground: 0.2,
-            horizon: 0.9,
-            zenith: 0.5,
-            up,
-            sun,
-            glare: 3.0,
-            sharpness: 100.0,
-        };
-        let radiance =
-            |x: f64, y: f64| sky.radiance(Point([x, y, 0.0]).normalised().expect("a direction"));
-        assert!((radiance(-1.0, 0.0) - 0.9).abs() < 1e-12);
-        assert!((radiance(0.0, 1.0) - 0.5).abs() < 1e-12);
-        assert!((radiance(0.0, -1.0) - 0.2).abs() < 1e-12);
-        assert!((radiance(1.0, 0.0) - 3.9).abs() < 1e-12);
     }
 }

@@ -18,8 +18,6 @@ const MOST: usize = 6;
 /// The size of letters, and the distance of lines.
 const LETTER: f64 = 10.5;
 const LINE: f64 = 15.0;
-/// Lines below an image.
-const LINES: usize = 9;
 
 /// The sheet as a PNG file.
 ///
@@ -52,23 +50,26 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     // Corners on whole pixels of the file.
     let even = |x: f64| (x / 2.0).ceil() * 2.0;
     let step = even(size[0].max(150.0) + GAP);
-    let band = even(2.0 * size[1] + 8.0 + LINES as f64 * LINE + GAP);
+    let room = step - GAP;
+    let below = record.exposures.iter().map(|exposure| words(face, exposure, room).len());
+    let lines = below.fold(4, usize::max);
+    let band = even(2.0 * size[1] + 14.0 + lines as f64 * LINE + GAP);
     let head = 64.0;
     let width = GAP + across as f64 * step;
     let mut sheet = Sheet::new(width, head + bands as f64 * band);
-    let room = width - 2.0 * GAP;
-    let title = fit(face, &record.title, 16.0, room);
+    let full = width - 2.0 * GAP;
+    let title = fit(face, &record.title, 16.0, full);
     sheet.text([GAP, 22.0], title, 16.0, DARK, Align::Start);
-    let told = fit(face, &told(record), LETTER, room);
+    let told = fit(face, &told(record), LETTER, full);
     sheet.text([GAP, 44.0], told, LETTER, GREY, Align::Start);
     for number in 0..count {
         let (row, column) = (number / across, number % across);
         let (left, top) = (GAP + column as f64 * step, head + row as f64 * band);
         let place = Column { left, top, size };
         match number.checked_sub(1) {
-            None => reference(&mut sheet, face, record, &place, step - GAP),
+            None => reference(&mut sheet, face, record, &place, room),
             Some(index) => {
-                exposure(&mut sheet, face, record, &record.exposures[index], &place, step - GAP);
+                exposure(&mut sheet, face, record, &record.exposures[index], &place, room);
             }
         }
     }
@@ -147,14 +148,11 @@ fn exposure(
     room: f64,
 ) {
     let Column { left, top, size } = *place;
-    let mut lines = wrapped(face, &exposure.estimator, room, 2);
-    lines.extend(wrapped(face, &given(exposure), room, 2));
     match &exposure.outcome {
         Ok(found) => {
             sheet.image(picture(record, &found.image, [left, top], size));
             let below = [left, top + size[1] + 8.0];
             sheet.image(difference(record, &found.image, below, size));
-            lines.extend(costs(found));
         }
         Err(reason) => {
             frame(sheet, left, top, size);
@@ -168,7 +166,15 @@ fn exposure(
             }
         }
     }
-    write(sheet, place, &lines);
+    write(sheet, place, &words(face, exposure, room));
+}
+
+/// What stands below an image.
+fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
+    let mut lines = wrapped(face, &exposure.estimator, room, 2);
+    lines.extend(wrapped(face, &given(exposure), room, 2));
+    lines.extend(exposure.outcome.iter().flat_map(costs));
+    lines
 }
 
 fn costs(found: &Exposure) -> Vec<String> {

@@ -109,8 +109,7 @@ fn show<B: DrawingBackend>(backend: &mut B, image: &Image, units: f64) -> Result
         let (column, row) = (i % image.columns, i / image.columns);
         let (low, high) = (corner(column, row), corner(column + 1, row + 1));
         let style = ShapeStyle::from(&RGBColor(red, green, blue)).filled();
-        let last = (high.0 - 1, high.1 - 1);
-        backend.draw_rect(low, last, &style, true).map_err(in_words)?;
+        backend.draw_rect(low, high, &style, true).map_err(in_words)?;
     }
     Ok(())
 }
