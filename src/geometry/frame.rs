@@ -30,9 +30,8 @@ pub fn turned(direction: Point, cosine: f64, turns: f64) -> Point {
     let angle = std::f64::consts::TAU * turns;
     let sine = Lane::or_more((1.0 - cosine) * (1.0 + cosine), 0.0).sqrt();
     let [first, second] = across(direction);
-    let turned = first * (sine * Lane::cos(angle))
-        + second * (sine * Lane::sin(angle))
-        + direction * cosine;
+    let turned =
+        first * (sine * Lane::cos(angle)) + second * (sine * Lane::sin(angle)) + direction * cosine;
     // A thousand turns must not add up to another length: one step of Newton's for 1/|d|.
     turned * (1.5 - 0.5 * turned.dot(turned))
 }
@@ -51,8 +50,7 @@ mod tests {
     fn the_frame_is_orthonormal() {
         for d in directions() {
             let [a, b] = across(d);
-            for (u, v, product) in
-                [(a, b, 0.0), (a, d, 0.0), (b, d, 0.0), (a, a, 1.0), (b, b, 1.0)]
+            for (u, v, product) in [(a, b, 0.0), (a, d, 0.0), (b, d, 0.0), (a, a, 1.0), (b, b, 1.0)]
             {
                 assert!((u.dot(v) - product).abs() < 4e-15, "{d:?}");
             }

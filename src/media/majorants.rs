@@ -77,9 +77,8 @@ impl Majorants {
         let within = bounds.enclosing_box()?;
         let (low, size) = (within.low, within.high - within.low);
         let width: [f64; 3] = std::array::from_fn(|i| size.0[i] / cells[i] as f64);
-        let corner = |at: [usize; 3]| {
-            Point(std::array::from_fn(|i| low.0[i] + width[i] * at[i] as f64))
-        };
+        let corner =
+            |at: [usize; 3]| Point(std::array::from_fn(|i| low.0[i] + width[i] * at[i] as f64));
         let mut values = Vec::with_capacity(cells.iter().product());
         for k in 0..cells[2] {
             for j in 0..cells[1] {
@@ -293,7 +292,9 @@ mod tests {
             seen += 1;
         }
         assert!(seen > 100);
-        assert!((cells.bounds.clip(&Ray { length: 99.0, ..ray(&flight) }).to - flight.t).abs() < 1e-9);
+        assert!(
+            (cells.bounds.clip(&Ray { length: 99.0, ..ray(&flight) }).to - flight.t).abs() < 1e-9
+        );
         // A sphere is left at its own boundary, not at that of its box.
         assert!((flight.place() - Point([0.0, 0.0, 10.0])).norm() - 10.0 < 1e-9);
         let one = Majorants::constant(0.8, &volume);

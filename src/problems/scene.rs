@@ -64,7 +64,8 @@ impl Scene {
     pub fn bounded(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Self::read(body, settings)?;
         if scene.volume.bounds().enclosing_box().is_none() {
-            let help = "give it `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
+            let help =
+                "give it `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
             settings.fault("volume", "particles would never leave a volume without bounds", help);
             return None;
         }

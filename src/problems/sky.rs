@@ -43,8 +43,7 @@ impl Sky {
         if !settings.has("sky") {
             return Some(Self::Constant { radiance: 1.0 });
         }
-        let (index, sky) =
-            settings.chosen("sky", &["constant".into(), "gradient".into()])?;
+        let (index, sky) = settings.chosen("sky", &["constant".into(), "gradient".into()])?;
         let radiance = |key, default| sky.number_or(key, Domain::NonNegative, default);
         let read = if index == 0 {
             radiance("radiance", 1.0).map(|radiance| Self::Constant { radiance })

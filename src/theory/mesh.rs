@@ -1,5 +1,7 @@
 //! A ray cut into panels on which everything is smooth.
 
+use fearless_simd::Level;
+
 use crate::media::Medium;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
@@ -107,19 +109,17 @@ impl Mesh {
     }
 
     /// Cuts the support into equal panels of 16 nodes, whatever breaks the medium has: a quick look at a
-    /// field of thousands of pieces, which is asked for no integral. How far integrals on it are off is
-    /// not known: their error is infinite.
+    /// field of thousands of pieces. The error of integrals on it is not known: it is infinite.
     #[must_use]
     pub fn even(medium: Medium, panels: usize) -> Self {
         let support = medium.support();
         let rule = GaussLegendre::new(NODES);
-        let tails = [Vec::new(), Vec::new()];
         let at = |i: usize| support.from + support.length() * (i as f64 / panels as f64);
         let panels = (0..panels).map(|i| Span::new(at(i), at(i + 1))).collect();
         let mut mesh = Self {
             medium,
             rule,
-            tails,
+            tails: [Vec::new(), Vec::new()],
             panels,
             t: Vec::new(),
             extinction: Vec::new(),
@@ -128,7 +128,8 @@ impl Mesh {
             depth: None,
         };
         mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
-        mesh.extinction = mesh.medium.extinctions(&mesh.t);
+        mesh.extinction = vec![0.0; mesh.t.len()];
+        mesh.medium.look_up(Level::new(), &mesh.t, &mut mesh.extinction);
         mesh.depth = Some(Known::new(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
         mesh
     }

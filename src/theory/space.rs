@@ -61,7 +61,11 @@ impl Walks {
     /// The largest r, without the rounding of a majorant.
     #[must_use]
     pub fn ratio(&self) -> f64 {
-        if self.largest_ratio <= 1.0 + SLACK { self.largest_ratio.min(1.0) } else { self.largest_ratio }
+        if self.largest_ratio <= 1.0 + SLACK {
+            self.largest_ratio.min(1.0)
+        } else {
+            self.largest_ratio
+        }
     }
 
     /// Whether no weight ever exceeds that at the start.
@@ -75,9 +79,9 @@ impl Walks {
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {
-            return self.never_grows().then(|| {
-                if extremes.spread <= NOTHING { below * below } else { 1.0 }
-            });
+            return self
+                .never_grows()
+                .then(|| if extremes.spread <= NOTHING { below * below } else { 1.0 });
         }
         if extremes.spread <= NOTHING {
             return Some(0.0);

@@ -30,9 +30,10 @@ pub(super) fn domain(setup: &Setup<Furnace>, particle: &Particle) -> Result<(), 
 
 /// What theory says: every draw is 1 on average.
 pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction {
-    let walks = setup.space.as_ref().map(|majorants| {
-        space::walks(setup.problem.scene(), majorants, particle)
-    });
+    let walks = setup
+        .space
+        .as_ref()
+        .map(|majorants| space::walks(setup.problem.scene(), majorants, particle));
     let misses = setup.problem.entry().is_none();
     let bound = if misses { Some(0.0) } else { walks.and_then(|walks| walks.energy_variance()) };
     // Without a bound the walk is refused, or forced: then only the truth is kept.
@@ -42,7 +43,11 @@ pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction
 }
 
 /// Makes a draw by the honest walk.
-pub(super) fn draw(particle: &Particle, setup: &Setup<Furnace>, rng: &mut Stream) -> Draw<[f64; 1]> {
+pub(super) fn draw(
+    particle: &Particle,
+    setup: &Setup<Furnace>,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
     draw_by(setup, |scene, majorants, start, energy| {
         space::walk(particle, scene, majorants, start, energy, rng)
     })

@@ -28,9 +28,10 @@ pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusa
 /// What bounds on the walks of a particle depend on.
 #[must_use]
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
-    let across = majorants.bounds().enclosing_box().map_or(f64::INFINITY, |within| {
-        (within.high - within.low).norm()
-    });
+    let across = majorants
+        .bounds()
+        .enclosing_box()
+        .map_or(f64::INFINITY, |within| (within.high - within.low).norm());
     Walks {
         rule: particle.rule,
         roulette: particle.roulette,
@@ -73,10 +74,8 @@ pub fn realisable<P: Problem>(
 pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
     let Some(bound) = walks.energy_variance() else {
         let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
-        let found = format!(
-            "σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants",
-            walks.ratio()
-        );
+        let found =
+            format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
         return Err(Refusal::mismatch(needs, found));
     };
     Ok(energy_channel(bound))

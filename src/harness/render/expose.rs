@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::scene::{Called, Scene};
 use super::subject::Subject;
 use super::view::View;
-use crate::estimators::{DrawBuffer, Order, Refusal, Setup, Site};
+use crate::estimators::{DrawBuffer, Kernel, Order, Refusal, Setup, Site};
 use crate::geometry::Ray;
 use crate::harness::written::Written;
 use crate::media::{Body, Control, Majorants};
@@ -16,6 +16,9 @@ use crate::theory::Mesh;
 const PANELS: usize = 16;
 /// A pixel of every so many columns and rows makes a pilot draw.
 const PILOTS_EVERY: usize = 2;
+
+/// Fewer draws than this are made one by one.
+const FEW: u64 = 32;
 
 /// No pilot rays: recipes that learn are not read.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
@@ -126,8 +129,7 @@ impl<P: Subject> Scene<P> {
         let written = listed.written;
         if !P::ALONG_RAY {
             let recipe = self.sampling_of(written);
-            let setup =
-                Setup::new(seen.problem.clone(), seen.mesh.clone(), None, Control::None);
+            let setup = Setup::new(seen.problem.clone(), seen.mesh.clone(), None, Control::None);
             return match &listed.space {
                 Some(space) => Ok(Setup { space: Some(space.clone()), ..setup }),
                 None => setup.in_space(None, recipe, 1.0),
@@ -210,11 +212,14 @@ impl<P: Subject> Scene<P> {
         let mut streams = address.streams();
         let mut buffer = DrawBuffer::new(1);
         let mut pixel = Pixel { draws, sum: 0.0, squares: 0.0, lookups: 0 };
+        // The same draws either way: packs of eight walk many steps at once, which few draws do not fill.
+        let kernel =
+            if draws < FEW { Kernel::Single } else { Kernel::Packets(fearless_simd::Level::new()) };
         let mut left = draws;
         while left > 0 {
             let count = left.min(DrawBuffer::LENGTH as u64);
             #[expect(clippy::cast_possible_truncation)] // at most a buffer's length
-            experiment.fill(&mut streams, count as usize, &mut buffer);
+            experiment.fill_by(kernel, &mut streams, count as usize, &mut buffer);
             for x in &buffer.values[0] {
                 let x = x * seen.sky;
                 pixel.sum += x;

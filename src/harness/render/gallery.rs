@@ -11,8 +11,15 @@ macro_rules! pictures {
 }
 
 /// The names of the built-in pictures with their text.
-const PICTURES: &[(&str, &str)] =
-    pictures!["figure-9", "figure-10", "figure-12-300", "figure-12-50",];
+const PICTURES: &[(&str, &str)] = pictures![
+    "figure-6",
+    "figure-7",
+    "figure-9",
+    "figure-10",
+    "figure-12-300",
+    "figure-12-50",
+    "white-furnace",
+];
 
 /// Every built-in picture, in the order of the gallery.
 #[must_use]

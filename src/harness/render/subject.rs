@@ -177,4 +177,3 @@ pub struct Sunlit {
     phase: Phase,
     sky: Sky,
 }
-

@@ -40,3 +40,44 @@ fn over(problem: &SingleScattering, rule: &GaussLegendre, panels: usize) -> f64 
     };
     (0..panels).map(panel).sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    use crate::geometry::{Point, Ray};
+    use crate::media::{Volume, eq21::Eq21};
+    use crate::phase::{Phase, rayleigh::Rayleigh};
+    use crate::problems::single_scattering::Lamp;
+
+    fn problem() -> SingleScattering {
+        let (origin, direction) = (Point([0.0, 0.0, -5.0]), Point([0.0, 0.0, 1.0]));
+        let ray = Ray::new(origin, direction, 30.0).expect("a direction");
+        let lamp = Lamp { position: Point([1.2, -0.8, 9.3]), power: 1.0 };
+        let (volume, phase) = (Arc::new(Volume::Eq21(Eq21)), Phase::Rayleigh(Rayleigh));
+        SingleScattering::new(volume, ray, lamp, 0.7, phase).expect("off the line")
+    }
+
+    #[test]
+    fn a_quick_quadrature_is_near_and_says_how_near() {
+        // 30-digit arithmetic.
+        let exact = 1.715_523_536_208_36e-4;
+        for (panels, part) in [(8, 1e-4), (32, 1e-12)] {
+            let found = radiance(&problem(), panels);
+            let off = (found.value - exact).abs();
+            assert!(off <= part * exact, "{panels} panels: {off:e}");
+            assert!(off <= found.error + 1e-13 * exact, "{off:e} and {:e}", found.error);
+        }
+    }
+
+    #[test]
+    fn a_ray_that_misses_gathers_nothing() {
+        let (origin, direction) = (Point([0.0, 30.0, -5.0]), Point([0.0, 0.0, 1.0]));
+        let ray = Ray::new(origin, direction, 30.0).expect("a direction");
+        let lamp = Lamp { position: Point([1.2, -0.8, 9.3]), power: 1.0 };
+        let (volume, phase) = (Arc::new(Volume::Eq21(Eq21)), Phase::Rayleigh(Rayleigh));
+        let problem = SingleScattering::new(volume, ray, lamp, 0.7, phase).expect("off the line");
+        assert_eq!(radiance(&problem, 4).value, 0.0);
+    }
+}
