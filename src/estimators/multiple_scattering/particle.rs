@@ -11,7 +11,7 @@
 //! | `roulette` | w₀ in (0, 1]: a walk with a smaller weight goes on with chance abs(w)/w₀ and weight w₀ | none |
 //!
 //! Unbiased where the rule exists: `terminating` for `r ≤ 2/(a + 1)`, `analog` for `r ≤ 1`, the others
-//! for every r = σ_t/σ̂. Far below σ_t the variance may be infinite: `trueflight explain furnace`.
+//! for every `r = σ_t/σ̂`. Far below σ_t the variance may be infinite: `trueflight explain furnace`.
 //!
 //! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),

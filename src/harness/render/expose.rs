@@ -181,7 +181,7 @@ impl<P: Subject> Scene<P> {
         }
         let is_pilot = [column, row].iter().all(|at| at % PILOTS_EVERY == 0);
         let address = Address { block: number as u64, ..listed.addresses[0] };
-        let lookups = is_pilot.then(|| self.drawn(seen, written, setup, 1, address).lookups);
+        let lookups = is_pilot.then(|| Self::drawn(seen, written, setup, 1, address).lookups);
         let pilots = lookups.unwrap_or(0);
         let lookups = lookups.map(|lookups| lookups as f64);
         Ok(Forecast { lookups, variance: None, bias: 0.0, leads, pilots })
@@ -197,11 +197,10 @@ impl<P: Subject> Scene<P> {
     ) -> Option<Pixel> {
         let setup = self.setup(seen, listed).ok()?;
         let address = Address { block: number as u64, ..listed.addresses[1] };
-        Some(self.drawn(seen, listed.written, setup, draws, address))
+        Some(Self::drawn(seen, listed.written, setup, draws, address))
     }
 
     fn drawn(
-        &self,
         seen: &Seen<P>,
         written: &Written<P>,
         setup: Setup<P>,
@@ -309,14 +308,16 @@ impl Plan {
 mod tests {
     use super::*;
 
-    fn forecast(lookups: f64) -> Result<Forecast, String> {
+    type Asked = Result<Forecast, String>;
+
+    fn of(lookups: f64) -> Forecast {
         let (lookups, variance) = (Some(lookups), Some(1.0));
-        Ok(Forecast { lookups, variance, bias: 0.0, leads: true, pilots: 0 })
+        Forecast { lookups, variance, bias: 0.0, leads: true, pilots: 0 }
     }
 
     #[test]
     fn pixels_share_the_draws_evenly() {
-        let forecasts = [forecast(6.0), forecast(10.0)];
+        let forecasts: [Asked; 2] = [Ok(of(6.0)), Ok(of(10.0))];
         let plan = Plan::new(forecasts.iter(), 4, 24).expect("2.5 draws");
         let draws: Vec<u64> = (0..6).map(|i| plan.draws_of(i)).collect();
         assert_eq!(draws, [2, 3, 2, 3, 2, 3]);
@@ -324,16 +325,16 @@ mod tests {
 
     #[test]
     fn a_shared_control_is_paid_once() {
-        let follower = forecast(5.0).map(|forecast| Forecast { leads: false, ..forecast });
-        let plan = Plan::new([forecast(5.0), follower].iter(), 20, 20).expect("2 draws");
+        let follower: Asked = Ok(Forecast { leads: false, ..of(5.0) });
+        let plan = Plan::new([Ok(of(5.0)), follower].iter(), 20, 20).expect("2 draws");
         assert_eq!((plan.draws, plan.points), (2.0, vec![20, 0]));
     }
 
     #[test]
     fn a_draw_that_costs_more_than_there_is_and_one_that_costs_nothing_are_refused() {
-        let error = Plan::new([forecast(30.0)].iter(), 0, 20).expect_err("too dear");
+        let error = Plan::new([Ok(of(30.0))].iter(), 0, 20).expect_err("too dear");
         assert!(error.contains("30 lookups"), "{error}");
-        let error = Plan::new([forecast(0.0)].iter(), 0, 20).expect_err("free");
+        let error = Plan::new([Ok(of(0.0))].iter(), 0, 20).expect_err("free");
         assert!(error.contains("looks nothing up"), "{error}");
         let refused = Err("pixel (0, 0) needs more".to_owned());
         let error = Plan::new([refused].iter(), 0, 20).expect_err("refused");
@@ -342,7 +343,7 @@ mod tests {
 
     #[test]
     fn a_pixel_knows_its_standard_error() {
-        let plan = Plan::new([forecast(5.0)].iter(), 0, 20).expect("4 draws");
+        let plan = Plan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
         let pixel = Pixel { draws: 4, sum: 2.0, squares: 2.0, lookups: 18 };
         let exposed = plan.expose(&[pixel]);
         // 0, 0, 1, 1: s² = 1/3, over 4 draws.

@@ -94,7 +94,7 @@ impl PictureRecord {
                 sampling: names.sampling,
                 control: names.control,
                 outcome: outcome
-                    .map(|exposed| Exposure::new(view, &covered, &reference.1, exposed)),
+                    .map(|exposed| Exposure::new(view, &covered, &reference.1, &exposed)),
             })
             .collect();
         let (how, exposed) = reference;
@@ -126,7 +126,7 @@ impl PictureRecord {
 }
 
 impl Exposure {
-    fn new(view: &View, covered: &[usize], truth: &Exposed, exposed: Exposed) -> Self {
+    fn new(view: &View, covered: &[usize], truth: &Exposed, exposed: &Exposed) -> Self {
         let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
         let apart = || exposed.values.iter().zip(&truth.values).map(|(x, truth)| x - truth);
         let square = over(&mut apart().map(|x| x * x));

@@ -1,6 +1,6 @@
 //! Numbers as colours.
 
-/// `RdBu` of C. Brewer, *ColorBrewer* (2003), from blue over white to red: it can be told apart without
+/// `RdBu` of C. Brewer, *`ColorBrewer`* (2003), from blue over white to red: it can be told apart without
 /// red or green.
 const DIVERGING: [[f64; 3]; 9] = [
     [33.0, 102.0, 172.0],

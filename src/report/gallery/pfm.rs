@@ -4,7 +4,7 @@
 //! Pf\n columns rows\n -1.0\n   then 4 bytes a pixel, little-endian, row after row from the BOTTOM
 //! ```
 //!
-//! Source: P. Debevec, *PFM Portable FloatMap Image Format*.
+//! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
 
 /// The bytes of a grey image whose rows come from the top.
 #[must_use]
