@@ -218,8 +218,10 @@ fn pictures_are_the_same_on_any_number_of_threads() {
     };
     let one = bytes(1);
     assert!(one == bytes(2) && one == bytes(7));
-    assert_ne!(rendered(&texts[0], 3).exposures[0].outcome.as_ref().expect("an image").image,
-        rendered(&texts[0], 2).exposures[0].outcome.as_ref().expect("an image").image);
+    assert_ne!(
+        rendered(&texts[0], 3).exposures[0].outcome.as_ref().expect("an image").image,
+        rendered(&texts[0], 2).exposures[0].outcome.as_ref().expect("an image").image
+    );
 }
 
 /// A ball to the right and above the middle, seen along −z with y upwards.
@@ -286,9 +288,15 @@ fn every_mistake_is_listed_with_its_place_and_cure() {
     assert!(mistakes(&blind).contains("`up` points aside of the view"));
     let bright = SINGLE.replace("[2.1, 1.3, 6.2]", "[0, 0, -22]");
     assert!(mistakes(&bright).contains("the light is"), "{}", mistakes(&bright));
-    let endless = MULTIPLE.replace("reference.draws = { lookups = 4000", "reference.quadrature = {}\nx = { lookups = 4000");
+    let endless = MULTIPLE.replace(
+        "reference.draws = { lookups = 4000",
+        "reference.quadrature = {}\nx = { lookups = 4000",
+    );
     assert!(mistakes(&endless).contains("there is no quadrature"), "{}", mistakes(&endless));
-    let gray = MULTIPLE.replace("reference.draws = { lookups = 4000", "reference.closed-form = {}\nx = { lookups = 4000");
+    let gray = MULTIPLE.replace(
+        "reference.draws = { lookups = 4000",
+        "reference.closed-form = {}\nx = { lookups = 4000",
+    );
     assert!(mistakes(&gray).contains("there is no closed form"), "{}", mistakes(&gray));
 }
 

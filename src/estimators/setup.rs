@@ -41,7 +41,8 @@ pub struct Setup<P> {
     pub control_transmittance: f64,
     /// `T` over the support, in units of `exp(−log_unit)`.
     pub transmittance: f64,
-    /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`].
+    /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`]; in
+    /// space that of the box about the volume.
     pub skipped: f64,
     /// Whether whole laws are asked for; a search for optima leaves them out.
     pub laws: bool,

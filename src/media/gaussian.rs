@@ -126,6 +126,10 @@ impl Field for Gaussian {
         let peak = self.peak * (-0.5 * offset.dot(offset)).exp();
         Bump { peak, foot, width: self.width }
     }
+
+    fn is_radial(&self) -> bool {
+        matches!(self.bounds, Bounds::Sphere { centre, .. } if centre == self.centre)
+    }
 }
 
 #[cfg(test)]

@@ -126,6 +126,19 @@ impl Majorants {
         self.largest_ratio
     }
 
+    /// `∫σ̂ dV`; `None` for cells over a ball, of which its boundary cuts off parts.
+    #[must_use]
+    pub fn content(&self) -> Option<f64> {
+        match (self.single_value(), self.bounds) {
+            (Some(value), _) => Some(value * self.bounds.content()),
+            (None, Bounds::Box(_)) => {
+                let cell: f64 = self.width.iter().product();
+                Some(cell * self.values.iter().sum::<f64>())
+            }
+            (None, _) => None,
+        }
+    }
+
     /// The share of the box in which σ̂ is 0.
     #[must_use]
     pub fn empty_share(&self) -> f64 {
@@ -261,6 +274,7 @@ mod tests {
         // 0.25 up to the plane, 0.5 in the second cell: a quarter of it.
         assert_eq!(grid.fly(&mut flight, 0.75), Some(2.0));
         assert_eq!(flight.place(), Point([1.25, 0.5, 0.5]));
+        assert_eq!(grid.content(), Some(2.5));
         assert_eq!(grid.fly(&mut flight, 1.6), None);
         assert_eq!(flight.t, 2.0);
         let mut back = grid.enter(Point([2.0, 0.5, 0.5]), Point([-1.0, 0.0, 0.0]));

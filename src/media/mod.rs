@@ -145,6 +145,11 @@ pub trait Field: Sized + Send + Sync + 'static {
         0.0
     }
 
+    /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
+    fn is_radial(&self) -> bool {
+        false
+    }
+
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
 
@@ -246,6 +251,12 @@ macro_rules! media {
                 match self { $(Self::$Field(field) => field.pieces(length)),* }
             }
 
+            /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
+            #[must_use]
+            pub fn is_radial(&self) -> bool {
+                match self { $(Self::$Field(field) => field.is_radial()),* }
+            }
+
             /// What the ray sees on the stretch `inside`.
             #[must_use]
             pub fn along(&self, ray: &Ray, inside: Span) -> Profile {
@@ -277,6 +288,7 @@ media! {
     piecewise_linear::PiecewiseLinear,
     exponential::Exponential,
     gaussian::Gaussian,
+    radial::Radial,
     sines::Sines,
     eq21::Eq21,
     noise::Noise,

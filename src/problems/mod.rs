@@ -23,6 +23,9 @@ macro_rules! each_problem {
             slab::Slab,
             single_scattering::SingleScattering,
             furnace::Furnace,
+            lambertian::Lambertian,
+            infinite_medium::InfiniteMedium,
+            sphere::Sphere,
         }
     };
 }

@@ -13,8 +13,8 @@ use crate::phase::Phase;
 pub enum Albedo {
     /// The same everywhere.
     Even(f64),
-    /// A field of numbers from 0 to 1; 0 outside its bounds.
-    Field(Arc<Volume>),
+    /// A field of numbers from 0 to the given one, at most 1; 0 outside its bounds.
+    Field(Arc<Volume>, f64),
 }
 
 impl Albedo {
@@ -24,17 +24,16 @@ impl Albedo {
     pub fn at(&self, place: Point) -> f64 {
         match self {
             Self::Even(albedo) => *albedo,
-            Self::Field(field) => field.extinction_at(place),
+            Self::Field(field, _) => field.extinction_at(place),
         }
     }
 
     /// The least and the largest value that it may have.
     #[must_use]
-    pub fn range(&self, within: &Volume) -> [f64; 2] {
-        match (self, within.bounds().enclosing_box()) {
-            (Self::Even(albedo), _) => [*albedo; 2],
-            (Self::Field(field), Some(within)) => [0.0, field.majorant(&within).min(1.0)],
-            (Self::Field(_), None) => [0.0, 1.0],
+    pub fn range(&self) -> [f64; 2] {
+        match self {
+            Self::Even(albedo) => [*albedo; 2],
+            Self::Field(_, most) => [0.0, *most],
         }
     }
 
@@ -43,7 +42,7 @@ impl Albedo {
     pub fn even(&self) -> Option<f64> {
         match self {
             Self::Even(albedo) => Some(*albedo),
-            Self::Field(_) => None,
+            Self::Field(..) => None,
         }
     }
 }
@@ -107,11 +106,12 @@ pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albed
         return number.map(Albedo::Even);
     }
     let (_, field) = body::read_field(settings, "albedo")?;
-    let within = volume?.bounds().enclosing_box();
-    if within.is_none_or(|within| field.majorant(&within) > 1.0 + 1e-9) {
+    let most = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));
+    // A bound is raised a little over what the field reaches.
+    let Some(most) = most.filter(|&most| most <= 1.0 + 1e-9) else {
         let help = "an albedo is at most 1; its bound is taken over the box about the volume";
         settings.fault("albedo", "the field may exceed 1 in the volume", help);
         return None;
-    }
-    Some(Albedo::Field(Arc::new(field)))
+    };
+    Some(Albedo::Field(Arc::new(field), most.min(1.0)))
 }

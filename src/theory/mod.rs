@@ -19,6 +19,7 @@ pub mod rule;
 pub mod single;
 pub mod slab;
 pub mod space;
+pub mod sphere;
 pub mod volterra;
 
 pub use count::CountLaw;

@@ -6,6 +6,7 @@ pub mod walk;
 use std::sync::Arc;
 
 use super::{Refusal, Setup};
+use crate::geometry::Bounds;
 use crate::media::Majorants;
 use crate::numeric::Known;
 use crate::problems::{Problem, Scene};
@@ -21,6 +22,10 @@ const ROUNDING: f64 = 1e-12;
 const MOST_COLLISIONS: f64 = 1e4;
 
 /// σ̂ in space, which every estimator that walks takes.
+///
+/// # Errors
+///
+/// That there is none.
 pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
     setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
 }
@@ -28,16 +33,17 @@ pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusa
 /// What bounds on the walks of a particle depend on.
 #[must_use]
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
-    let across = majorants
-        .bounds()
-        .enclosing_box()
-        .map_or(f64::INFINITY, |within| (within.high - within.low).norm());
+    let across = match majorants.bounds() {
+        Bounds::Everywhere => f64::INFINITY,
+        Bounds::Sphere { radius, .. } => 2.0 * radius,
+        Bounds::Box(within) => (within.high - within.low).norm(),
+    };
     Walks {
         rule: particle.rule,
         roulette: particle.roulette,
         splits: particle.splitting != Splitting::None,
         largest_ratio: majorants.largest_ratio(),
-        albedo: scene.albedo.range(&scene.volume),
+        albedo: scene.albedo.range(),
         depth: majorants.largest() * across,
     }
 }

@@ -71,16 +71,13 @@ impl Particle {
     /// Its settings in words.
     #[must_use]
     pub fn label(&self) -> String {
-        let mut label = self.rule.name().to_owned();
-        match self.splitting {
-            Splitting::None => {}
-            Splitting::Depth(n) => label += &format!(", depth {n}"),
-            Splitting::Budget(n) => label += &format!(", budget {n}"),
-        }
-        if let Some(below) = self.roulette {
-            label += &format!(", roulette {below}");
-        }
-        label
+        let splitting = match self.splitting {
+            Splitting::None => String::new(),
+            Splitting::Depth(n) => format!(", depth {n}"),
+            Splitting::Budget(n) => format!(", budget {n}"),
+        };
+        let roulette = self.roulette.map(|below| format!(", roulette {below}"));
+        format!("{}{splitting}{}", self.rule.name(), roulette.unwrap_or_default())
     }
 }
 

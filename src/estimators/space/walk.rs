@@ -132,6 +132,12 @@ pub trait Steps {
         phase.cosine(rng.uniform())
     }
 
+    /// The direction after a deflection, at an azimuth in turns.
+    #[inline(always)]
+    fn turned(&self, direction: Point, cosine: f64, turns: f64) -> Point {
+        frame::turned(direction, cosine, turns)
+    }
+
     /// Whether a walk goes on with its weight, and with which: Russian roulette, where it is played.
     #[inline(always)]
     fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
@@ -278,7 +284,7 @@ impl<S: Steps + ?Sized> Walk<'_, S> {
         let at = Scattering { place, direction, weight, order: traveller.order };
         *lookups += self.sink.scattered(&at, self.rng);
         let cosine = self.steps.deflection(&self.scene.phase, self.rng);
-        let direction = frame::turned(direction, cosine, self.rng.uniform());
+        let direction = self.steps.turned(direction, cosine, self.rng.uniform());
         Traveller { start: Start { place, direction, weight }, ..traveller }
     }
 }

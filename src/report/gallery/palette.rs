@@ -80,8 +80,7 @@ mod tests {
 
     #[test]
     fn many_colours_have_no_palette() {
-        let rgb: Vec<u8> =
-            (0..2).flat_map(|j| (0..150).flat_map(move |i| [i, j, 7])).collect();
+        let rgb: Vec<u8> = (0..2).flat_map(|j| (0..150).flat_map(move |i| [i, j, 7])).collect();
         let (kind, pixels) = colours(&encode(&rgb, 300, 1).expect("encodes"));
         assert_eq!((kind, pixels), (png::ColorType::Rgb, rgb));
     }

@@ -265,6 +265,7 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         mean: truth,
         moments,
         most_variance: None,
+        by_pilots: false,
         tails,
         unit: t,
         log_unit: 0.0,

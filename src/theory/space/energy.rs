@@ -21,7 +21,7 @@
 //!
 //! Bounds are searched on a grid of r and a and raised by a hundredth. All of it is derived here.
 
-use super::ParticleRule;
+use crate::theory::ParticleRule;
 
 /// A ratio this little above 1 is rounding of a majorant.
 const SLACK: f64 = 1e-8;
@@ -74,14 +74,22 @@ impl Walks {
         self.ratio() <= 1.0
     }
 
+    /// Whether the energy has a bound whatever the size of the volume: no weight grows, or none faster
+    /// than walks end.
+    #[must_use]
+    pub fn is_tame(&self) -> bool {
+        let limit = 2.0 / (1.0 + self.albedo[1]);
+        let settles = self.rule != ParticleRule::Weighted && self.roulette.is_none();
+        self.never_grows() || (settles && self.ratio() < limit)
+    }
+
     /// A bound on the variance of the energy that a particle brings; `None` where none is known.
     #[must_use]
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {
-            return self
-                .never_grows()
-                .then(|| if extremes.spread <= NOTHING { below * below } else { 1.0 });
+            let bound = if extremes.spread <= NOTHING { below * below } else { 1.0 };
+            return self.never_grows().then_some(bound);
         }
         if extremes.spread <= NOTHING {
             return Some(0.0);
@@ -175,6 +183,23 @@ mod tests {
         let expected = 0.5 * (1.1664 - 0.48f64.powi(2)) / (1.0 - 0.5 * 1.1664);
         let bound = thin.energy_variance().expect("bounded");
         assert!((bound / (1.01 * expected) - 1.0).abs() < 1e-9, "{bound}");
+    }
+
+    #[test]
+    fn what_is_tame_is_bounded() {
+        for rule in ParticleRule::ALL {
+            for albedo in [0.0, 0.3, 0.9, 1.0] {
+                for largest in [0.5, 1.0, 1.05, 1.3, 1.99] {
+                    for splits in [false, true] {
+                        let walks = Walks { splits, ..walks(rule, largest, albedo) };
+                        let bound = walks.energy_variance();
+                        assert!(!walks.is_tame() || bound.is_some(), "{walks:?}");
+                    }
+                }
+            }
+        }
+        assert!(walks(ParticleRule::NonTerminating, 1.2, 0.5).is_tame());
+        assert!(!walks(ParticleRule::NonTerminating, 1.4, 0.5).is_tame());
     }
 
     #[test]
