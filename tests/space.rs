@@ -98,7 +98,7 @@ fn draws_of(text: &str, count: usize) -> (DrawBuffer, Streams, f64) {
     (buffer, streams, ready.experiment.skipped())
 }
 
-const RAY: &str = "ray = { origin = [0.5, 0.7, -1], direction = [0.1, 0.05, 1], length = 20 }";
+const RAY: &str = "ray = { origin = [0.5, 0.7, -1], direction = [0.1, 0.05, 1], length = 40 }";
 const LAYERS: &str = "volume.piecewise-constant = { breaks = [0, 1, 3, 4], values = [0.8, 0, 1.5],
     bounds.box = { low = [0, 0, 0], high = [2, 2, 4] } }";
 

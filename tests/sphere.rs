@@ -34,7 +34,10 @@ fn references(light: &str) -> Vec<Reference> {
 }
 
 /// σ_t as a function of r².
-fn extinction(reference: &Reference) -> fn(f64) -> f64 {
+type Profile = fn(f64) -> f64;
+
+/// That of a reference value.
+fn extinction(reference: &Reference) -> Profile {
     match reference.ball.as_str() {
         "S1" => |_| 1.0,
         _ => |r2| 2.0 * (1.0 - r2 / (RADIUS * RADIUS)),
@@ -316,7 +319,7 @@ fn what_has_no_answer_is_refused() {
 /// that the references do not have.
 #[test]
 fn coarse_answers_are_within_their_errors() {
-    let fields: [(&str, fn(f64) -> f64); 4] = [
+    let fields: [(&str, Profile); 4] = [
         ("dense", |_| 12.0),
         ("hollow", |r2| 0.2 + 4.0 * r2 * r2),
         ("blob", |r2| 6.0 * (-8.0 * r2).exp()),

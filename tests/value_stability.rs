@@ -186,9 +186,35 @@ fn spaces() -> Vec<Case> {
     ]
 }
 
+fn balls() -> Vec<Case> {
+    let text = |light: &str, estimators: &str| {
+        let text = format!(
+            "title = \"a ball, {light}\"\n[problem.sphere]\n\
+             volume.radial = {{ centre = [0, 0, 1], radius = 1.5, coefficients = [2, -1, -0.5] }}\n\
+             ray = {{ origin = [0, 0.4, -2], direction = [0, 0, 1], length = 9 }}\nalbedo = 0.8\n\
+             phase.isotropic = {{}}\nlight.{light}\nsampling.constant.value = 2\n\
+             estimators = [{estimators}]"
+        );
+        case(&format!("ball-{}", &light[..5]), &text)
+    };
+    vec![
+        text(
+            "environment = {}",
+            "{ particle.rule = \"analog\" }, { particle.rule = \"non-terminating\" },
+            { next-event = { rule = \"weighted\", shadow.ratio = { sampling = 2, control = 1 } } }",
+        ),
+        text(
+            "black-sphere.radius = 0.5",
+            "{ particle.rule = \"weighted\" },
+            { next-event = { rule = \"analog\", shadow.delta = { sampling = 2 } } }",
+        ),
+    ]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases: Vec<Case> = cases().into_iter().chain(rods()).chain(spaces()).collect();
+    let cases: Vec<Case> =
+        cases().into_iter().chain(rods()).chain(spaces()).chain(balls()).collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {

@@ -135,7 +135,8 @@ pub struct Row {
     /// How many experiments of the case, this one included, look the medium up once for all; `None`
     /// where each does for itself.
     pub sharing: Option<u64>,
-    /// The share of the ray's support on which σ̂ was made 0, because nothing is to be found there;
+    /// The share of the ray's support, in space of the box about the volume, on which σ̂ is 0 because
+    /// nothing is to be found there;
     /// `None` where it is as the case has it.
     pub skipped: Option<f64>,
     /// The channel's name, as in `T(5)` or `reflectance`; empty where the value has one channel only.

@@ -51,6 +51,7 @@ const CASES: &[(&str, &str)] = cases![
     "furnace/eq21",
     "furnace/magnet",
     "lambertian/magnet",
+    "lambertian/magnet-cells",
     "infinite-medium/magnet",
     "sphere/magnet",
     "sphere/environment",

@@ -111,8 +111,8 @@ pub const FURNACE_ROULETTE: Target =
 pub const FURNACE_ANALOG: Target = on("furnace/magnet", 3, "particle (analog)");
 /// Eq. 21, a = 1, `σ̂ = 1`.
 pub const LAMBERTIAN: Target = on("lambertian/magnet", 0, "particle (non-terminating)");
-/// The same with 6 × 6 × 6 local majorants.
-pub const LAMBERTIAN_CELLS: Target = on("lambertian/magnet", 1, "particle (analog)");
+/// A dense half and a thin one, a cell each.
+pub const LAMBERTIAN_CELLS: Target = on("lambertian/magnet-cells", 0, "particle (analog)");
 /// Henyey–Greenstein, g = 0.6, a = 0.7.
 pub const INFINITE_ANALOG: Target = on("infinite-medium/magnet", 0, "particle (analog)");
 /// Roulette below 0.5.

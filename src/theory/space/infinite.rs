@@ -22,8 +22,11 @@ use crate::numeric::{Known, roots};
 
 /// Beyond this y the integrand is below rounding.
 const FARTHEST: f64 = 22.0;
-/// Panels of y.
-const PANELS: u32 = 88;
+/// The width of the panels of y, but for the first: e^{−r/ν} comes to life where ν is about r.
+const WIDTH: f64 = 0.25;
+/// Below the first width each panel is so many times wider than the one before, from the smallest on.
+const GROWTH: f64 = 1.25;
+const SMALLEST: f64 = 1e-6;
 /// The relative error of a sum of so many terms, and of `c − (1 − κ²)` in units of `1/(1 − c)`.
 const ROUNDING: f64 = 1e-14;
 /// Below this albedo the pole is at κ = 1 to all digits, with nothing left of it.
@@ -41,15 +44,15 @@ fn pole(albedo: f64) -> (f64, f64) {
 /// `∫₀¹ g(ν) h(ν) dν`.
 fn cut(albedo: f64, h: impl Fn(f64) -> f64) -> f64 {
     let rule = GaussLegendre::new(12);
-    let width = FARTHEST / f64::from(PANELS);
     let mut sum = Sum::default();
-    for panel in 0..PANELS {
-        let from = f64::from(panel) * width;
-        sum.add(rule.integrate(from, from + width, |y: f64| {
+    let (mut from, mut to) = (0.0, SMALLEST);
+    while from < FARTHEST {
+        sum.add(rule.integrate(from, to, |y: f64| {
             let nu = y.tanh();
             let [a, b] = [1.0 - albedo * nu * y, 0.5 * PI * albedo * nu];
             h(nu) * y.cosh().powi(-2) / (a * a + b * b)
         }));
+        (from, to) = (to, (GROWTH * to).min(to + WIDTH));
     }
     sum.value()
 }

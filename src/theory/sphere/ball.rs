@@ -4,7 +4,8 @@
 //! ∫ σ_t(t) S(t) e^{−τ(0, t)} dt,   S the polynomials of the shells that the ray crosses
 //! ```
 
-use super::shells::{Centre, Row, Rules, Shell, Shells};
+use super::shells::{Centre, Row, Rules, Shell, Shells, whole};
+use crate::numeric::quadrature::GaussLegendre;
 
 /// An optical depth up to which one Gauss rule follows the exponential.
 const SMOOTH: f64 = 2.0;
@@ -38,6 +39,17 @@ pub struct Passage {
     pub hits: bool,
 }
 
+/// A part of a ray, by distances from its foot.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stretch {
+    /// The square of the ray's distance from the centre.
+    pub offset2: f64,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+}
+
 impl Ball<'_> {
     /// The ray that begins at a distance from its foot and looks on.
     #[must_use]
@@ -66,7 +78,8 @@ impl Ball<'_> {
         let mut depth = 0.0;
         crossings(passage, shells, |shell, from, to| {
             let nodes = (shell.nodes + BEYOND).max(FEWEST);
-            self.panel(passage.offset2, from, to, nodes, rules, &mut depth, |r2, share| {
+            let stretch = Stretch { offset2: passage.offset2, from, to };
+            self.panel(stretch, rules.of(nodes), &mut depth, |r2, share| {
                 row.add(shell, r2, weight * share);
             });
         });
@@ -76,22 +89,19 @@ impl Ball<'_> {
     /// One panel: hands out `r²` and `σ_t e^{−τ} dt` at each node, and adds to the optical depth.
     pub(super) fn panel(
         &self,
-        offset2: f64,
-        from: f64,
-        to: f64,
-        nodes: usize,
-        rules: &Rules,
+        stretch: Stretch,
+        rule: &GaussLegendre,
         depth: &mut f64,
         mut each: impl FnMut(f64, f64),
     ) {
+        let Stretch { offset2, from, to } = stretch;
         let middle = 0.5 * (from + to);
         let guess = (self.extinction)(offset2 + middle * middle) * (to - from);
         let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
         let length = (to - from) / parts;
-        let rule = rules.of(nodes);
         let mut sigma = [0.0; MOST];
         let sigma = &mut sigma[..rule.nodes.len().min(MOST)];
-        for part in 0..parts as usize {
+        for part in 0..whole(parts) {
             let begin = from + length * part as f64;
             for (sigma, x) in sigma.iter_mut().zip(&rule.nodes) {
                 let t = begin + length * x;

@@ -5,7 +5,7 @@
 //! closely past a point source; panels are graded towards these. Rays that end on a black sphere are
 //! counted by `q = √(ρ² − p²)`, in which their lengths are smooth, and rays that pass the centre by p.
 
-use super::shells::{Centre, Resolution, Rules};
+use super::shells::{Centre, Resolution, Rules, halved};
 
 /// A line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,7 +67,7 @@ pub fn from_point(
             // From the surface's directions to the middle, and on to the edge of the black sphere.
             let half = 0.5 * gap;
             on(&doubling(along.min(half), half), &mirrored);
-            let finest = half * 0.5f64.powi(resolution.core as i32 / 2);
+            let finest = half * halved(resolution.core / 2);
             let from_edge = |x: f64, dx: f64| {
                 let offset2 = core * core + x * (2.0 * gap - x);
                 Sight { offset2, from: -(gap - x), weight: 0.5 * dx / r }
@@ -81,7 +81,7 @@ pub fn from_point(
                     weight: 0.5 * q * dq / (r * from),
                 }
             };
-            let finest = gap.min(core) * 0.5f64.powi(resolution.core as i32 / 4);
+            let finest = gap.min(core) * halved(resolution.core / 4);
             on(&doubling(finest.max(1e-9 * core), core), &onto);
         }
         Centre::Point => {
@@ -91,7 +91,7 @@ pub fn from_point(
                 let from = ((r - p) * (r + p)).sqrt();
                 Sight { offset2: p * p, from: -from, weight: 0.5 * p * dp / (r * from) }
             };
-            on(&doubling(half * 0.5f64.powi(resolution.centre as i32 / 2), half), &past);
+            on(&doubling(half * halved(resolution.centre / 2), half), &past);
         }
     }
     sights

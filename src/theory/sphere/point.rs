@@ -10,7 +10,7 @@
 
 use std::f64::consts::PI;
 
-use super::ball::{Ball, Passage};
+use super::ball::{Ball, Passage, Stretch};
 use super::directions;
 use super::shells::{Centre, Resolution, Row, Rules, Shells};
 use crate::numeric::Known;
@@ -81,8 +81,9 @@ fn unscattered(ball: &Ball, passage: &Passage, resolution: Resolution, rules: &R
     for (from, to) in inwards.chain(outwards) {
         let (from, to) = (from.max(passage.from), to.min(passage.to));
         if from < to {
-            let nodes = resolution.nodes + 4;
-            ball.panel(passage.offset2, from, to, nodes, rules, &mut depth, |r2, share| {
+            let stretch = Stretch { offset2: passage.offset2, from, to };
+            let rule = rules.of(resolution.nodes + 4);
+            ball.panel(stretch, rule, &mut depth, |r2, share| {
                 let depth = radial.integrate(0.0, r2.sqrt(), |r| (ball.extinction)(r * r));
                 sum += share * (-depth).exp() / (16.0 * PI * PI * r2);
             });

@@ -30,11 +30,11 @@ pub struct Resolution {
     /// Nodes between two directions at which the radiance changes its character.
     pub directions: usize,
     /// How often shells are halved towards the surface.
-    pub surface: usize,
+    pub surface: u32,
     /// How often they are halved towards a black sphere.
-    pub core: usize,
+    pub core: u32,
     /// How often they are halved towards a point source.
-    pub centre: usize,
+    pub centre: u32,
     /// What two answers may agree by chance, relative to the answer: measured, several times over.
     pub chance: f64,
 }
@@ -81,6 +81,16 @@ const FEWEST: usize = 4;
 /// The optical depth across a shell, at most.
 const THICKEST: f64 = 1.0;
 
+/// `2⁻ⁿ`.
+pub(super) fn halved(times: u32) -> f64 {
+    0.5f64.powi(times.cast_signed())
+}
+
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // small and not negative
+pub(super) fn whole(x: f64) -> usize {
+    x as usize
+}
+
 /// The shells of a ball, from the inside out.
 #[derive(Debug, Clone)]
 pub struct Shells {
@@ -108,22 +118,22 @@ impl Shells {
         };
         let middle = 0.5 * (inner + outer);
         let mut parts = Vec::new();
-        let nodes = |level: usize, drop: f64| {
-            let lost = (drop * level as f64).floor() as usize;
+        let nodes = |level: u32, drop: f64| {
+            let lost = whole(drop * f64::from(level));
             resolution.nodes.saturating_sub(lost).max(FEWEST)
         };
         let half = middle - inner;
-        parts.push((inner, inner + half * 0.5f64.powi(halvings as i32), nodes(halvings, drop)));
+        parts.push((inner, inner + half * halved(halvings), nodes(halvings, drop)));
         for level in (0..halvings).rev() {
-            let from = inner + half * 0.5f64.powi(level as i32 + 1);
-            parts.push((from, inner + half * 0.5f64.powi(level as i32), nodes(level, drop)));
+            let from = inner + half * halved(level + 1);
+            parts.push((from, inner + half * halved(level), nodes(level, drop)));
         }
         for level in 0..resolution.surface {
-            let from = outer - half * 0.5f64.powi(level as i32);
-            let to = outer - half * 0.5f64.powi(level as i32 + 1);
+            let from = outer - half * halved(level);
+            let to = outer - half * halved(level + 1);
             parts.push((from, to, nodes(level, 0.66)));
         }
-        let last = outer - half * 0.5f64.powi(resolution.surface as i32);
+        let last = outer - half * halved(resolution.surface);
         parts.push((last, outer, nodes(resolution.surface, 0.66)));
         let mut found = Self { shells: Vec::new(), count: 0 };
         for (from, to, nodes) in parts {
@@ -133,7 +143,7 @@ impl Shells {
                 .fold(0.0, f64::max);
             let pieces = (thickest * width / THICKEST).ceil().clamp(1.0, 256.0);
             let mut below = from;
-            for piece in 1..=pieces as usize {
+            for piece in 1..=whole(pieces) {
                 // Equal in r: of equal optical depth.
                 let r = from.sqrt() + width * piece as f64 / pieces;
                 let above = if piece as f64 >= pieces { to } else { r * r };
