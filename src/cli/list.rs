@@ -5,9 +5,10 @@ use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
-use trueflight::estimators::{self, controls, sampling};
+use trueflight::estimators::{self, Estimated, controls, sampling};
 use trueflight::harness::{self, case::Case, checks, suite};
-use trueflight::{media, phase, problems, report};
+use trueflight::problems::{self, MultipleScattering};
+use trueflight::{media, phase, report};
 
 use super::Console;
 use super::output::{self, Format};
@@ -59,6 +60,8 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
         of_problems
             .map(|(problem, catalogue)| (format!("estimators of {}", problem.name()), catalogue)),
     );
+    let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
+    all.push(("estimators of pictures of multiple-scattering".to_owned(), of_pictures));
     all.extend([
         ("problems".to_owned(), problems::CATALOGUE),
         ("checks".to_owned(), checks::CATALOGUE),

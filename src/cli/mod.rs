@@ -18,6 +18,7 @@ mod list;
 mod output;
 mod plan;
 mod predict;
+mod render;
 mod run;
 mod selection;
 mod self_test;
@@ -64,6 +65,8 @@ enum Command {
     Bench(bench::Arguments),
     /// What would run, what is refused, and why
     Plan(plan::Arguments),
+    /// Pictures: estimators side by side at an equal number of lookups, with their errors
+    Render(render::Arguments),
     /// Does the gate keep its promises, and does it catch known bugs?
     SelfTest(self_test::Arguments),
     /// The catalogue: media, estimators, problems, checks, cases and more
@@ -86,6 +89,7 @@ pub fn main() -> ExitCode {
         Command::Predict(arguments) => predict::main(arguments, console),
         Command::Bench(arguments) => bench::main(arguments, console),
         Command::Plan(arguments) => plan::main(arguments, console),
+        Command::Render(arguments) => render::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),

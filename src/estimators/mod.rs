@@ -12,6 +12,7 @@ pub mod infinite_medium;
 pub mod lambertian;
 pub mod layers;
 pub mod ledger;
+pub mod multiple_scattering;
 pub mod packet;
 pub mod rod;
 pub mod rules;

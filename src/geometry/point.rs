@@ -14,6 +14,13 @@ impl Point {
         self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
     }
 
+    /// Vector product.
+    #[must_use]
+    pub fn cross(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([b * z - c * y, c * x - a * z, a * y - b * x])
+    }
+
     /// Euclidean length.
     #[must_use]
     pub fn norm(self) -> f64 {

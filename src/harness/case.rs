@@ -114,6 +114,11 @@ impl Case {
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {
+        if let (Some(picture), false) = (root.entry("picture"), root.has("problem")) {
+            let help = "render it with `trueflight render`; a case has `[problem.NAME]`";
+            root.fault_at(picture.key_span.clone(), "", "this is a picture, not a case", help);
+            return None;
+        }
         let title = root.text("title");
         let expect_biased = read_expect(root);
         let order = read_kernel(root);

@@ -21,6 +21,7 @@ pub mod mutation;
 pub mod options;
 pub mod plan;
 pub mod record;
+pub mod render;
 pub mod reuse;
 pub mod run;
 pub mod scenario;
@@ -35,8 +36,10 @@ mod written;
 use crate::catalogue::Catalogue;
 
 /// The manual of case files.
-pub const CATALOGUE: Catalogue =
-    Catalogue { name: "case files", pages: &[crate::page!(case), crate::page!(sweep)] };
+pub const CATALOGUE: Catalogue = Catalogue {
+    name: "case files",
+    pages: &[crate::page!(case), crate::page!(sweep), render::PAGE],
+};
 
 pub use case::Case;
 pub use filter::Filter;

@@ -26,7 +26,7 @@ pub struct Written<P> {
 }
 
 /// What a case says of all its estimators, unless they say otherwise.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Usual {
     /// Whether they are declared biased.
     pub expect_biased: bool,

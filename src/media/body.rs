@@ -74,6 +74,17 @@ impl Body {
         }
     }
 
+    /// The same field where another body is: along its ray. A field along a line stays where it is.
+    #[must_use]
+    pub fn seen_like(&self, other: &Self) -> Self {
+        match (self, other) {
+            (Self::Volume { name, volume, .. }, Self::Volume { ray, .. }) => {
+                Self::Volume { name: name.clone(), volume: volume.clone(), ray: *ray }
+            }
+            _ => self.clone(),
+        }
+    }
+
     /// The field's name in the catalogue.
     #[must_use]
     pub fn name(&self) -> &str {
@@ -127,7 +138,8 @@ fn read_line(settings: &Settings) -> Option<(String, Profile)> {
     Some((names().swap_remove(index), profile?))
 }
 
-fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
+/// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
+pub fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
     read_field(settings, "volume")
 }
 

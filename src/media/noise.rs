@@ -32,6 +32,8 @@
 //!
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002; the integral by cells is this crate's.
 
+use std::sync::OnceLock;
+
 use super::cells::Cells;
 use super::lattice::{self, Cell, Fade};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
@@ -104,6 +106,7 @@ pub struct NoiseRay {
     track: Track,
     octaves: Vec<Octave>,
     rule: GaussLegendre,
+    inside: Span,
 }
 
 /// A ray in the coordinates of a lattice.
@@ -125,11 +128,22 @@ impl Track {
     }
 }
 
-/// One octave along a ray.
+/// One octave along a ray. Its cells are found when an integral is first asked for: who only looks σ_t
+/// up pays nothing for them.
 struct Octave {
     amplitude: f64,
     line: OctaveLine,
-    cells: Cells,
+    cells: OnceLock<Cells>,
+}
+
+impl Octave {
+    fn cells(&self, rule: &GaussLegendre, inside: Span) -> &Cells {
+        let line = &self.line;
+        self.cells.get_or_init(|| {
+            Cells::cross(line.track.start, line.track.slope, inside)
+                .summed(|_, cell, part| line.part(rule, cell, part))
+        })
+    }
 }
 
 struct OctaveLine {
@@ -162,7 +176,7 @@ impl OpticalDepth for NoiseRay {
         for octave in &self.octaves {
             let line = &octave.line;
             let part = |_, cell, part| line.part(&self.rule, cell, part);
-            let integral = octave.cells.integrate(span, part);
+            let integral = octave.cells(&self.rule, self.inside).integrate(span, part);
             fbm += octave.amplitude * integral.value;
             // |∂ noise/∂pⱼ| < 3, and a coordinate is off by its rounding at most.
             let ends = [line.track.start, line.track.at(span.to)];
@@ -176,7 +190,8 @@ impl OpticalDepth for NoiseRay {
 
     fn breaks(&self, span: Span) -> Vec<f64> {
         // Every plane of a coarser lattice is one of the finest, to the last bit.
-        self.octaves.last().map(|finest| finest.cells.crossings(span)).unwrap_or_default()
+        let cells = |finest: &Octave| finest.cells(&self.rule, self.inside).crossings(span);
+        self.octaves.last().map(cells).unwrap_or_default()
     }
 
     fn panel_nodes(&self) -> Option<usize> {
@@ -247,11 +262,9 @@ impl Field for Noise {
         let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
         let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| {
             let line = OctaveLine { track, seed, fade: spectrum.fade };
-            let cells = Cells::cross(track.start, track.slope, inside)
-                .summed(|_, cell, part| line.part(&rule, cell, part));
-            Octave { amplitude, line, cells }
+            Octave { amplitude, line, cells: OnceLock::new() }
         });
-        NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule }
+        NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
     }
 
     /// The first octaves as they are in the whole: `B` stays that of all.

@@ -3,9 +3,13 @@
 use crate::catalogue::{Catalogue, Settings, Value};
 use crate::media::{Body, Medium, Volume};
 
+pub mod multiple_scattering;
 pub mod scene;
+pub mod sky;
 
+pub use multiple_scattering::MultipleScattering;
 pub use scene::{Albedo, Scene};
+pub use sky::Sky;
 
 /// Hands every problem, in the order of the design, to another macro. From its one line here come the
 /// module, the name in case files, the reader of its cases, and its rows in `trueflight list`.

@@ -95,7 +95,7 @@ impl Scene {
 }
 
 /// Reads `albedo`, a number or a field in space.
-fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albedo> {
+pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albedo> {
     let value = settings.entry("albedo").map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
         let number = if sweeps_albedo(settings) {

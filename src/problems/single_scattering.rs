@@ -49,6 +49,19 @@ pub struct SingleScattering {
     radiance: OnceLock<Known>,
 }
 
+/// A point light that shines alike in all directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lamp {
+    /// Where it is.
+    pub position: Point,
+    /// Its power Φ.
+    pub power: f64,
+}
+
+/// The light is so near to the line of a ray: on the ray L is infinite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OnTheLine(pub f64);
+
 /// A point light as the ray sees it.
 #[derive(Debug, Clone, Copy)]
 struct Light {
@@ -63,6 +76,30 @@ struct Light {
 }
 
 impl SingleScattering {
+    /// Single scattering along a ray through a volume.
+    ///
+    /// # Errors
+    ///
+    /// The distance of a light that lies on the line of the ray.
+    pub fn new(
+        volume: Arc<Volume>,
+        ray: Ray,
+        lamp: Lamp,
+        albedo: f64,
+        phase: Phase,
+    ) -> Result<Self, OnTheLine> {
+        let support = volume.bounds().clip(&ray);
+        let profile = Arc::new(volume.along(&ray, support));
+        let medium = Medium::new(profile, ray.span(), support);
+        let Lamp { position, power } = lamp;
+        let [foot, distance] = lamp.seen_from(&ray)?;
+        let angle = |s: f64| elementary::atan((s - foot) / distance);
+        let angles = Span::new(angle(support.from), angle(support.to));
+        let light = Light { position, power, foot, distance, angles };
+        let radiance = OnceLock::new();
+        Ok(Self { volume, ray, medium, light, albedo, phase, radiance })
+    }
+
     /// The volume.
     #[must_use]
     pub fn volume(&self) -> &Volume {
@@ -182,19 +219,35 @@ impl SingleScattering {
     }
 }
 
-fn read_light(settings: &Settings) -> Option<(Point, f64)> {
-    let light = settings.table("light")?;
-    let position = light.triple("position");
-    let power = light.number_or("power", Domain::Positive, 1.0);
-    light.close();
-    Some((Point(position?), power?))
+impl Lamp {
+    /// Reads `light = { position, power }`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        let light = settings.table("light")?;
+        let position = light.triple("position");
+        let power = light.number_or("power", Domain::Positive, 1.0);
+        light.close();
+        Some(Self { position: Point(position?), power: power? })
+    }
+
+    /// Where a ray's line is nearest to the light, from the ray's origin, and how near that is.
+    ///
+    /// # Errors
+    ///
+    /// The distance of a light that lies on the line.
+    pub fn seen_from(&self, ray: &Ray) -> Result<[f64; 2], OnTheLine> {
+        let to_light = self.position - ray.origin;
+        let foot = to_light.dot(ray.direction);
+        let distance = (to_light - ray.direction * foot).norm();
+        let is_on_line = distance <= ON_LINE * ray.length.max(foot.abs());
+        if is_on_line { Err(OnTheLine(distance)) } else { Ok([foot, distance]) }
+    }
 }
 
 impl Problem for SingleScattering {
     type Value = [f64; 1];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let light = read_light(settings);
+        let light = Lamp::read(settings);
         let albedo = settings.number("albedo", Domain::Unit);
         let phase = Phase::read(settings);
         let Body::Volume { volume, ray, .. } = body? else {
@@ -202,33 +255,17 @@ impl Problem for SingleScattering {
             settings.fault("medium", "a light needs a field in space", help);
             return None;
         };
-        let ((position, power), albedo, phase) = (light?, albedo?, phase?);
+        let (light, albedo, phase) = (light?, albedo?, phase?);
         if albedo <= 0.0 {
             settings.fault("albedo", "nothing is scattered", "the albedo is above 0");
             return None;
         }
-        let medium = body?.medium();
-        let support = medium.support();
-        let to_light = position - ray.origin;
-        let foot = to_light.dot(ray.direction);
-        let distance = (to_light - ray.direction * foot).norm();
-        if distance <= ON_LINE * ray.length.max(foot.abs()) {
+        let found = Self::new(volume.clone(), *ray, light, albedo, phase);
+        if let Err(OnTheLine(distance)) = found {
             let found = format!("the light is {distance:e} away from the line of the ray");
             settings.fault("light", found, "move it off the line: on the ray L is infinite");
-            return None;
         }
-        let angle = |s: f64| elementary::atan((s - foot) / distance);
-        let angles = Span::new(angle(support.from), angle(support.to));
-        let light = Light { position, power, foot, distance, angles };
-        Some(Self {
-            volume: volume.clone(),
-            ray: *ray,
-            medium,
-            light,
-            albedo,
-            phase,
-            radiance: OnceLock::new(),
-        })
+        found.ok()
     }
 
     fn medium(&self) -> &Medium {

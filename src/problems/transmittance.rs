@@ -30,6 +30,14 @@ pub struct Transmittance {
     medium: Medium,
 }
 
+impl Transmittance {
+    /// Of the medium's ray.
+    #[must_use]
+    pub fn new(medium: Medium) -> Self {
+        Self { medium }
+    }
+}
+
 impl Problem for Transmittance {
     type Value = [f64; 1];
 

@@ -6,6 +6,7 @@
 pub mod bench;
 pub mod changes;
 pub mod console;
+pub mod gallery;
 pub mod number;
 pub mod plots;
 pub mod rows;

@@ -67,6 +67,10 @@ impl Recipe for Explorers {
         (points >= 2).then(|| Box::new(Self { points, ..*self }) as Box<dyn Recipe>)
     }
 
+    fn lookups(&self) -> usize {
+        self.points
+    }
+
     fn points(&self, site: &Site) -> Vec<[f64; 2]> {
         let support = site.mesh.support();
         if support.is_empty() {

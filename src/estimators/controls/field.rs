@@ -10,13 +10,10 @@
 use super::Recipe;
 use crate::catalogue::Settings;
 use crate::estimators::{Refusal, Site};
-use crate::media::{Body, Control, Medium};
+use crate::media::{Body, Control};
 
 /// A catalogued field as a control.
-pub struct Field {
-    name: String,
-    field: Medium,
-}
+pub struct Field(Body);
 
 impl Field {
     /// Reads `{ medium.NAME = { … } }` or `{ volume.NAME = { … } }`, like the problem itself.
@@ -26,17 +23,16 @@ impl Field {
             settings.has("volume");
             return None;
         };
-        let beside = body.read_beside(settings)?;
-        Some(Self { name: beside.name().to_owned(), field: beside.medium() })
+        body.read_beside(settings).map(Self)
     }
 }
 
 impl Recipe for Field {
     fn label(&self) -> String {
-        format!("field {}", self.name)
+        format!("field {}", self.0.name())
     }
 
-    fn prepare(&self, _: &Site) -> Result<Control, Refusal> {
-        Ok(Control::Field(self.field.clone()))
+    fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
+        Ok(Control::Field(self.0.seen_like(site.body).medium()))
     }
 }

@@ -21,6 +21,11 @@ pub trait Recipe: Send + Sync {
         None
     }
 
+    /// How many lookups of σ_t a renderer spends on it for each ray.
+    fn lookups(&self) -> usize {
+        0
+    }
+
     /// Where the control was fitted: `(t, σ_c)`.
     fn points(&self, site: &Site) -> Vec<[f64; 2]> {
         let _ = site;

@@ -13,6 +13,11 @@ pub trait Recipe: Send + Sync {
         None
     }
 
+    /// Whether it looks σ_t up to learn from it: lookups that nobody counts.
+    fn learns(&self) -> bool {
+        false
+    }
+
     /// Makes σ̂ on the support of the medium.
     ///
     /// # Errors

@@ -49,6 +49,10 @@ impl Recipe for Pilot {
         format!("pilot, {} rays", self.rays)
     }
 
+    fn learns(&self) -> bool {
+        true
+    }
+
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
         let support = site.mesh.support();
         if support.is_empty() {

@@ -69,8 +69,11 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
         let found = if setup.control.is_none() { "there is none" } else { "it is another field" };
         return Err(Refusal::mismatch(needs, found));
     };
-    let lowest = pieces.corner_values().fold(f64::INFINITY, f64::min);
-    if lowest < 0.0 {
+    let (lowest, highest) = pieces
+        .corner_values()
+        .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
+    // The end of a line that falls to 0 is rounded.
+    if lowest < -ROUNDING * highest {
         return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
     }
     let absorbed = 1.0 - setup.control_transmittance;
@@ -84,6 +87,9 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
     }
     Ok(())
 }
+
+/// How far below 0 the corner of a line may fall, relative to the highest.
+const ROUNDING: f64 = 1e-12;
 
 /// The least `1 − e^{−τ_m}` whose digits place points well.
 const THINNEST: f64 = 1e-6;

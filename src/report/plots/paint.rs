@@ -3,11 +3,12 @@
 use plotters::backend::{BitMapBackend, DrawingBackend, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{
-    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBAColor, ShapeStyle, TextStyle,
+    Color, FontDesc, FontFamily, FontStyle, FontTransform, RGBAColor, RGBColor, ShapeStyle,
+    TextStyle,
 };
 
 use crate::report::plots::font::{FAMILY, Typeface};
-use crate::report::plots::sheet::{Align, Label, Shape, Sheet, Spot};
+use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot};
 
 /// Backends take whole numbers: an SVG counts in tenths of a pixel.
 const SVG_UNITS: u32 = 10;
@@ -39,6 +40,16 @@ pub fn svg(sheet: &Sheet) -> Result<String, String> {
 ///
 /// In words, where the backend or the encoder gives up.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
+    let (rgb, (width, height)) = pixels_of(sheet)?;
+    encode(&rgb, width, height).map_err(in_words)
+}
+
+/// Red, green and blue of the sheet's pixels row by row, and how wide and high it is.
+///
+/// # Errors
+///
+/// In words, where the backend gives up.
+pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     let face = Typeface::load().map_err(in_words)?;
     let (units, (width, height)) = (f64::from(PNG_UNITS), pixels(sheet, PNG_UNITS));
     let mut fine = vec![255; width as usize * height as usize * 3];
@@ -53,7 +64,7 @@ pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
         answer
     })?;
     drop(backend);
-    encode(&halved(&fine, width as usize), width / 2, height / 2).map_err(in_words)
+    Ok((halved(&fine, width as usize), (width / 2, height / 2)))
 }
 
 fn paint<B: DrawingBackend>(
@@ -81,9 +92,26 @@ fn paint<B: DrawingBackend>(
                 backend.draw_circle(whole(*at, units), radius, colour, true).map_err(in_words)?;
             }
             Shape::Text(label) => text(backend, label)?,
+            Shape::Image(image) => show(backend, image, units)?,
         }
     }
     backend.present().map_err(in_words)
+}
+
+/// Every pixel as a rectangle; where they meet the later one covers the earlier.
+fn show<B: DrawingBackend>(backend: &mut B, image: &Image, units: f64) -> Result<(), String> {
+    let rows = image.pixels.len() / image.columns.max(1);
+    let corner = |column: usize, row: usize| {
+        let share = [column as f64 / image.columns as f64, row as f64 / rows as f64];
+        whole([0, 1].map(|i| image.at[i] + image.size[i] * share[i]), units)
+    };
+    for (i, &[red, green, blue]) in image.pixels.iter().enumerate() {
+        let (column, row) = (i % image.columns, i / image.columns);
+        let (low, high) = (corner(column, row), corner(column + 1, row + 1));
+        let style = ShapeStyle::from(&RGBColor(red, green, blue)).filled();
+        backend.draw_rect(low, high, &style, true).map_err(in_words)?;
+    }
+    Ok(())
 }
 
 /// A path without repeated points, which have no direction for a thick line to follow.

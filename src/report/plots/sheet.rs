@@ -35,6 +35,21 @@ pub enum Shape {
     },
     /// A line of text.
     Text(Label),
+    /// An image.
+    Image(Image),
+}
+
+/// A rectangle of pixels.
+#[derive(Debug, Clone)]
+pub struct Image {
+    /// Its upper left corner.
+    pub at: Spot,
+    /// Its width and height on the sheet.
+    pub size: Spot,
+    /// How many pixels stand in a row.
+    pub columns: usize,
+    /// Red, green and blue of each, row after row from the top.
+    pub pixels: Vec<[u8; 3]>,
 }
 
 /// A line of text, centred in height on its place.
@@ -100,6 +115,11 @@ impl Sheet {
     /// Fills a circle.
     pub fn disc(&mut self, at: Spot, radius: f64, colour: RGBAColor) {
         self.shapes.push(Shape::Disc { at, radius, colour });
+    }
+
+    /// Shows an image.
+    pub fn image(&mut self, image: Image) {
+        self.shapes.push(Shape::Image(image));
     }
 
     /// Writes a horizontal line of text.

@@ -15,6 +15,7 @@
 
 pub mod camera;
 pub mod chain;
+pub mod glance;
 pub mod passage;
 pub mod predict;
 pub mod scene;

@@ -1,0 +1,123 @@
+//! `trueflight render`: pictures of estimators side by side.
+
+use std::fmt::Write as _;
+use std::io::{IsTerminal, Write as _};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::bail;
+use clap::Args;
+use trueflight::harness::render::{Picture, PictureRecord, gallery as built_in};
+use trueflight::harness::source::CaseError;
+use trueflight::report::{self, Artifact, gallery};
+
+use super::{Console, output, selection};
+
+/// Arguments of `render`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// Picture files, or names of built-in pictures; without any, the built-in gallery
+    #[arg(value_name = "PICTURES")]
+    pictures: Vec<String>,
+    /// Folder; the sheets, gallery.csv and a folder of PFM images for each picture go to gallery/ in it
+    #[arg(long, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Threads [default: one per processor]; pictures do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+}
+
+/// Renders, writes, prints.
+pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+    let pictures = read(&arguments.pictures, console)?;
+    let out = arguments.out.join("gallery");
+    // Better to learn now than after the rendering that nothing can be written.
+    output::writable(&out)?;
+    let rows = pictures.iter().map(|picture| 2 * picture.rows() as u64).sum();
+    let bar = output::progress("rendering", "rows", rows, console);
+    let mut records = Vec::new();
+    let threads = arguments.threads.map_or(0, usize::from);
+    for picture in &pictures {
+        let begin = Instant::now();
+        let render = || Ok(picture.render(arguments.seed, &|| bar.inc(1)));
+        let record = selection::on_threads(threads, render)?;
+        write(&gallery::artifacts(&record)?, &out)?;
+        if !console.quiet {
+            let text = table(&record, begin.elapsed().as_secs_f64());
+            bar.suspend(|| output::print(&text))?;
+        }
+        records.push(record);
+    }
+    bar.finish_and_clear();
+    let bytes = gallery::table::csv(&records)?.into_bytes();
+    write(&[Artifact { path: "gallery.csv".into(), bytes }], &out)?;
+    if !console.quiet {
+        output::print(&format!("{} pictures in {}\n", records.len(), out.display()))?;
+    }
+    Ok(0)
+}
+
+fn read(names: &[String], console: &Console) -> anyhow::Result<Vec<Picture>> {
+    let read: Vec<Result<Picture, CaseError>> = if names.is_empty() {
+        built_in::gallery().iter().map(Picture::read).collect()
+    } else {
+        names.iter().map(|name| Picture::open(name)).collect()
+    };
+    let (mut pictures, mut errors) = (Vec::<Picture>::new(), Vec::new());
+    for picture in read {
+        match picture {
+            Ok(picture) if pictures.iter().any(|other| other.name == picture.name) => {
+                bail!("two pictures are called {}; rename one, or render them apart", picture.name);
+            }
+            Ok(picture) => pictures.push(picture),
+            Err(error) => errors.push(error),
+        }
+    }
+    if errors.is_empty() {
+        return Ok(pictures);
+    }
+    let colour = console.color.colours(std::io::stderr().is_terminal());
+    let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
+    // With stderr gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
+    let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
+    bail!("{mistakes} mistake(s) in {} picture file(s); nothing was rendered", errors.len())
+}
+
+fn write(artifacts: &[Artifact], out: &std::path::Path) -> anyhow::Result<()> {
+    match report::write(artifacts, out).into_iter().next() {
+        Some(error) => Err(error.into()),
+        None => Ok(()),
+    }
+}
+
+fn table(record: &PictureRecord, seconds: f64) -> String {
+    let PictureRecord { covered, empty, .. } = record;
+    let mut text = format!(
+        "{}  {seconds:.1} s\n  {covered} pixels are covered; {empty} are empty and cost nothing\n  \
+         reference: {}, RMS error {}\n",
+        record.title,
+        record.reference.how,
+        gallery::short(record.reference.error)
+    );
+    for exposure in &record.exposures {
+        let _ = match &exposure.outcome {
+            Ok(found) => writeln!(
+                text,
+                "  {:<40} RMSE {:<9} theory {:<9} lookups/pixel {:<7} draws/pixel {:<7} fom {}",
+                exposure.estimator,
+                gallery::short(found.rmse),
+                found.predicted_rmse.map_or("–".into(), gallery::short),
+                gallery::short(found.lookups),
+                gallery::short(found.draws),
+                found.figure_of_merit.map_or("–".into(), gallery::short),
+            ),
+            Err(reason) => writeln!(text, "  {:<40} refused: {reason}", exposure.estimator),
+        };
+    }
+    text.push('\n');
+    text
+}

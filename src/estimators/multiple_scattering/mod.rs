@@ -1,0 +1,67 @@
+//! Walks that gather the light of a sky.
+
+use crate::estimators::space::{self, Particle, Sink, Start};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::geometry::Point;
+use crate::numeric::Known;
+use crate::problems::{MultipleScattering, Sky};
+use crate::rng::Stream;
+use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
+
+/// What a walk has found.
+struct Gathered<'a> {
+    sky: &'a Sky,
+    radiance: f64,
+}
+
+impl Sink for Gathered<'_> {
+    fn escaped(&mut self, _: Point, direction: Point, weight: f64, _: u32) {
+        self.radiance += weight * self.sky.radiance(direction);
+    }
+}
+
+/// Whether a rule exists here. Its draws may be spread without bound all the same, see `furnace`.
+pub(super) fn domain(
+    setup: &Setup<MultipleScattering>,
+    particle: &Particle,
+) -> Result<(), Refusal> {
+    space::realisable(setup, setup.problem.scene(), particle)
+}
+
+/// Theory knows what is seen beside the volume, and nothing else.
+pub(super) fn predict(setup: &Setup<MultipleScattering>, _: &Particle) -> Prediction {
+    let problem = &setup.problem;
+    if problem.entry().is_some() {
+        let unknown = Known::new(0.0, f64::INFINITY);
+        let certain = Channel::unbiased(unknown, Moments::certain(0.0), Tails::LIGHT);
+        let channel = Channel { moments: None, ..certain };
+        let prediction = Prediction::single(channel, CountLaw::always(0.0));
+        return Prediction { lookups: None, ..prediction };
+    }
+    let seen = problem.background();
+    let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);
+    Prediction::single(channel, CountLaw::always(0.0))
+}
+
+/// Makes a draw.
+pub(super) fn draw(
+    particle: &Particle,
+    setup: &Setup<MultipleScattering>,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let problem = &*setup.problem;
+    let (Some([place, direction]), Some(majorants)) = (problem.entry(), setup.space.as_deref())
+    else {
+        return Draw::free([problem.background()], 0);
+    };
+    let start = Start { place, direction, weight: 1.0 };
+    let mut gathered = Gathered { sky: problem.sky(), radiance: 0.0 };
+    let lookups = space::walk(particle, problem.scene(), majorants, start, &mut gathered, rng);
+    Draw::free([gathered.radiance], lookups)
+}
+
+estimators! {
+    MultipleScattering:
+    particle::Walker,
+    splitting::Splitter,
+}

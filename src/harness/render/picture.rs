@@ -1,0 +1,139 @@
+//! A picture as written: a volume, a camera, and estimators that are compared pixel by pixel.
+//!
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `title` | one line above the picture | required |
+//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
+//!
+//! Within `[picture.NAME]`:
+//!
+//! | key | meaning | default |
+//! |---|---|---|
+//! | `size = [columns, rows]` | pixels, one ray through the middle of each | required |
+//! | `lookups` | lookups of σ_t per pixel that the volume covers, for every estimator | required |
+//! | `volume.NAME = { … }` | a field in space, bounded | required |
+//! | `camera = { position, target, up, angle }` | pinhole camera; degrees from the lower to the upper edge | up `[0, 1, 0]`, angle 40 |
+//! | `sky.constant = { radiance }` | what is behind the volume | radiance 1 |
+//! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
+//! | `sampling`, `control`, `estimators` | as in a case; an estimator may have its own `expect = "biased"` | |
+//! | `shared-control` | so many columns and rows of pixels use the control that is fitted to the ray in their middle | 1 |
+//! | `reference.closed-form = {}` | from the exact optical depth, or for a white furnace | |
+//! | `reference.quadrature = { panels }` | Gauss quadrature along the ray, not for multiple scattering; its error is what half as many panels differ by | 16 panels |
+//! | `reference.draws = { lookups, estimator }` | many draws of one estimator, with their measured error | |
+//! | `light`, `albedo`, `phase` | as in the problem `single-scattering`; multiple scattering takes no light | |
+//!
+//! Every pixel gets the same number of draws, to within one: so many that the estimator takes
+//! `lookups` per covered pixel on average, as the paper compares. The number is fixed before the first
+//! draw, from the expected lookups by theory (transmittance) or by pilot draws with random numbers of
+//! their own, which are counted apart. Explorer points count as lookups, once for each ray that a
+//! control is fitted to; the controls `mean` and `minimum` come from theory and cost none. A pixel
+//! that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of merit
+//! are over the covered pixels:
+//!
+//! ```text
+//! MSE = mean of (image − reference)²,   figure of merit = 1/(MSE · lookups per pixel)
+//! ```
+//!
+//! Source: L. Szirmay-Kalos, I. Georgiev, M. Magdics, B. Molnár, D. Légrády, *Unbiased Light
+//! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
+//! section 4.
+
+use std::cell::RefCell;
+use std::path::Path;
+
+use super::gallery;
+use super::record::PictureRecord;
+use super::scene::{AnyScene, Request, Scene};
+use crate::catalogue::Settings;
+use crate::harness::source::{CaseError, Source};
+use crate::problems::{MultipleScattering, SingleScattering, Transmittance};
+
+/// A picture file, read.
+pub struct Picture {
+    /// Its name.
+    pub name: String,
+    /// One line above it.
+    pub title: String,
+    /// What it shows: the problem's name in the catalogue.
+    pub problem: String,
+    scene: Box<dyn AnyScene>,
+}
+
+type Reader = fn(&Settings) -> Option<Box<dyn AnyScene>>;
+
+/// What can be shown.
+const SUBJECTS: [(&str, Reader); 3] = [
+    ("transmittance", Scene::<Transmittance>::read),
+    ("single-scattering", Scene::<SingleScattering>::read),
+    ("multiple-scattering", Scene::<MultipleScattering>::read),
+];
+
+impl Picture {
+    /// Reads a picture.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read(source: &Source) -> Result<Self, CaseError> {
+        let faults = RefCell::default();
+        let root = source.parse(&faults);
+        let broken = !faults.borrow().is_empty();
+        let folder = source.folder();
+        let picture = Self::from_root(source, &Settings::new(&root, &folder, &faults));
+        let mut faults = faults.into_inner();
+        if broken {
+            // Half a file is missing keys that the other half may hold.
+            faults.retain(|fault| fault.path.is_empty() && fault.help == "this is not TOML");
+        }
+        faults.sort_by_key(|fault| fault.span.start);
+        match picture {
+            Some(picture) if faults.is_empty() => Ok(picture),
+            _ => Err(CaseError::Faulty { source_text: source.clone(), faults }),
+        }
+    }
+
+    fn from_root(source: &Source, root: &Settings) -> Option<Self> {
+        if let (Some(case), false) = (root.entry("problem"), root.has("picture")) {
+            let help = "run it with `trueflight run`; a picture has `[picture.NAME]`";
+            root.fault_at(case.key_span.clone(), "", "this is a case, not a picture", help);
+            return None;
+        }
+        let title = root.text("title");
+        let names = SUBJECTS.map(|(name, _)| name.to_owned());
+        let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
+            let (name, read) = SUBJECTS[index];
+            let scene = read(&settings);
+            settings.close();
+            Some((name.to_owned(), scene?))
+        });
+        root.close();
+        let (problem, scene) = scene?;
+        Some(Self { name: source.name.clone(), title: title?, problem, scene })
+    }
+
+    /// Reads a picture file, or a built-in picture.
+    ///
+    /// # Errors
+    ///
+    /// The file cannot be read, or every mistake in it.
+    pub fn open(name: &str) -> Result<Self, CaseError> {
+        match gallery::find(name) {
+            Some(source) if !Path::new(name).exists() => Self::read(&source),
+            _ => Self::read(&Source::read(Path::new(name))?),
+        }
+    }
+
+    /// How many rows of pixels it has.
+    #[must_use]
+    pub fn rows(&self) -> usize {
+        self.scene.view().size[1]
+    }
+
+    /// Renders it with a seed; `progress` is told of every row, twice.
+    #[must_use]
+    pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
+        let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
+        let view = self.scene.view();
+        PictureRecord::new(self, view, rendered)
+    }
+}

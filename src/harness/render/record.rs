@@ -1,0 +1,196 @@
+//! What a rendered picture is: all that reports see of it.
+
+use serde::Serialize;
+
+use super::expose::Exposed;
+use super::picture::Picture;
+use super::scene::Rendered;
+use super::view::View;
+
+/// A rendered picture.
+#[derive(Debug, Clone, Serialize)]
+pub struct PictureRecord {
+    /// Its name.
+    pub name: String,
+    /// One line above it.
+    pub title: String,
+    /// What it shows.
+    pub problem: String,
+    /// The field.
+    pub medium: String,
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// How many pixels the volume covers.
+    pub covered: usize,
+    /// How many it does not: they cost nothing.
+    pub empty: usize,
+    /// The lookups per covered pixel that every estimator was to take.
+    pub budget: u64,
+    /// The radiance that is shown white.
+    pub white: f64,
+    /// The difference that is shown in the strongest colour.
+    pub strongest: f64,
+    /// What the images are compared with.
+    pub reference: ReferenceRecord,
+    /// One for each estimator, in the order of the file.
+    pub exposures: Vec<ExposureRecord>,
+}
+
+/// What images are compared with.
+#[derive(Debug, Clone, Serialize)]
+pub struct ReferenceRecord {
+    /// How it was found, in words.
+    pub how: String,
+    /// The root of its mean squared error over covered pixels: measured where it was drawn.
+    pub error: f64,
+    /// Its lookups per covered pixel.
+    pub lookups: f64,
+    /// Row after row from the top.
+    pub image: Vec<f64>,
+}
+
+/// An estimator and what became of it.
+#[derive(Debug, Clone, Serialize)]
+pub struct ExposureRecord {
+    /// The estimator with its settings.
+    pub estimator: String,
+    /// σ̂ in words.
+    pub sampling: String,
+    /// The control in words.
+    pub control: String,
+    /// The image, or why there is none.
+    pub outcome: Result<Exposure, String>,
+}
+
+/// An image with its error and its cost. Means are over covered pixels.
+#[derive(Debug, Clone, Serialize)]
+pub struct Exposure {
+    /// Row after row from the top.
+    pub image: Vec<f64>,
+    /// Draws per pixel.
+    pub draws: f64,
+    /// Lookups per pixel.
+    pub lookups: f64,
+    /// Lookups per pixel of the pilot draws, which are no part of the image.
+    pub pilots: f64,
+    /// The root of the mean squared difference to the reference.
+    pub rmse: f64,
+    /// What theory says of it; `None` where it is not asked.
+    pub predicted_rmse: Option<f64>,
+    /// The mean difference to the reference.
+    pub bias: f64,
+    /// `1/(MSE · lookups)`; `None` without error.
+    pub figure_of_merit: Option<f64>,
+}
+
+impl PictureRecord {
+    /// Compares what was rendered.
+    pub(super) fn new(picture: &Picture, view: &View, rendered: Rendered) -> Self {
+        let Rendered { budget, covered, reference, exposures } = rendered;
+        let exposures: Vec<ExposureRecord> = exposures
+            .into_iter()
+            .map(|(names, outcome)| ExposureRecord {
+                estimator: names.estimator,
+                sampling: names.sampling,
+                control: names.control,
+                outcome: outcome
+                    .map(|exposed| Exposure::new(view, &covered, &reference.1, &exposed)),
+            })
+            .collect();
+        let (how, exposed) = reference;
+        let mut errors: Vec<f64> = exposures
+            .iter()
+            .filter_map(|exposure| exposure.outcome.as_ref().ok().map(|exposure| exposure.rmse))
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        let middle = errors.get(errors.len() / 2).copied().unwrap_or_default();
+        let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
+        let error = over(&mut exposed.square_errors.iter().copied()).sqrt();
+        let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
+        let image = image(view, &covered, &exposed.values);
+        Self {
+            name: picture.name.clone(),
+            title: picture.title.clone(),
+            problem: picture.problem.clone(),
+            medium: view.medium.clone(),
+            size: view.size,
+            covered: covered.len(),
+            empty: view.pixels() - covered.len(),
+            budget,
+            white: bright(&image),
+            strongest: round_up(2.5 * middle),
+            reference: ReferenceRecord { how, error, lookups, image },
+            exposures,
+        }
+    }
+}
+
+impl Exposure {
+    fn new(view: &View, covered: &[usize], truth: &Exposed, exposed: &Exposed) -> Self {
+        let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
+        let apart = || exposed.values.iter().zip(&truth.values).map(|(x, truth)| x - truth);
+        let square = over(&mut apart().map(|x| x * x));
+        let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
+        let is_predicted = !exposed.predicted.is_empty();
+        Self {
+            image: image(view, covered, &exposed.values),
+            draws: over(&mut exposed.draws.iter().map(|&n| n as f64)),
+            lookups,
+            pilots: exposed.pilots as f64 / covered.len().max(1) as f64,
+            rmse: square.sqrt(),
+            predicted_rmse: is_predicted
+                .then(|| over(&mut exposed.predicted.iter().copied()).sqrt()),
+            bias: over(&mut apart()),
+            figure_of_merit: (square > 0.0 && lookups > 0.0).then(|| 1.0 / (square * lookups)),
+        }
+    }
+}
+
+fn mean(values: &mut dyn Iterator<Item = f64>, count: usize) -> f64 {
+    values.sum::<f64>() / count.max(1) as f64
+}
+
+/// The whole image: covered pixels as found, the others exactly.
+fn image(view: &View, covered: &[usize], values: &[f64]) -> Vec<f64> {
+    let mut image: Vec<f64> = (0..view.pixels()).map(|pixel| view.background(pixel)).collect();
+    for (&pixel, &value) in covered.iter().zip(values) {
+        image[pixel] = value;
+    }
+    image
+}
+
+/// What all but a hundredth of the pixels do not exceed: a few bright ones do not darken the rest.
+fn bright(image: &[f64]) -> f64 {
+    let mut sorted = image.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = sorted.len().saturating_sub(1) * 99 / 100;
+    let bright = sorted.get(at).copied().unwrap_or_default();
+    if bright > 0.0 { bright } else { 1.0 }
+}
+
+/// The next of 1, 2, 5, 10, … times a power of ten.
+fn round_up(x: f64) -> f64 {
+    if x <= 0.0 || !x.is_finite() {
+        return 1.0;
+    }
+    let unit = 10f64.powf(x.log10().floor());
+    [1.0, 2.0, 5.0].into_iter().map(|n| n * unit).find(|&n| n >= x).unwrap_or(10.0 * unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_round() {
+        assert_eq!([0.013, 0.2, 6.0, 0.0].map(round_up), [0.02, 0.2, 10.0, 1.0]);
+    }
+
+    #[test]
+    fn a_few_bright_pixels_do_not_set_the_white() {
+        let mut image = vec![0.5; 199];
+        image.push(80.0);
+        assert_eq!(bright(&image), 0.5);
+        assert_eq!(bright(&[0.0; 4]), 1.0);
+    }
+}

@@ -1,0 +1,223 @@
+//! Where a picture is taken from.
+
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+use crate::catalogue::{Domain, Settings};
+use crate::geometry::{Aabb, Point, Ray};
+use crate::media::Volume;
+use crate::media::body::read_volume;
+use crate::numeric::Lane;
+use crate::problems::Sky;
+
+/// Pictures of more pixels along a side are a mistake.
+const LARGEST: u64 = 4096;
+
+/// A pinhole camera: one ray through the middle of each pixel.
+///
+/// Its axes are right-handed: `right = forward × up`. Row 0 is the top row, column 0 the left one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Camera {
+    position: Point,
+    forward: Point,
+    /// Half the picture's width and height at distance 1, along the axes to the right and upwards.
+    right: Point,
+    up: Point,
+    size: [usize; 2],
+}
+
+impl Camera {
+    /// A camera that looks from a position at a target, with the angle between the directions of the
+    /// picture's lower and upper edge in degrees; `None` where `up` points along the view, or nothing is
+    /// looked at.
+    #[must_use]
+    pub fn new(
+        position: Point,
+        target: Point,
+        up: Point,
+        degrees: f64,
+        size: [usize; 2],
+    ) -> Option<Self> {
+        let forward = (target - position).normalised()?;
+        let right = forward.cross(up.normalised()?);
+        if right.norm() < 1e-9 {
+            return None;
+        }
+        let right = right.normalised()?;
+        let half = 0.5 * degrees * PI / 180.0;
+        let half = Lane::sin(half) / Lane::cos(half);
+        let [width, height] = size.map(|n| n as f64);
+        let up = right.cross(forward) * half;
+        Some(Self { position, forward, right: right * (half * width / height), up, size })
+    }
+
+    fn read(settings: &Settings, size: Option<[usize; 2]>) -> Option<Self> {
+        let camera = settings.table("camera")?;
+        let (position, target) = (camera.triple("position"), camera.triple("target"));
+        let up = camera.triple_or("up", [0.0, 1.0, 0.0]);
+        let angle = camera.number_or("angle", Domain::Positive, 40.0);
+        camera.close();
+        let (position, target, up, angle) = (position?, target?, up?, angle?);
+        if angle >= 179.0 {
+            let help = "the angle between the lower and the upper edge is below 179 degrees";
+            camera.fault("angle", format!("`angle` is {angle}"), help);
+            return None;
+        }
+        let found = Self::new(Point(position), Point(target), Point(up), angle, size?);
+        if found.is_none() {
+            let help = "`target` is not `position`, and `up` points aside of the view";
+            settings.fault("camera", "this camera has no direction", help);
+        }
+        found
+    }
+
+    /// The direction of the ray through the middle of a pixel.
+    #[must_use]
+    pub fn direction(&self, column: usize, row: usize) -> Option<Point> {
+        let [width, height] = self.size.map(|n| n as f64);
+        let x = 2.0 * (column as f64 + 0.5) / width - 1.0;
+        let y = 1.0 - 2.0 * (row as f64 + 0.5) / height;
+        (self.forward + self.right * x + self.up * y).normalised()
+    }
+}
+
+/// A volume as a camera sees it.
+pub struct View {
+    /// The field's name in the catalogue.
+    pub medium: String,
+    /// The field.
+    pub volume: Arc<Volume>,
+    /// What is behind it.
+    pub sky: Sky,
+    /// How many columns and rows.
+    pub size: [usize; 2],
+    /// So many columns and rows of pixels share a control that takes lookups.
+    pub shared_control: usize,
+    /// Whether the sky is seen beside it; else it is black there.
+    pub shows_sky: bool,
+    camera: Camera,
+    /// The length of all rays: they leave the volume before.
+    length: f64,
+}
+
+impl View {
+    /// Reads `size`, `camera`, `volume` and, where it is seen, `sky`.
+    pub fn read(settings: &Settings, shows_sky: bool) -> Option<Self> {
+        let size = read_size(settings);
+        let camera = Camera::read(settings, size);
+        let black = Sky::Constant { radiance: 0.0 };
+        let sky = if shows_sky { Sky::read(settings) } else { Some(black) };
+        let shared = settings.count_or("shared-control", 1..=1024, 1);
+        let field = read_volume(settings);
+        let (medium, volume) = field?;
+        let Some(about) = volume.bounds().enclosing_box() else {
+            let help = "add `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
+            settings.fault("volume", "this volume fills all of space", help);
+            return None;
+        };
+        let camera = camera?;
+        let length = furthest(&about, camera.position);
+        let (volume, sky, size) = (Arc::new(volume), sky?, size?);
+        let shared_control = usize::try_from(shared?).ok()?;
+        Some(Self { medium, volume, sky, size, shared_control, shows_sky, camera, length })
+    }
+
+    /// How many pixels there are.
+    #[must_use]
+    pub fn pixels(&self) -> usize {
+        self.size[0] * self.size[1]
+    }
+
+    /// The ray of a pixel, row after row from the top.
+    #[must_use]
+    pub fn ray(&self, pixel: usize) -> Option<Ray> {
+        let [width, _] = self.size;
+        let direction = self.camera.direction(pixel % width, pixel / width)?;
+        Ray::new(self.camera.position, direction, self.length)
+    }
+
+    /// The ray of a pixel if it meets the volume.
+    #[must_use]
+    pub fn covered(&self, pixel: usize) -> Option<Ray> {
+        self.ray(pixel).filter(|ray| !self.volume.bounds().clip(ray).is_empty())
+    }
+
+    /// The pixel whose ray a control is fitted to that this one uses: that in the middle of its block,
+    /// if the volume covers it.
+    #[must_use]
+    pub fn leader(&self, pixel: usize) -> usize {
+        let ([width, height], block) = (self.size, self.shared_control);
+        let middle = |at: usize, end: usize| (at / block * block + block / 2).min(end - 1);
+        let leader = middle(pixel / width, height) * width + middle(pixel % width, width);
+        if self.covered(leader).is_some() { leader } else { pixel }
+    }
+
+    /// What is seen at a pixel that the volume does not cover.
+    #[must_use]
+    pub fn background(&self, pixel: usize) -> f64 {
+        if self.shows_sky { self.behind(pixel) } else { 0.0 }
+    }
+
+    /// The radiance of the sky behind a pixel.
+    #[must_use]
+    pub fn behind(&self, pixel: usize) -> f64 {
+        self.ray(pixel).map_or(0.0, |ray| self.sky.radiance(ray.direction))
+    }
+}
+
+/// A little more than the distance of the furthest corner.
+fn furthest(about: &Aabb, from: Point) -> f64 {
+    let reach: [f64; 3] = std::array::from_fn(|i| {
+        (about.low.0[i] - from.0[i]).abs().max((about.high.0[i] - from.0[i]).abs())
+    });
+    1.01 * Point(reach).norm()
+}
+
+fn read_size(settings: &Settings) -> Option<[usize; 2]> {
+    let wanted = "columns and rows, as in [128, 128]";
+    let list = settings.numbers("size", Domain::Positive, 2)?;
+    let is_size = |&x: &f64| x.fract() == 0.0 && x <= LARGEST as f64;
+    if list.len() != 2 || !list.iter().all(is_size) {
+        let found = format!("`size` is {list:?}");
+        settings.fault("size", found, format!("it takes {wanted}, {LARGEST} at most"));
+        return None;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
+    let size = [list[0] as usize, list[1] as usize];
+    Some(size)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(size: [usize; 2]) -> Camera {
+        let (from, to) = (Point([0.0, 0.0, 5.0]), Point([0.0; 3]));
+        Camera::new(from, to, Point([0.0, 1.0, 0.0]), 90.0, size).expect("a direction")
+    }
+
+    #[test]
+    fn the_middle_ray_goes_straight_to_the_target() {
+        let middle = camera([3, 5]).direction(1, 2).expect("a direction");
+        assert!((middle - Point([0.0, 0.0, -1.0])).norm() < 1e-15);
+    }
+
+    /// Looking along −z with y upwards, x grows to the right, as in a right-handed drawing.
+    #[test]
+    fn right_is_right_and_row_0_is_the_top() {
+        let camera = camera([4, 2]);
+        let corner = camera.direction(3, 0).expect("a direction");
+        // At distance 1 the picture reaches to ±2 across and ±1 in height; pixel centres a half inwards.
+        let expected = Point([1.5, 0.5, -1.0]).normalised().expect("a direction");
+        assert!((corner - expected).norm() < 1e-15, "{corner:?}");
+        let other = camera.direction(0, 1).expect("a direction");
+        assert!((other - Point([-expected.0[0], -expected.0[1], expected.0[2]])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn a_camera_without_a_direction_is_refused() {
+        let (o, z) = (Point([0.0; 3]), Point([0.0, 0.0, 1.0]));
+        assert!(Camera::new(o, o, z, 40.0, [2, 2]).is_none());
+        assert!(Camera::new(o, z, z, 40.0, [2, 2]).is_none());
+    }
+}
