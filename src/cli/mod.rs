@@ -21,6 +21,7 @@ mod predict;
 mod run;
 mod selection;
 mod self_test;
+mod stress;
 mod verdict;
 
 use std::process::ExitCode;
@@ -66,6 +67,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Does the gate keep its promises, and does it catch known bugs?
     SelfTest(self_test::Arguments),
+    /// Numerical stability: every quantity where it is hardest, against 32 digits
+    Stress(stress::Arguments),
     /// The catalogue: media, estimators, problems, checks, cases and more
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
@@ -87,6 +90,7 @@ pub fn main() -> ExitCode {
         Command::Bench(arguments) => bench::main(arguments, console),
         Command::Plan(arguments) => plan::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
+        Command::Stress(arguments) => stress::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
         Command::Judge(arguments) => judge::main(arguments, console),

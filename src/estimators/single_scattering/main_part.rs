@@ -7,6 +7,7 @@
 //! The inverse is closed because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`, or
 //! some of the light is never found.
 
+use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup};
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Lane, Span};
@@ -71,7 +72,10 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
     };
     let lowest = pieces.corner_values().fold(f64::INFINITY, f64::min);
     if lowest < 0.0 {
-        return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
+        return Err(Refusal::mismatch(
+            "a control σ_m ≥ 0",
+            format!("it falls to {}", rounded(lowest)),
+        ));
     }
     let absorbed = 1.0 - setup.control_transmittance;
     if setup.control.optical_depth(setup.mesh.support()).value == 0.0 {

@@ -2,6 +2,7 @@
 
 pub mod walk;
 
+use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::{Problem, Slab};
 use crate::theory::slab::{self, Answer, Pieces, Walk};
@@ -50,7 +51,7 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
             "a reflectance and a transmittance that adding and doubling resolve (|g| ≤ 0.93)";
         let depth = setup.problem.medium().optical_depth(setup.mesh.support()).value;
         let phase = setup.problem.incidence().phase.label();
-        return Err(Refusal::mismatch(needs, format!("τ = {depth:.6} and phase {phase}")));
+        return Err(Refusal::mismatch(needs, format!("τ = {} and phase {phase}", rounded(depth))));
     }
     if walk_of(setup, rule).diverges() {
         let needs = "a finite variance";
