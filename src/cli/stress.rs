@@ -34,13 +34,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
     // Single precision comes after the pages.
     let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
-    let t0 = std::time::Instant::now();
-    let found = pool.install(|| {
-        stress::all(effort, arguments.seed, &|n| {
-            bar.inc(1);
-            eprintln!("{n} {:?}", t0.elapsed());
-        })
-    });
+    let found = pool.install(|| stress::all(effort, arguments.seed, &|_| bar.inc(1)));
     bar.finish_and_clear();
     let written = report::write(&page::artifacts(&found)?, &arguments.out);
     if !console.quiet {

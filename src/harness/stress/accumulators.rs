@@ -204,7 +204,7 @@ fn one_huge_draw(effort: Effort, seed: u64) -> Vec<Row> {
 
 /// Terms of both signs and all sizes that add up to almost nothing.
 fn cancelling(effort: Effort, seed: u64) -> Row {
-    let range = "pairs ±x of 1e-12 … 1e12 and a rest of 1, in any order";
+    let range = "±x of 1e-12 … 1e12 and a rest of 1, any order";
     let mut row = Row::new("compensated sum that cancels", range, Measure::Relative, 1e-15);
     for part in 0..effort.of(20, 400) {
         let mut dice = Dice::new(seed, "cancelling", part);
@@ -226,7 +226,7 @@ fn cancelling(effort: Effort, seed: u64) -> Row {
 /// The same sums on any number of threads.
 fn threads(effort: Effort, seed: u64) -> Row {
     let range = "1, 2, 3, 7 threads";
-    let mut row = Row::new("bits that depend on the threads", range, Measure::Count, 0.0);
+    let mut row = Row::new("bits that depend on threads", range, Measure::Count, 0.0);
     let parts = effort.of(4, 32);
     let sums = |threads| -> Option<String> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;

@@ -13,7 +13,7 @@ const PARTS: u64 = 32;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(20, 1500);
+    let trials = effort.of(10, 300);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "depths", part);
         let mut rows: Vec<Row> =
@@ -178,7 +178,7 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
 
 /// Stretches that follow each other add up, wherever the cuts are: at breaks, too.
 fn splits(dice: &mut Dice, trials: u32) -> Row {
-    let range = "1 … 4 cuts, some at breaks; 1e-13 of the whole and the stated errors";
+    let range = "cuts at breaks, too; stated errors and 1e-13";
     let mut row = Row::new("optical depth, sum over splits", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let (text, _) = FIELDS[dice.below(FIELDS.len())].2(dice);
@@ -216,8 +216,8 @@ const VOLUMES: [&str; 6] = [
 
 /// Rays from near and far through fields in space.
 fn lookups(dice: &mut Dice, trials: u32) -> Row {
-    let range = "Eq. 21, noise, grids, blobs; rays from 0 … 1e4 away; 1e-13 of the whole and the stated error";
-    let mut row = Row::new("optical depth, lookups of 3-D fields", range, Measure::OfStated, 1.0);
+    let range = "Eq. 21, noise, grids; from 0 … 1e4 away; stated and 1e-13";
+    let mut row = Row::new("optical depth in 3-D, quadrature", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let field = VOLUMES[dice.below(VOLUMES.len())];
         let target = [dice.between(-6.0, 6.0), dice.between(-6.0, 6.0), dice.between(2.0, 18.0)];

@@ -18,7 +18,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
 
 /// Any 1-D field: the depth of the distance is the depth that was asked for.
 fn inverse(dice: &mut Dice, trials: u32) -> Row {
-    let range = "all 1-D fields, depths 1e-12 … 1 of the whole; grain of distances added";
+    let range = "all 1-D fields, 1e-12 of the whole and the grain of s";
     let mut row = Row::new("inverse of optical depth", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let (sigma, length) = (dice.sized(-9.0, 4.0), dice.sized(-6.0, 6.0));
@@ -69,8 +69,7 @@ fn inverse(dice: &mut Dice, trials: u32) -> Row {
 
 /// Straight pieces in 32 digits: what every σ̂ is flown through by.
 fn pieces(dice: &mut Dice, trials: u32) -> Row {
-    let range =
-        "1 … 12 straight pieces of 1e-9 … 1e6; 1e-12 of the whole and the grain of distances";
+    let range = "1 … 12 pieces of 1e-9 … 1e6; 1e-12 and the grain of s";
     let mut row = Row::new("flight through pieces", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let count = 2 + dice.below(12);
@@ -107,7 +106,7 @@ fn pieces(dice: &mut Dice, trials: u32) -> Row {
 /// Stretches on which nothing is: a flight ends on none of them.
 fn empty(dice: &mut Dice, trials: u32) -> Row {
     let range = "gaps of 1e-9 … 1e9 between pieces";
-    let mut row = Row::new("flights that end in empty space", range, Measure::Count, 0.0);
+    let mut row = Row::new("flights that end in gaps", range, Measure::Count, 0.0);
     for _ in 0..trials {
         let value = dice.sized(-6.0, 6.0);
         let (first, gap, last) =

@@ -34,8 +34,8 @@ fn before(word: u64) -> Stream {
 }
 
 fn ends() -> Row {
-    let range = "words 0, 1, 2¹¹ − 1, 2¹¹, 2⁶³, 2⁶⁴ − 1 and neighbours";
-    let mut row = Row::new("uniform numbers outside their range", range, Measure::Count, 0.0);
+    let range = "words 0, 2¹¹, 2⁶³, 2⁶⁴ − 1 and neighbours";
+    let mut row = Row::new("uniforms outside their range", range, Measure::Count, 0.0);
     for near in [0, 1 << 11, 1 << 63, u64::MAX] {
         for word in [near, near.wrapping_sub(1), near.wrapping_add(1)] {
             let numbers = [before(word).uniform(), unit(&mut before(word))];
@@ -97,7 +97,7 @@ fn distances(effort: Effort, seed: u64) -> Row {
 /// Two flights of equal length among many: as seldom as 53 bits promise.
 fn equal_distances(effort: Effort, seed: u64) -> Row {
     let range = "σ̂ = 1e-9 … 1e9";
-    let name = "equal distances among many flights";
+    let name = "flights of equal length";
     let mut row = Row::new(name, range, Measure::Improbability, 6.0);
     let draws = effort.of(20_000, 1_000_000);
     for power in [-9, -3, 0, 9] {

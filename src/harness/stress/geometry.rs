@@ -105,8 +105,8 @@ fn spheres(dice: &mut Dice, trials: u32, what: &str, away: [f64; 2], depth: [f64
 
 /// Rays that pass outside, be it by 1e-12 of the radius, see nothing; those that pass inside do.
 fn misses(dice: &mut Dice, trials: u32) -> Row {
-    let range = "passing at R(1 ± 1e-12 … 1e-2), from up to 1e6 radii away";
-    let mut row = Row::new("rays that hit or miss wrongly", range, Measure::Count, 0.0);
+    let range = "passing at R(1 ± 1e-12 … 1e-2), up to 1e6 R away";
+    let mut row = Row::new("hits and misses, wrong", range, Measure::Count, 0.0);
     for _ in 0..trials {
         let depth = dice.sign() * dice.sized(-12.0, -2.0);
         let Some(scene) = Scene::new(dice, [-1.0, 6.0], depth) else { continue };
@@ -124,7 +124,7 @@ fn misses(dice: &mut Dice, trials: u32) -> Row {
 
 /// The optical depth of what such a ray sees: the chord's own error is part of the stated one.
 fn depths(dice: &mut Dice, trials: u32) -> Row {
-    let range = "σ_t = 1 in a ball, grazing within 1e-12 … 1, from up to 1e6 radii away";
+    let range = "grazing within 1e-12 … 1 of R, up to 1e6 R away";
     let mut row = Row::new("optical depth of a chord", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let depth = dice.sized(-12.0, 0.0);

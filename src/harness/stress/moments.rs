@@ -18,7 +18,7 @@ const PARTS: u64 = 32;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(6, 400);
+    let trials = effort.of(6, 200);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "moments", part);
         let wide = "τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9";

@@ -88,7 +88,7 @@ fn see_rod(
 }
 
 fn closed_rods(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-9 … 600, a and p_f in [0, 1] and next to both ends";
+    let range = "τ = 1e-9 … 600, a and p_f next to 0 and 1, too";
     let mut row = Row::new("rod, closed form", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let (depth, albedo, forward) = (dice.sized(-9.0, 2.78), share(dice), share(dice));
@@ -117,7 +117,7 @@ fn solved_rods(dice: &mut Dice, trials: u32) -> Row {
 
 /// Adding and doubling with more directions and a thinner first layer.
 fn slabs(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-4 … 30, a to 1, g to 0.6, μ₀ = 0.05 … 1; against twice the resolution";
+    let range = "τ = 1e-4 … 30, |g| to 0.6; twice the resolution";
     let mut row = Row::new("slab, adding and doubling", range, Measure::OfStated, 1.0);
     let finer = Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14 };
     for _ in 0..trials {
@@ -146,7 +146,7 @@ fn slabs(dice: &mut Dice, trials: u32) -> Row {
 
 /// The radiance of a homogeneous medium against Gauss' rule in the angle at the light, of many panels.
 fn single(dice: &mut Dice, trials: u32) -> Row {
-    let range = "homogeneous, light 1e-4 … 10 from the ray; against 800 panels in θ";
+    let range = "homogeneous, light 1e-4 … 10 away; 800 panels in θ";
     let mut row = Row::new("single scattering, radiance", range, Measure::OfStated, 1.0);
     let rule = GaussLegendre::new(16);
     for _ in 0..trials {

@@ -14,7 +14,7 @@ const PARTS: u64 = 16;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(6, 200);
+    let trials = effort.of(4, 160);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "tails", part);
         let mut rows = normal_law(dice, 4 * trials);
