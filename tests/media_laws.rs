@@ -26,7 +26,7 @@ const LINES: [(&str, &str); 9] = [
 ];
 
 /// 3-D forms; those without bounds of their own fill a box, a ball or all of space.
-const VOLUMES: [&str; 20] = [
+const VOLUMES: [&str; 22] = [
     "constant = { extinction = 0.5, bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
     "piecewise-constant = { breaks = [0, 1, 3], values = [1, 0.2], axis = [1, 0, 1] }",
     "piecewise-linear = { knots = [0, 1, 3], values = [1, 0, 0.2], axis = [0, 1, 2] }",
@@ -36,6 +36,8 @@ const VOLUMES: [&str; 20] = [
     "gaussian = { peak = 3, centre = [1.7, 2.1, 2], width = 0.6 }",
     "gaussian = { peak = 3, centre = [1, 2, 2], width = 0.1, \
      bounds.sphere = { centre = [2, 2, 2], radius = 2 } }",
+    "radial = { centre = [2, 2, 2], radius = 1.9, coefficients = [2, -2] }",
+    "radial = { centre = [1, 2, 2.5], radius = 2.7, coefficients = [0.1, 2, -3, 1.2] }",
     "sines = { base = 0.8, amplitudes = [0.5, -0.3], vectors = [[1, 2, 3], [0, -9, 4]] }",
     "eq21 = {}",
     "noise = { extinction = 2, octaves = 1 }",
@@ -257,6 +259,10 @@ fn wrong_settings_are_refused() {
         ("exponential = { extinction = 1 }".to_owned(), "`rate` is missing"),
         ("exponential = { extinction = 1, rate = 1, axis = [0, 0, 0] }".to_owned(), "zero vector"),
         ("gaussian = { peak = 1, centre = [0, 0, 0], width = 0 }".to_owned(), "`width` is 0"),
+        (
+            "radial = { centre = [0, 0, 0], radius = 1, coefficients = [1, -2] }".to_owned(),
+            "σ_t is -1.0000",
+        ),
         ("sines = { base = 1, amplitudes = [2], vectors = [[1, 0, 0]] }".to_owned(), "take away"),
         ("sines = { base = 1, amplitudes = [1, 0], vectors = [[1, 0, 0]] }".to_owned(), "1 waves"),
         ("eq21 = { extinction = 1 }".to_owned(), "not known"),
@@ -284,7 +290,10 @@ fn wrong_settings_are_refused() {
         let faults = read(&text, Path::new(".")).err().unwrap_or_default();
         assert!(faults.iter().any(|fault| fault.message.contains(words)), "{text}: {faults:?}");
     }
-    for (name, span) in [("eq21 = {}", "[0, 1]"), ("noise = { extinction = 1 }", "[0, 1]")] {
+    let ball = "radial = { centre = [0, 0, 0], radius = 1, coefficients = [1] }";
+    for (name, span) in
+        [("eq21 = {}", "[0, 1]"), ("noise = { extinction = 1 }", "[0, 1]"), (ball, "[0, 1]")]
+    {
         let text = format!("medium.{name}\nspan = {span}");
         let faults = read(&text, Path::new(".")).err().unwrap_or_default();
         assert!(faults.iter().any(|fault| fault.message.contains("no 1-D form")), "{text}");

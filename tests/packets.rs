@@ -18,7 +18,7 @@ use trueflight::numeric::pack::fuses;
 const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
 
 /// The media that the shipped cases do not combine with every estimator, σ̂ and control.
-const MEDIA: [(&str, &str); 13] = [
+const MEDIA: [(&str, &str); 14] = [
     ("constant", "medium.constant.extinction = 0.7\nspan = [1, 4]"),
     (
         "steps",
@@ -36,6 +36,11 @@ const MEDIA: [(&str, &str); 13] = [
         "sines",
         "medium.sines = { base = 0.8, amplitudes = [0.4, -0.2], frequencies = [2, 5] }
         span = [0, 4]",
+    ),
+    (
+        "radial",
+        "volume.radial = { centre = [2, 2, 2], radius = 1.9, coefficients = [0.3, 2, -1.5, -0.6] }
+        ray = { origin = [-1, 0.4, 0.9], direction = [4.2, 2.2, 1.9], length = 9 }",
     ),
     (
         "eq21",
@@ -171,7 +176,7 @@ fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
 /// one by one; only the order-free kernel has code for them.
 #[test]
 fn kernels_without_fused_instructions_are_judged_like_any_other() {
-    let (_, medium) = MEDIA[6];
+    let (_, medium) = MEDIA[7];
     let text = format!(
         "title = \"eq21\"\n[problem.transmittance]\n{medium}\nsampling.constant.value = 1.1
         estimators = [{ESTIMATORS}]"

@@ -197,7 +197,7 @@ fn cases_without_an_answer_are_mistakes() {
     assert!(fault("[2.4, 0.5, 3]", "[0.3, 0.2, 1]").contains("line of the ray"));
     assert!(fault("albedo = 0.8", "albedo = 0").contains("nothing is scattered"));
     assert!(fault("albedo = 0.8", "albedo = 1.2").contains("albedo"));
-    assert!(fault("phase.isotropic = {}", "").contains("phase"));
+    assert!(fault("phase.isotropic = {}", "").contains("add `phase`, one of `isotropic`"));
     assert!(fault("phase.isotropic = {}", "phase.henyey-greenstein.g = 1").contains("mean cosine"));
     let line = "title = \"line\"
         [problem.single-scattering]

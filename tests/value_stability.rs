@@ -13,7 +13,9 @@ use common::{case, options};
 use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
-use trueflight::problems::{FreeFlight, Rod, Slab, Transmittance, TransmittanceCurve};
+use trueflight::problems::{
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, Transmittance, TransmittanceCurve,
+};
 
 /// Draws of each experiment.
 const DRAWS: usize = 4;
@@ -147,9 +149,46 @@ fn rods() -> Vec<Case> {
     ]
 }
 
+fn spaces() -> Vec<Case> {
+    let ray = "ray = { origin = [0.5, 1, -1], direction = [0.1, 0.05, 1], length = 22 }";
+    let rules = "{ particle = { rule = \"terminating\" } }, { particle = { rule = \"weighted\" } },
+        { particle = { rule = \"adaptive\", sampling.local-majorants.grid = [5, 4, 6] } },
+        { particle = { rule = \"non-terminating\", roulette = 0.8 } }";
+    let text = |name: &str, more: &str, estimators: &str| {
+        let text = format!(
+            "title = \"{name}\"\n[problem.{name}]\n{ray}\n{more}\nsampling.constant.value = 1.1\n\
+             estimators = [{estimators}]"
+        );
+        case(name, &text)
+    };
+    let splitting = "{ splitting = { rule = \"analog\", depth = 2 } }";
+    let forward = "phase.henyey-greenstein = { g = 0.5 }";
+    vec![
+        text(
+            "furnace",
+            &format!("volume.eq21 = {{}}\nalbedo = 0.7\n{forward}"),
+            &format!("{rules}, {{ particle = {{ rule = \"analog\" }} }}, {splitting}"),
+        ),
+        text(
+            "lambertian",
+            &format!(
+                "volume.noise = {{ octaves = 2, seed = 5, extinction = 1,
+                bounds.box = {{ low = [0, 0, 0], high = [2, 3, 4] }} }}\nalbedo = 1\n{forward}"
+            ),
+            &format!("{rules}, {splitting}"),
+        ),
+        text(
+            "infinite-medium",
+            "volume.constant.extinction = 1\nalbedo = 0.7\nphase.isotropic = {}\nradii = [1, 2]",
+            "{ particle = { rule = \"analog\" } },
+            { particle = { rule = \"weighted\", roulette = 0.5 } }",
+        ),
+    ]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases: Vec<Case> = cases().into_iter().chain(rods()).collect();
+    let cases: Vec<Case> = cases().into_iter().chain(rods()).chain(spaces()).collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -205,6 +244,9 @@ fn every_estimator_of_the_catalogue_is_there() {
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
         (Rod::CATALOGUE, ["rod", "roulette"]),
         (Slab::CATALOGUE, ["slab", "slab"]),
+        (Furnace::CATALOGUE, ["furnace", "furnace"]),
+        (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
+        (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),
     ] {
         for page in pages {
             let found =

@@ -257,6 +257,12 @@ impl<'a> Settings<'a> {
         self.open(entry).map(|settings| (index, settings))
     }
 
+    /// A table that must be there and chooses one of several names, as in `phase.isotropic = {}`.
+    pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
+        let entry = self.required(key, &format!("one of {}", quoted(names)))?;
+        self.open(entry)?.choice(names)
+    }
+
     fn open(&self, entry: &'a Entry) -> Option<Settings<'a>> {
         let Value::Table(table) = &entry.node.value else {
             self.wrong(entry, "a table, as in { … }");

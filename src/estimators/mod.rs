@@ -7,6 +7,9 @@
 pub mod controls;
 pub mod domain;
 pub mod free_flight;
+pub mod furnace;
+pub mod infinite_medium;
+pub mod lambertian;
 pub mod layers;
 pub mod ledger;
 pub mod packet;
@@ -16,6 +19,8 @@ pub mod sampling;
 pub mod setup;
 pub mod single_scattering;
 pub mod slab;
+pub mod space;
+pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;

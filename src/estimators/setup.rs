@@ -2,7 +2,8 @@
 
 use std::sync::Arc;
 
-use crate::media::{Body, Control, OpticalDepth, Piecewise};
+use super::{Refusal, sampling};
+use crate::media::{Body, Control, Majorants, OpticalDepth, Piecewise};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 use crate::rng::Address;
@@ -30,6 +31,8 @@ pub struct Setup<P> {
     pub mesh: Arc<Mesh>,
     /// σ̂ on the support; zero for estimators that take none.
     pub sampling: Piecewise,
+    /// σ̂ in space, for problems whose particles leave the ray.
+    pub space: Option<Arc<Majorants>>,
     /// σ_c.
     pub control: Control,
     /// Draws are in units of `exp(−log_unit)`, see [`Problem::log_unit`].
@@ -38,7 +41,8 @@ pub struct Setup<P> {
     pub control_transmittance: f64,
     /// `T` over the support, in units of `exp(−log_unit)`.
     pub transmittance: f64,
-    /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`].
+    /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`]; in
+    /// space that of the box about the volume.
     pub skipped: f64,
     /// Whether whole laws are asked for; a search for optima leaves them out.
     pub laws: bool,
@@ -65,6 +69,7 @@ impl<P: Problem> Setup<P> {
             problem,
             mesh,
             sampling,
+            space: None,
             control,
             log_unit,
             control_transmittance,
@@ -72,6 +77,35 @@ impl<P: Problem> Setup<P> {
             skipped: 0.0,
             laws: true,
         }
+    }
+
+    /// The same with σ̂ in space, where particles leave the ray: one constant, or what a recipe makes,
+    /// times a factor.
+    ///
+    /// # Errors
+    ///
+    /// A recipe that only knows rays.
+    pub fn in_space(
+        mut self,
+        constant: Option<f64>,
+        recipe: Option<&dyn sampling::Recipe>,
+        factor: f64,
+    ) -> Result<Self, Refusal> {
+        let Some(volume) = self.problem.volume() else { return Ok(self) };
+        let majorants = match (constant, recipe) {
+            (Some(value), _) => Some(Majorants::constant(value, volume)),
+            (None, Some(recipe)) => recipe.in_space(volume),
+            (None, None) => return Ok(self),
+        };
+        let Some(majorants) = majorants else {
+            let needs = "σ̂ in space: `constant`, or `local-majorants` with a `grid`";
+            let found = recipe.map_or_else(String::new, sampling::Recipe::label);
+            return Err(Refusal::mismatch(needs, format!("σ̂ is given along the ray ({found})")));
+        };
+        let majorants = majorants.scaled(factor);
+        self.skipped = majorants.empty_share();
+        self.space = Some(Arc::new(majorants));
+        Ok(self)
     }
 
     /// The same with σ̂ = 0 where medium and control are: at both ends of the support, and on gaps

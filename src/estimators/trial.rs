@@ -127,7 +127,8 @@ pub trait Experiment: Send + Sync {
         Order::Along
     }
 
-    /// The share of the ray's support on which σ̂ was made 0, because nothing is to be found there.
+    /// The share of the ray's support, or in space of the box about the volume, on which σ̂ is 0 because
+    /// nothing is to be found there.
     fn skipped(&self) -> f64 {
         0.0
     }

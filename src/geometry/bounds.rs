@@ -93,6 +93,29 @@ impl Bounds {
         }
     }
 
+    /// The volume of the body, length³; infinite for all of space.
+    #[must_use]
+    pub fn content(&self) -> f64 {
+        match self {
+            Self::Everywhere => f64::INFINITY,
+            Self::Sphere { radius, .. } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+            Self::Box(bounds) => (bounds.high - bounds.low).0.iter().product(),
+        }
+    }
+
+    /// The area of its boundary, length²; `None` for all of space, which has none.
+    #[must_use]
+    pub fn surface(&self) -> Option<f64> {
+        match self {
+            Self::Everywhere => None,
+            Self::Sphere { radius, .. } => Some(4.0 * std::f64::consts::PI * radius * radius),
+            Self::Box(bounds) => {
+                let [a, b, c] = (bounds.high - bounds.low).0;
+                Some(2.0 * (a * b + b * c + c * a))
+            }
+        }
+    }
+
     /// The smallest box around the body; `None` for all of space.
     #[must_use]
     pub fn enclosing_box(&self) -> Option<Aabb> {
@@ -251,6 +274,16 @@ mod tests {
         assert_eq!(cube.clip(&ray([0.5, 0.5, -1.0], [0.0, 0.0, 2.0], 9.0)), Span::new(1.0, 2.0));
         assert!(cube.clip(&ray([0.5, 2.0, -1.0], [0.0, 0.0, 1.0], 9.0)).is_empty());
         assert!(cube.clip(&ray([0.5, 0.5, 3.0], [0.0, 0.0, 1.0], 9.0)).is_empty());
+    }
+
+    #[test]
+    fn bodies_have_content_and_surface() {
+        let cuboid = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0, 2.0, 3.0]) });
+        assert_eq!((cuboid.content(), cuboid.surface()), (6.0, Some(22.0)));
+        let ball = Bounds::Sphere { centre: Point([1.0; 3]), radius: 3.0 };
+        // The mean chord 4V/S of a ball is 4R/3.
+        assert!((4.0 * ball.content() / ball.surface().expect("bounded") - 4.0).abs() < 1e-15);
+        assert_eq!(Bounds::Everywhere.surface(), None);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! Points, rays and the bodies that bound a medium. Floor 0.
 
 pub mod bounds;
+pub mod frame;
 pub mod point;
 pub mod ray;
 

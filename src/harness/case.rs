@@ -10,7 +10,7 @@
 //! | `underpowered` | `"allow"`: a mean that cannot pass with so many draws is no reason for exit code 3 | `"refuse"` |
 //! | `kernel` | how product estimators draw: `"ordered"`, collision after collision along the ray, or `"order-free"`, faster, other draws of the same law; `--kernel` overrides it | `"ordered"` |
 //! | `expect` | `"biased"`: passes only if the bias is shown, and estimators outside their domain are drawn | `"unbiased"` |
-//! | `problem.NAME` | what is sought: `transmittance`, `free-flight`, `transmittance-curve`, `rod`, `single-scattering`, `slab` | required |
+//! | `problem.NAME` | what is sought, one of the names of `trueflight list problems` | required |
 //!
 //! With a tolerance an experiment is planned for as many draws as it and the widest tolerances of the
 //! others need, at most `draws`.
@@ -117,9 +117,8 @@ impl Case {
         let title = root.text("title");
         let expect_biased = read_expect(root);
         let order = read_kernel(root);
-        let problem = root.table("problem").and_then(|problem| {
-            let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
-            let (index, settings) = problem.choice(&names)?;
+        let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+        let problem = root.chosen("problem", &names).and_then(|(index, settings)| {
             let body = Body::read(&settings);
             let sweep = read_sweep(&settings);
             let usual = Usual {

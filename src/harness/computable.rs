@@ -18,7 +18,13 @@ pub fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
         let truth = channel.truth.value;
         if !(truth.is_finite() && truth >= FAINTEST) {
             let needs = "an answer between 1e-300 and infinity";
-            return Err(Refusal::mismatch(needs, format!("the answer is {truth:e}")));
+            let channel = &channel.name;
+            let found = if truth.is_nan() {
+                format!("theory does not know {channel}")
+            } else {
+                format!("{channel} is {truth:e}")
+            };
+            return Err(Refusal::mismatch(needs, found));
         }
     }
     match &ready.prediction.lookups {

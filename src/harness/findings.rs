@@ -20,7 +20,7 @@ use crate::numeric::sum::Sum;
 use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
 
-/// The reason of a mean that passed although its variance could not be tested.
+/// The reason of a mean that passed although its variance could not be tested, or is that of pilot draws.
 pub const ASSUMED: &str = "variance assumed";
 
 /// What is found of a run: per case, per experiment, per question.
@@ -54,6 +54,7 @@ fn of_experiment(
         .filter_map(|(question, total)| of_question(plan, case, planned, drawn, question, total))
         .collect();
     rely_on_variance(&mut findings);
+    rely_on_pilots(planned, &mut findings);
     if planned.expect_biased {
         shown_anywhere(&mut findings);
     }
@@ -285,6 +286,20 @@ fn rely_on_variance(findings: &mut [Finding]) {
         } else {
             finding.verdict = Verdict::Inconclusive;
             "the mean relies on a variance that does not pass".clone_into(&mut finding.reason);
+        }
+    }
+}
+
+/// A pass by the variance of pilot draws says so.
+fn rely_on_pilots(planned: &Planned, findings: &mut [Finding]) {
+    let Ok(ready) = &planned.outcome else { return };
+    let piloted = ready.prediction.channels.iter().filter(|channel| channel.by_pilots);
+    for name in piloted.map(|channel| &channel.name) {
+        let relies = |finding: &&mut Finding| {
+            finding.check == "mean" && finding.channel == *name && finding.verdict == Verdict::Pass
+        };
+        for finding in findings.iter_mut().filter(relies) {
+            ASSUMED.clone_into(&mut finding.reason);
         }
     }
 }

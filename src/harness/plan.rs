@@ -26,7 +26,7 @@ pub const BLOCK: u64 = 1 << 14;
 const LAW_SHARE: f64 = 0.2;
 /// β, the chance that a check passes although the bias is as large as its tolerance.
 pub const MISS: f64 = 0.01;
-/// Draws that estimate the variance of a forced experiment, for which theory has none.
+/// Draws that estimate a variance where theory has none.
 const PILOT_DRAWS: usize = 4096;
 
 /// The levels that the run's questions share, fixed before the first draw.
@@ -295,8 +295,10 @@ impl Planned {
     fn ask(&mut self, case: &Case, options: &Options) {
         let Ok(ready) = &self.outcome else { return };
         let most = self.draws;
-        let forced = self.expect_biased
-            && ready.prediction.channels.iter().any(|channel| channel.moments.is_none());
+        let channels = || ready.prediction.channels.iter();
+        let forced = self.expect_biased && channels().any(|channel| channel.moments.is_none());
+        let pilots = (forced || channels().any(|channel| channel.by_pilots))
+            .then(|| self.pilot_variances(ready));
         let mut subject = Subject {
             prediction: &ready.prediction,
             draws: most,
@@ -306,7 +308,7 @@ impl Planned {
             expect_biased: self.expect_biased,
             keeps_books: ready.experiment.keeps_books(),
             is_in_turn: ready.experiment.order() == Order::Along,
-            pilot_variance: forced.then(|| self.pilot_variance(ready)),
+            pilot_variances: pilots.as_deref(),
         };
         if case.tolerance.says_something() {
             let needed = needed(&checks::questions(&subject), most);
@@ -335,18 +337,22 @@ impl Planned {
         self.questions = questions;
     }
 
-    /// The variance of a few draws from streams of their own.
-    fn pilot_variance(&self, ready: &Ready) -> f64 {
+    /// The variances of a few draws from streams of their own, channel by channel.
+    fn pilot_variances(&self, ready: &Ready) -> Vec<f64> {
         let mut streams = Address { block: PILOT, ..self.address }.streams();
-        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-        let mut values = Vec::with_capacity(PILOT_DRAWS);
-        while values.len() < PILOT_DRAWS {
+        let channels = ready.prediction.channels.len();
+        let mut buffer = DrawBuffer::new(channels);
+        let mut values = vec![Vec::with_capacity(PILOT_DRAWS); channels];
+        while values.iter().any(|values| values.len() < PILOT_DRAWS) {
             ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
-            values.extend_from_slice(&buffer.values[0]);
+            values.iter_mut().zip(&buffer.values).for_each(|(all, new)| all.extend(new));
         }
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
+        let variance = |values: &Vec<f64>| {
+            let n = values.len() as f64;
+            let mean = values.iter().sum::<f64>() / n;
+            values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
+        };
+        values.iter().map(variance).collect()
     }
 }
 

@@ -96,7 +96,7 @@ pub struct CaseRecord {
     pub path: String,
     /// Its title.
     pub title: String,
-    /// The problem's name: `transmittance`, `free-flight`, `transmittance-curve`, `rod`.
+    /// The problem's name, as `trueflight list problems` has it.
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,

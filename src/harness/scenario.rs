@@ -6,7 +6,7 @@ use super::computable::{FAINTEST, refuse_what_cannot_be_computed};
 use super::mutation::Walk;
 use super::sweep::What;
 pub use super::written::Names;
-use super::written::{Usual, Written, predict, read_if};
+use super::written::{Usual, Written, predict, read_if, refuse_idle_controls};
 use crate::catalogue::{Settings, rounded};
 use crate::estimators::trial::Entry;
 use crate::estimators::{Experiment, Order, Portrait, Refusal, Setup, Site, controls, sampling};
@@ -130,6 +130,7 @@ impl<P: Mutable> Scenario<P> {
             );
         }
         let written: Option<Vec<Written<P>>> = estimators.into_iter().collect();
+        refuse_idle_controls(settings, written.as_deref().unwrap_or_default(), swept);
         Some(Box::new(Self {
             problem: Arc::new(problem?),
             mesh: OnceLock::new(),
@@ -218,6 +219,11 @@ impl<P: Mutable> Scenario<P> {
         let problem = self.varied_problem(variation);
         let setup = Setup::new(problem, self.mesh().clone(), sampling, control);
         let setup = if self.written[index].entry.skips() { setup.skipping() } else { setup };
+        let swept = match variation {
+            Some((What::Sampling, value)) if takes_sampling => Some(value),
+            _ => None,
+        };
+        let setup = setup.in_space(swept, self.sampling_of(index), factor)?;
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
         if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {

@@ -48,6 +48,12 @@ const CASES: &[(&str, &str)] = cases![
     "single-scattering/magnet",
     "slab/magnet",
     "slab/magnet-diffuse",
+    "furnace/eq21",
+    "furnace/magnet",
+    "lambertian/magnet",
+    "infinite-medium/magnet",
+    "sphere/magnet",
+    "sphere/environment",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

@@ -1,6 +1,7 @@
 //! One estimator as a case file has it.
 
 use super::case::{read_expect, read_kernel};
+use super::sweep::What;
 use crate::catalogue::{Page, Settings};
 use crate::estimators::trial::Entry;
 use crate::estimators::{Estimated, Order, Setup, controls, sampling};
@@ -143,5 +144,24 @@ impl<P: Estimated> Written<P> {
             expect_biased: own_expect?,
             order: order?,
         })
+    }
+}
+
+/// A control, or a sweep of one, that no estimator takes is a mistake.
+pub fn refuse_idle_controls<P: Estimated>(
+    settings: &Settings,
+    written: &[Written<P>],
+    swept: Option<What>,
+) {
+    if written.is_empty() || written.iter().any(|written| written.entry.inputs().control) {
+        return;
+    }
+    let message = "no estimator of this case takes a control";
+    let help = "leave it out, or list one that does: see `trueflight list estimators`";
+    if settings.has("control") {
+        settings.fault("control", message, help);
+    }
+    if matches!(swept, Some(What::Control | What::Points)) {
+        settings.fault("sweep", message, help);
     }
 }

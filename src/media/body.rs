@@ -139,14 +139,19 @@ fn names() -> Vec<String> {
 }
 
 fn read_line(settings: &Settings) -> Option<(String, Profile)> {
-    let (index, field) = settings.table("medium")?.choice(&names())?;
+    let (index, field) = settings.chosen("medium", &names())?;
     let profile = Profile::read(index, &field);
     field.close();
     Some((names().swap_remove(index), profile?))
 }
 
 fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
-    let (index, field) = settings.table("volume")?.choice(&names())?;
+    read_field(settings, "volume")
+}
+
+/// Reads a field in space, `KEY.NAME = { … }`.
+pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Volume)> {
+    let (index, field) = settings.chosen(key, &names())?;
     let volume = Volume::read(index, &field);
     field.close();
     Some((names().swap_remove(index), volume?))
@@ -195,7 +200,7 @@ pub(super) fn read_bounds(settings: &Settings) -> Option<Bounds> {
     if !settings.has("bounds") {
         return Some(Bounds::Everywhere);
     }
-    let (index, bounds) = settings.table("bounds")?.choice(&["sphere".into(), "box".into()])?;
+    let (index, bounds) = settings.chosen("bounds", &["sphere".into(), "box".into()])?;
     let read = if index == 0 {
         let centre = bounds.triple("centre");
         let radius = bounds.number("radius", Domain::Positive);

@@ -22,6 +22,14 @@ pub struct Constant {
     bounds: Bounds,
 }
 
+impl Constant {
+    /// With `σ_t ≥ 0`, 1/length, within bounds.
+    #[must_use]
+    pub fn new(extinction: f64, bounds: Bounds) -> Self {
+        Self { extinction, bounds }
+    }
+}
+
 /// A homogeneous stretch of ray.
 pub struct Homogeneous {
     /// `σ_t ≥ 0`, 1/length.
@@ -66,6 +74,7 @@ impl Field for Constant {
         self.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, _: Point) -> f64 {
         self.extinction
     }
@@ -76,6 +85,10 @@ impl Field for Constant {
 
     fn along(&self, _: &Ray, _: Span) -> Homogeneous {
         Homogeneous { extinction: self.extinction }
+    }
+
+    fn is_radial(&self) -> bool {
+        matches!(self.bounds, Bounds::Sphere { .. })
     }
 }
 

@@ -120,6 +120,7 @@ impl Field for Eq21 {
         Bounds::Sphere { centre: Point([0.0, 0.0, 10.0]), radius: 10.0 }
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         shape(p.dot(U) * HALF_TURNS, p.dot(V) * HALF_TURNS - 0.25)
     }

@@ -126,6 +126,7 @@ impl Field for Exponential {
         self.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.extinction * Lane::exp(-self.rate * p.dot(self.axis))
     }

@@ -108,6 +108,7 @@ impl Field for Gaussian {
         self.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         let u = (p - self.centre) * (1.0 / self.width);
         self.peak * Lane::exp(-0.5 * u.dot(u))
@@ -124,6 +125,10 @@ impl Field for Gaussian {
         let offset = (to_centre - ray.direction * foot) * (1.0 / self.width);
         let peak = self.peak * (-0.5 * offset.dot(offset)).exp();
         Bump { peak, foot, width: self.width }
+    }
+
+    fn is_radial(&self) -> bool {
+        matches!(self.bounds, Bounds::Sphere { centre, .. } if centre == self.centre)
     }
 }
 

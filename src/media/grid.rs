@@ -150,6 +150,7 @@ impl Field for Grid {
         Bounds::Box(self.0.bounds())
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.0.value(self.0.lattice(p))
     }

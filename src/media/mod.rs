@@ -16,6 +16,7 @@ pub mod cursor;
 pub mod even;
 pub mod grid_file;
 pub mod lattice;
+pub mod majorants;
 pub mod medium;
 pub mod piecewise;
 pub mod placement;
@@ -33,6 +34,7 @@ pub use body::Body;
 pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
+pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
 pub use placement::Placement;
@@ -150,6 +152,11 @@ pub trait Field: Sized + Send + Sync + 'static {
         0.0
     }
 
+    /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
+    fn is_radial(&self) -> bool {
+        false
+    }
+
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
 
@@ -167,6 +174,15 @@ pub trait Visitor {
 
     /// The computation.
     fn visit<F: FreeFlight>(self, field: &F) -> Self::Output;
+}
+
+/// A computation that is compiled once for each type of volume.
+pub trait VolumeVisitor {
+    /// What it answers.
+    type Output;
+
+    /// The computation.
+    fn visit<F: Field>(self, field: &F) -> Self::Output;
 }
 
 /// Lists the pages: from one line each come the module, the variants of [`Profile`] and
@@ -210,6 +226,11 @@ macro_rules! media {
         pub enum Volume { $($Field($module::$Field)),* }
 
         impl Volume {
+            /// Runs a computation on the concrete type: names become types here, once.
+            pub fn visit<V: VolumeVisitor>(&self, visitor: V) -> V::Output {
+                match self { $(Self::$Field(field) => visitor.visit(field)),* }
+            }
+
             /// Where the volume may be non-zero.
             #[must_use]
             pub fn bounds(&self) -> Bounds {
@@ -243,6 +264,12 @@ macro_rules! media {
                 match self { $(Self::$Field(field) => field.farthest(ray, inside)),* }
             }
 
+            /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
+            #[must_use]
+            pub fn is_radial(&self) -> bool {
+                match self { $(Self::$Field(field) => field.is_radial()),* }
+            }
+
             /// What the ray sees on the stretch `inside`.
             #[must_use]
             pub fn along(&self, ray: &Ray, inside: Span) -> Profile {
@@ -274,6 +301,7 @@ media! {
     piecewise_linear::PiecewiseLinear,
     exponential::Exponential,
     gaussian::Gaussian,
+    radial::Radial,
     sines::Sines,
     eq21::Eq21,
     noise::Noise,

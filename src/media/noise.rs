@@ -234,6 +234,7 @@ impl Field for Noise {
         lattice::farthest(start, slope, inside)
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.spectrum.value((p * self.spectrum.frequency).0, self.unit)
     }

@@ -56,6 +56,7 @@ impl Field for PiecewiseLinear {
         self.0.bounds
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.0.extinction_at(p)
     }

@@ -181,6 +181,7 @@ impl Field for Sines {
         (fastest * length / PI).ceil()
     }
 
+    #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         let swing: f64 = self.waves.iter().map(|(amplitude, ..)| amplitude.abs()).sum();
         self.waves.iter().fold(self.base - swing, |sum, &(amplitude, vector, phase)| {

@@ -19,6 +19,9 @@ pub mod decisions;
 pub mod fault;
 pub mod flight;
 pub mod free_flight;
+pub mod furnace;
+pub mod infinite_medium;
+pub mod lambertian;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
@@ -26,6 +29,7 @@ pub mod rules;
 pub mod scores;
 pub mod single_scattering;
 pub mod slab;
+pub mod sphere;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -35,8 +39,8 @@ pub mod weights;
 
 use crate::estimators::{Estimated, Experiment, Setup};
 use crate::problems::{
-    FreeFlight, Problem, Rod, SingleScattering, Slab, Transmittance, TransmittanceCurve,
-    each_problem,
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab, Sphere,
+    Transmittance, TransmittanceCurve, each_problem,
 };
 
 pub use fault::{Fault, Honest};
@@ -136,9 +140,33 @@ impl Mutable for SingleScattering {
     }
 }
 
+impl Mutable for Furnace {
+    fn mutants() -> Vec<Mutant<Self>> {
+        furnace::mutants()
+    }
+}
+
+impl Mutable for Lambertian {
+    fn mutants() -> Vec<Mutant<Self>> {
+        lambertian::mutants()
+    }
+}
+
+impl Mutable for InfiniteMedium {
+    fn mutants() -> Vec<Mutant<Self>> {
+        infinite_medium::mutants()
+    }
+}
+
 impl Mutable for Slab {
     fn mutants() -> Vec<Mutant<Self>> {
         slab::mutants()
+    }
+}
+
+impl Mutable for Sphere {
+    fn mutants() -> Vec<Mutant<Self>> {
+        sphere::mutants()
     }
 }
 

@@ -100,3 +100,27 @@ pub const SLAB_NON_TERMINATING: Target = on("slab/magnet", 2, "non-terminating")
 pub const SLAB_ADAPTIVE: Target = on("slab/magnet", 3, "adaptive");
 /// Diffuse light, a σ̂ in steps.
 pub const SLAB_DIFFUSE: Target = on("slab/magnet-diffuse", 0, "non-terminating");
+/// A thin ball, a = 0.9, `r = 1.15`.
+pub const FURNACE_BELOW: Target = on("furnace/magnet", 0, "particle (non-terminating)");
+/// `σ̂ = 1.2`.
+pub const FURNACE_NON_TERMINATING: Target = on("furnace/magnet", 1, "particle (non-terminating)");
+/// `σ̂ = 1.2`, roulette below 0.8.
+pub const FURNACE_ROULETTE: Target =
+    on("furnace/magnet", 2, "particle (non-terminating, roulette 0.8)");
+/// `σ̂ = 1.2`.
+pub const FURNACE_ANALOG: Target = on("furnace/magnet", 3, "particle (analog)");
+/// Eq. 21, a = 1, `σ̂ = 1`.
+pub const LAMBERTIAN: Target = on("lambertian/magnet", 0, "particle (non-terminating)");
+/// The same with 6 × 6 × 6 local majorants.
+pub const LAMBERTIAN_CELLS: Target = on("lambertian/magnet", 1, "particle (analog)");
+/// Henyey–Greenstein, g = 0.6, a = 0.7.
+pub const INFINITE_ANALOG: Target = on("infinite-medium/magnet", 0, "particle (analog)");
+/// Roulette below 0.5.
+pub const INFINITE_WEIGHTED: Target =
+    on("infinite-medium/magnet", 1, "particle (weighted, roulette 0.5)");
+/// A weighted walk in a ball, ratio-tracked shadow rays to a black light sphere.
+pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ratio shadow 2)");
+/// The same with exact shadow rays.
+pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
+/// The same ball in an environment.
+pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");

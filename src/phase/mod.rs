@@ -59,7 +59,7 @@ macro_rules! phases {
             pub fn read(settings: &Settings) -> Option<Self> {
                 let names: Vec<String> =
                     CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
-                let (index, page) = settings.table("phase")?.choice(&names)?;
+                let (index, page) = settings.chosen("phase", &names)?;
                 let readers = [$(
                     |s: &Settings| <$module::$Page as PhaseFunction>::read(s).map(Self::$Page)
                 ),*];

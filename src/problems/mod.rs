@@ -1,7 +1,11 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 use crate::catalogue::{Catalogue, Settings, Value};
-use crate::media::{Body, Medium};
+use crate::media::{Body, Medium, Volume};
+
+pub mod scene;
+
+pub use scene::{Albedo, Scene};
 
 /// Hands every problem, in the order of the design, to another macro. From its one line here come the
 /// module, the name in case files, the reader of its cases, and its rows in `trueflight list`.
@@ -14,6 +18,10 @@ macro_rules! each_problem {
             rod::Rod,
             slab::Slab,
             single_scattering::SingleScattering,
+            furnace::Furnace,
+            lambertian::Lambertian,
+            infinite_medium::InfiniteMedium,
+            sphere::Sphere,
         }
     };
 }
@@ -45,6 +53,11 @@ pub trait Problem: Send + Sync + Sized + 'static {
 
     /// The field along the ray.
     fn medium(&self) -> &Medium;
+
+    /// The field in space that particles walk through, for problems that take σ̂ in space.
+    fn volume(&self) -> Option<&Volume> {
+        None
+    }
 
     /// The same problem in a medium of another albedo; `None` if the answer does not depend on it.
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

@@ -229,7 +229,7 @@ fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option
         return number.map(Share::Everywhere);
     }
     let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
-    let (index, field) = settings.table(key)?.choice(&names)?;
+    let (index, field) = settings.chosen(key, &names)?;
     let pieces = if index == 0 { read_steps(&field) } else { read_lines(&field) };
     field.close();
     let pieces = pieces?;

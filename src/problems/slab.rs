@@ -87,7 +87,7 @@ impl Problem for Slab {
             settings.number("albedo", Domain::Unit)
         };
         let phase = Phase::read(settings);
-        let light = settings.table("incidence").and_then(|table| read_light(&table));
+        let light = read_light(settings);
         let incidence = Incidence { light: light?, phase: phase? };
         Some(Self::new(body?.medium(), albedo?, incidence))
     }
@@ -102,7 +102,7 @@ impl Problem for Slab {
 }
 
 fn read_light(settings: &Settings) -> Option<Light> {
-    let (index, light) = settings.choice(&["collimated".into(), "diffuse".into()])?;
+    let (index, light) = settings.chosen("incidence", &["collimated".into(), "diffuse".into()])?;
     let read = if index == 0 {
         light.number("cosine", Domain::Positive).and_then(|cosine| {
             if cosine > 1.0 {
@@ -133,7 +133,8 @@ mod tests {
 
     fn light(table: &[Entry]) -> (Option<Light>, Vec<String>) {
         let faults = RefCell::default();
-        let read = read_light(&Settings::new(table, Path::new("."), &faults));
+        let case = [entry("incidence", Value::Table(table.to_vec()))];
+        let read = read_light(&Settings::new(&case, Path::new("."), &faults));
         (read, faults.into_inner().into_iter().map(|fault| fault.message).collect())
     }
 

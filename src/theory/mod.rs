@@ -18,6 +18,8 @@ pub mod rod;
 pub mod rule;
 pub mod single;
 pub mod slab;
+pub mod space;
+pub mod sphere;
 pub mod volterra;
 
 pub use count::CountLaw;

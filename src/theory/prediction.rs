@@ -39,6 +39,10 @@ pub struct Channel {
     pub moments: Option<Moments>,
     /// A bound on its variance, where that is all that is known.
     pub most_variance: Option<f64>,
+    /// Whether twice the variance of pilot draws may stand in for one that theory neither knows nor
+    /// bounds: only where the tails are known to be light, as of lengths and counts of walks whose
+    /// weights never grow.
+    pub by_pilots: bool,
     /// How heavy its tails are.
     pub tails: Tails,
     /// What relative tolerances refer to: the truth, or, for a transmittance of optical depth
@@ -80,6 +84,7 @@ impl Channel {
             mean: truth,
             moments,
             most_variance: None,
+            by_pilots: false,
             tails,
             unit,
             log_unit: 0.0,

@@ -279,6 +279,45 @@ fn what_diverges_is_told_before_a_draw() {
     assert!(above.reason.is_empty() && above.predicted_kurtosis.is_some(), "{}", above.reason);
 }
 
+/// With `σ_t = 1`, `a = 0.7`, `p_f = ½` and `σ̂ = 0.8`, `E[T²] = 1/y(L)` with
+/// `y = cos ωx + (A/ω) sin ωx`, `ω² = B² − A²`, which falls to 0 at the critical length.
+#[test]
+fn near_the_critical_length_a_moment_is_right_or_refused() {
+    let (sampling, albedo) = (0.8, 0.7);
+    let ratio: f64 = 1.0 / sampling;
+    let sum = albedo * ratio + (1.0 - ratio).abs();
+    let (q, s) = ((1.0 - ratio).abs() * sum, albedo * ratio * sum);
+    let (a, b) = (sampling * (1.0 - q - 0.5 * s), sampling * 0.5 * s);
+    let omega = (b * b - a * a).sqrt();
+    let critical = omega.atan2(-a) / omega;
+    let rows = |length: f64| {
+        let rod = format!(
+            "medium.constant.extinction = 1\nspan = [0, {length}]\nalbedo = {albedo}\n\
+             forward = 0.5\nsampling.constant.value = {sampling}"
+        );
+        planned(&rod, "non-terminating")
+    };
+    for beyond in [1e-12, 1e-9, 1e-6, 1e-3, 0.1, 1.0] {
+        let row = &rows(critical * (1.0 + beyond))[0];
+        assert_eq!(row.verdict, Some(Verdict::Refused), "{beyond}");
+        assert!(row.reason.contains("a finite variance"), "{}", row.reason);
+    }
+    let mut known = 0;
+    for below in [0.3, 0.1, 1e-2, 2e-3, 1e-4, 1e-6, 1e-9, 1e-12] {
+        let length = critical * (1.0 - below);
+        let rows = rows(length);
+        if rows[0].verdict == Some(Verdict::Refused) {
+            continue;
+        }
+        let second = raw(&rows[1], 2);
+        let expected = 1.0 / ((omega * length).cos() + a / omega * (omega * length).sin());
+        let error = (second / expected - 1.0).abs();
+        assert!(error <= 1e-9 / below, "{below}: E[T²] = {second}, not {expected}");
+        known += 1;
+    }
+    assert_eq!(known, 4, "lengths below the critical one that are predicted");
+}
+
 #[test]
 fn a_rule_is_refused_where_it_has_no_chances() {
     let rod = format!("{EQ21}\nalbedo = 0.9\nsampling.constant.value = 0.6");
@@ -306,6 +345,8 @@ fn every_setting_is_checked() {
         ("albedo = 0.5\norders = 7", "`orders` is 7"),
         ("albedo = 0.5\nflux = 5", "`flux` is 5"),
         ("albedo = 0.5\nabsorbed = 1", "`absorbed` is 1"),
+        ("albedo = 0.5\ncontrol.mean = {}", "no estimator of this case takes a control"),
+        ("albedo = 0.5\nsweep.control.values = [1]", "no estimator of this case takes a control"),
         ("albedo.piecewise-linear = { knots = [0, 1], values = [0.5, 1.1] }", "exceeds 1"),
         ("albedo.gaussian = {}", "`gaussian` is not known"),
     ] {

@@ -9,7 +9,7 @@
 use super::Recipe;
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Refusal, Site};
-use crate::media::{Body, Control, Piecewise};
+use crate::media::{Body, Control, Majorants, Piecewise, Volume};
 
 /// A constant σ̂.
 #[derive(Debug, Clone, Copy)]
@@ -36,5 +36,9 @@ impl Recipe for Constant {
 
     fn prepare(&self, site: &Site, _: &Control) -> Result<Piecewise, Refusal> {
         Ok(Piecewise::constant(self.value, site.mesh.support()))
+    }
+
+    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+        Some(Majorants::constant(self.value, volume))
     }
 }

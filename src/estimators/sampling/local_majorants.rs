@@ -7,7 +7,7 @@
 //!
 //! With `segments` the bound is the largest `|σ_t − σ_c|` of the segment, searched on the ray. With
 //! `grid` it is the volume's own bound on each cell that the ray crosses, as a renderer stores it:
-//! safe, and less tight. Free flight inverts the piecewise optical depth; `local-majorant` walks the
+//! safe, and less tight; particles that leave the ray fly through the same cells. Free flight inverts the piecewise optical depth; `local-majorant` walks the
 //! same segments and starts afresh at each boundary.
 //!
 //! Source: Y. Yue et al., *Unbiased, adaptive stochastic sampling for rendering inhomogeneous
@@ -17,7 +17,7 @@ use super::Recipe;
 use crate::catalogue::Settings;
 use crate::estimators::{Refusal, Site};
 use crate::geometry::{Aabb, Point, Ray};
-use crate::media::{Body, Control, Piecewise, Volume};
+use crate::media::{Body, Control, Majorants, Piecewise, Volume};
 use crate::numeric::Span;
 
 /// A segment's bound is raised by this factor over the largest value that the search found.
@@ -84,6 +84,13 @@ impl Recipe for LocalMajorants {
             (Self::Grid(_), Body::Line { .. }) => {
                 Err(Refusal::mismatch("a volume for its grid", "a field in 1-D"))
             }
+        }
+    }
+
+    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+        match self {
+            Self::Segments(_) => None,
+            Self::Grid(cells) => Majorants::grid(*cells, 1.0, volume),
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Recipes for the sampling extinction σ̂: any non-negative field that inverts exactly.
 
 use super::{Refusal, Site, recipes};
-use crate::media::{Control, Piecewise};
+use crate::media::{Control, Majorants, Piecewise, Volume};
 
 /// How a sampling extinction is made for a medium and a control.
 pub trait Recipe: Send + Sync {
@@ -19,6 +19,12 @@ pub trait Recipe: Send + Sync {
     ///
     /// What the recipe needs and does not find.
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal>;
+
+    /// Makes σ̂ on a volume, for particles that leave the ray; `None` for a recipe that only knows rays.
+    fn in_space(&self, volume: &Volume) -> Option<Majorants> {
+        let _ = volume;
+        None
+    }
 }
 
 recipes! {

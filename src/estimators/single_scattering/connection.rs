@@ -14,7 +14,8 @@
 
 use crate::catalogue::{Domain, Settings, number, rounded};
 use crate::estimators::{Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::geometry::Ray;
+use crate::media::{Extinction, Volume};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
@@ -36,7 +37,7 @@ pub fn read_shadow(settings: &Settings) -> Option<Tracking> {
         return Some(Tracking::Exact);
     }
     let names = ["exact", "ratio", "delta"].map(str::to_owned);
-    let (index, tracking) = settings.table("shadow")?.choice(&names)?;
+    let (index, tracking) = settings.chosen("shadow", &names)?;
     let read = match index {
         0 => Some(Tracking::Exact),
         1 => {
@@ -210,9 +211,20 @@ pub fn shadow(
     rng: &mut Stream,
 ) -> (f64, u32) {
     let Some((ray, inside)) = problem.shadow(s) else { return (1.0, 0) };
+    transmittance(problem.volume(), &ray, inside, tracking, rng)
+}
+
+/// The transmittance of a stretch of a ray within the bounds of a volume, and its lookups.
+pub fn transmittance(
+    volume: &Volume,
+    ray: &Ray,
+    inside: Span,
+    tracking: Tracking,
+    rng: &mut Stream,
+) -> (f64, u32) {
     let (sampling, control) = match tracking {
         Tracking::Exact => {
-            let profile = problem.volume().along(&ray, inside);
+            let profile = volume.along(ray, inside);
             return (Lane::exp(-profile.optical_depth(inside).value), 0);
         }
         Tracking::Ratio { sampling, control } => (sampling, Some(control)),
@@ -231,7 +243,7 @@ pub fn shadow(
                     return (weight, lookups);
                 }
                 lookups += 1;
-                let extinction = problem.volume().extinction_at(ray.at(t));
+                let extinction = volume.extinction_at(ray.at(t));
                 match control {
                     Some(control) => weight *= 1.0 - (extinction - control) * path,
                     None if rng.uniform() * sampling < extinction => return (0.0, lookups),

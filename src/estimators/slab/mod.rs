@@ -47,11 +47,13 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
         setup.require_ratio_at_most(limit, rule.needs())?;
     }
     if truth(setup).is_none() {
-        let needs =
-            "a reflectance and a transmittance that adding and doubling resolve (|g| ≤ 0.93)";
-        let depth = setup.problem.medium().optical_depth(setup.mesh.support()).value;
-        let phase = setup.problem.incidence().phase.label();
-        return Err(Refusal::mismatch(needs, format!("τ = {} and phase {phase}", rounded(depth))));
+        let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
+                     (a > 0, |g| ≤ 0.93, a moderate τ)";
+        let slab = &setup.problem;
+        let depth = slab.medium().optical_depth(setup.mesh.support()).value;
+        let (albedo, phase) = (slab.albedo(), slab.incidence().phase.label());
+        let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
+        return Err(Refusal::mismatch(needs, found));
     }
     if walk_of(setup, rule).diverges() {
         let needs = "a finite variance";

@@ -8,7 +8,8 @@
 //! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
 //! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. A case that declares an experiment biased passes only if the bias is shown; where
 //! theory has no variance for it, that of pilot draws is used, doubled. Where theory has no more than a
-//! bound on the variance, V is that bound.
+//! bound on the variance, V is that bound; where it has none but knows that tails are light, as of the
+//! length of a walk, V is again twice that of pilot draws.
 
 use super::{Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
@@ -68,16 +69,15 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
         };
         return Kind::Always(Always { largest: Box::new(largest), bound: floor + furthest });
     }
-    let known = match (channel.moments, subject.pilot_variance) {
+    let may_be_piloted = subject.expect_biased || channel.by_pilots;
+    let pilot = subject.pilot_variances.map(|pilots| pilots[index]).filter(|_| may_be_piloted);
+    let known = match (channel.moments, channel.most_variance.or(pilot.map(|pilot| 2.0 * pilot))) {
         (Some(moments), _) => {
             let unit = moments.scale * scale;
             Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
         }
-        (None, Some(pilot)) => Known { variance: 2.0 * pilot * scale * scale, error: 0.0, floor },
-        (None, None) => match channel.most_variance {
-            Some(most) => Known { variance: most * scale * scale, error: 0.0, floor },
-            None => return Kind::Untestable("theory has no variance for it".into()),
-        },
+        (None, Some(most)) => Known { variance: most * scale * scale, error: 0.0, floor },
+        (None, None) => return Kind::Untestable("theory has no variance for it".into()),
     };
     if !known.variance.is_finite() {
         return Kind::Untestable("the variance overflows".into());

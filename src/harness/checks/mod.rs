@@ -33,8 +33,8 @@ pub struct Subject<'a> {
     pub keeps_books: bool,
     /// Whether draws come one like the other; order-free ones come sorted by their lookups.
     pub is_in_turn: bool,
-    /// The variance of one draw by pilot draws, where theory has none.
-    pub pilot_variance: Option<f64>,
+    /// The variance of one draw by pilot draws, channel by channel, where theory has none.
+    pub pilot_variances: Option<&'a [f64]>,
 }
 
 /// One question.

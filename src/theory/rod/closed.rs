@@ -13,16 +13,21 @@ use crate::numeric::Known;
 #[must_use]
 pub fn leaving(depth: Known, albedo: f64, forward: f64) -> [Known; 2] {
     let tau = depth.value;
-    let (lost, turned) = (1.0 - albedo * forward, albedo * (1.0 - forward));
-    let kappa = ((1.0 - albedo) * (1.0 - albedo * (2.0 * forward - 1.0))).sqrt();
+    // 1 − a p_f without the cancellation at a white, forward rod.
+    let lost = (1.0 - albedo) + albedo * (1.0 - forward);
+    let turned = albedo * (1.0 - forward);
+    let kappa = ((1.0 - albedo) * (lost + turned)).sqrt();
     let x = 2.0 * kappa * tau;
     // −expm1(−x)/κ, 2τ in the limit.
     let s = if kappa > 0.0 { -(-x).exp_m1() / kappa } else { 2.0 * tau };
     let below = 1.0 + (-x).exp() + lost * s;
     let values = [turned * s / below, 2.0 * (-kappa * tau).exp() / below];
-    // dR/dτ and dT/dτ are at most 1; what follows τ are a few roundings, and those of κτ.
+    // dR/dτ ≤ β and −dT/dτ ≤ 1 − a p_f, 1 at most; what follows τ are a few roundings, and those of κτ.
     let rounding = (8.0 + kappa * tau) * f64::EPSILON;
-    values.map(|value| Known::new(value, depth.error.min(1.0) + rounding * value))
+    let slopes = [turned, lost];
+    std::array::from_fn(|i| {
+        Known::new(values[i], slopes[i] * depth.error.min(1.0) + rounding * values[i])
+    })
 }
 
 #[cfg(test)]

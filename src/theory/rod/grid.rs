@@ -25,6 +25,8 @@ use crate::problems::{Problem, Rod};
 const COARSEST: f64 = 0.5;
 /// More steps than this on the coarsest grid are more than theory can do.
 const MOST: f64 = 1e4;
+/// So near, relative, a rod may not come to its critical length.
+const NEAR: f64 = 1e-3;
 
 /// The middle of a step.
 #[derive(Debug, Clone, Copy)]
@@ -239,12 +241,13 @@ impl Grid {
     /// exist. `None` where it exists.
     ///
     /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
-    /// where ρr reaches 1.
+    /// where ρr reaches 1. The grid finds the critical length to within [`NEAR`] at best; so near to
+    /// it a moment is nothing that draws could be compared with, and counts as divergent.
     #[must_use]
     pub fn critical(&self, k: i32) -> Option<f64> {
         let mut passed = 0.0;
         for step in &self.steps {
-            let layer = Layer::new(step.absolute_rates(k), step.width);
+            let layer = Layer::new(step.absolute_rates(k), step.width * (1.0 + NEAR));
             let echo = 1.0 - passed * layer.back;
             if !(echo > 0.0 && layer.through > 0.0 && layer.back >= 0.0) {
                 return Some(step.end);

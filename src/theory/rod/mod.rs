@@ -29,7 +29,7 @@ use crate::numeric::{Known, Span};
 use crate::problems::rod::Seen;
 use crate::problems::{Problem, Rod};
 
-/// Grids on which divergence is looked for are so much finer than the coarsest.
+/// The grid on which divergence is looked for is so much finer than the coarsest.
 const FINER: usize = 16;
 
 /// The exact answer of every channel; `None` where the rod has more steps than theory can do.

@@ -119,8 +119,8 @@ impl Points {
             relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
             error: self.error * sensitivity,
         };
-        // A spread that rounding hides is not known to be none.
-        let moments = (moments.error < BLURRED).then_some(moments);
+        // A spread that rounding hides is not known to be none, nor one beyond the range of doubles.
+        let moments = (moments.error < BLURRED && !m4.is_nan()).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
         // How rare the draws are that make the variance is not worked out.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };

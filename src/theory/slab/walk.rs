@@ -121,6 +121,14 @@ impl Walk {
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
+                // A mean over a layer would hide where light along it grows without end.
+                let grows = |&[_, ratio]: &[f64; 2]| {
+                    let [straight, scattered, _] = moments(self.odds(ratio));
+                    straight >= 1.0 && scattered > 0.0
+                };
+                if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
+                    return None;
+                }
                 let energy = |cut: &Vec<Piece>| -> Option<Energy> {
                     energy(&self.incidence, &layers(cut), Resolution::LAYERED)
                 };
@@ -257,6 +265,7 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         mean: truth,
         moments,
         most_variance: None,
+        by_pilots: false,
         tails,
         unit: t,
         log_unit: 0.0,

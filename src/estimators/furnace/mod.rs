@@ -1,0 +1,82 @@
+//! Walks into a furnace.
+
+use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::geometry::Point;
+use crate::problems::Furnace;
+use crate::rng::Stream;
+use crate::theory::{CountLaw, Prediction};
+
+/// What a particle has brought.
+#[derive(Debug, Clone, Copy, Default)]
+struct Energy(f64);
+
+impl Sink for Energy {
+    fn collided(&mut self, at: &Collision) {
+        self.0 += at.weight * at.ratio * (1.0 - at.albedo);
+    }
+
+    fn escaped(&mut self, _: Point, _: Point, weight: f64, _: u32) {
+        self.0 += weight;
+    }
+}
+
+/// Whether a rule exists here, and its spread has a bound.
+pub(super) fn domain(setup: &Setup<Furnace>, particle: &Particle) -> Result<(), Refusal> {
+    let scene = setup.problem.scene();
+    space::realisable(setup, scene, particle)?;
+    space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+}
+
+/// What theory says: every draw is 1 on average.
+pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction {
+    let walks = setup
+        .space
+        .as_ref()
+        .map(|majorants| space::walks(setup.problem.scene(), majorants, particle));
+    let misses = setup.problem.entry().is_none();
+    let bound = if misses { Some(0.0) } else { walks.and_then(|walks| walks.energy_variance()) };
+    // Without a bound the walk is refused, or forced: then only the truth is kept.
+    let channel = space::energy_channel(bound.unwrap_or(f64::INFINITY));
+    let prediction = Prediction::single(channel, CountLaw::always(0.0));
+    if misses { prediction } else { Prediction { lookups: None, ..prediction } }
+}
+
+/// Makes a draw by the honest walk.
+pub(super) fn draw(
+    particle: &Particle,
+    setup: &Setup<Furnace>,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    draw_by(setup, |scene, majorants, start, energy| {
+        space::walk(particle, scene, majorants, start, energy, rng)
+    })
+}
+
+/// Makes a draw by any steps.
+pub fn draw_with(steps: &dyn Steps, setup: &Setup<Furnace>, rng: &mut Stream) -> Draw<[f64; 1]> {
+    draw_by(setup, |scene, majorants, start, energy| {
+        space::walk_by(steps, scene, majorants, start, energy, rng)
+    })
+}
+
+fn draw_by(
+    setup: &Setup<Furnace>,
+    walk: impl FnOnce(&crate::problems::Scene, &crate::media::Majorants, Start, &mut Energy) -> u32,
+) -> Draw<[f64; 1]> {
+    let furnace = &*setup.problem;
+    let (Some(place), Some(majorants)) = (furnace.entry(), setup.space.as_deref()) else {
+        // What misses the medium sees the wall.
+        return Draw::free([1.0], 0);
+    };
+    let start = Start { place, direction: furnace.direction(), weight: 1.0 };
+    let mut energy = Energy::default();
+    let lookups = walk(furnace.scene(), majorants, start, &mut energy);
+    Draw::free([energy.0], lookups)
+}
+
+estimators! {
+    Furnace:
+    particle::Walker,
+    splitting::Splitter,
+}

@@ -1,0 +1,203 @@
+//! Walks through a body under light from all sides.
+
+use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::geometry::{Point, frame};
+use crate::numeric::Known;
+use crate::problems::Lambertian;
+use crate::problems::lambertian::Values;
+use crate::problems::rod::MOST;
+use crate::rng::Stream;
+use crate::theory::space::content;
+use crate::theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
+
+/// The largest relative error of `∫σ_t dV` that is worth drawing against.
+const BLURRED: f64 = 1e-3;
+
+/// Which channels an experiment has, in their order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Seen {
+    energy: bool,
+    white: bool,
+    tentative: bool,
+}
+
+impl Seen {
+    fn of(setup: &Setup<Lambertian>, particle: &Particle) -> Self {
+        let Some(majorants) = setup.space.as_deref() else {
+            return Self { energy: false, white: false, tentative: false };
+        };
+        let scene = setup.problem.scene();
+        let walks = space::walks(scene, majorants, particle);
+        // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
+        let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
+            && scene.albedo.even() != Some(0.0);
+        Self {
+            energy: walks.is_tame(),
+            white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
+            tentative: goes_on && majorants.content().is_some(),
+        }
+    }
+
+    fn any(self) -> bool {
+        self.energy || self.white || self.tentative
+    }
+}
+
+/// What a particle does on its way.
+#[derive(Debug, Clone, Copy, Default)]
+struct Stay {
+    energy: f64,
+    length: f64,
+    collisions: f64,
+    tentative: u32,
+}
+
+impl Sink for Stay {
+    fn flown(&mut self, length: f64, weight: f64) {
+        self.length += weight * length;
+    }
+
+    fn collided(&mut self, at: &Collision) {
+        self.tentative += 1;
+        let real = at.weight * at.ratio;
+        self.collisions += real;
+        self.energy += real * (1.0 - at.albedo);
+    }
+
+    fn escaped(&mut self, _: Point, _: Point, weight: f64, _: u32) {
+        self.energy += weight;
+    }
+}
+
+impl Stay {
+    fn values(&self, seen: Seen) -> Values {
+        let mut values = Values { at: [0.0; MOST], count: 0 };
+        let mut push = |is_seen: bool, value: f64| {
+            if is_seen {
+                values.at[values.count] = value;
+                values.count += 1;
+            }
+        };
+        push(seen.energy, self.energy);
+        push(seen.white, self.length);
+        push(seen.white, self.collisions);
+        push(seen.tentative, f64::from(self.tentative));
+        values
+    }
+}
+
+/// `∫σ_t dV`, sharp enough to be drawn against.
+fn held(setup: &Setup<Lambertian>) -> Option<Known> {
+    let held = setup.problem.content(|| content::content(&setup.problem.scene().volume));
+    held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
+}
+
+/// Whether a rule exists here, and anything is known of it.
+pub(super) fn domain(setup: &Setup<Lambertian>, particle: &Particle) -> Result<(), Refusal> {
+    let scene = setup.problem.scene();
+    space::realisable(setup, scene, particle)?;
+    let seen = Seen::of(setup, particle);
+    if seen.white && held(setup).is_none() {
+        let needs = "a volume whose ∫σ_t dV is known to 1e-3";
+        return Err(Refusal::mismatch(
+            needs,
+            "cubature over its chords does not settle, or it is empty",
+        ));
+    }
+    if seen.any() {
+        return Ok(());
+    }
+    space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+}
+
+/// What theory says, channel by channel.
+pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Prediction {
+    let (problem, seen) = (&setup.problem, Seen::of(setup, particle));
+    let mut channels = Vec::new();
+    if let Some(majorants) = setup.space.as_deref() {
+        let walks = space::walks(problem.scene(), majorants, particle);
+        let bound = walks.energy_variance().filter(|_| seen.energy);
+        let named = |bound| Channel { name: "energy".to_owned(), ..space::energy_channel(bound) };
+        channels.extend(bound.map(named));
+        let over = problem.four_over_surface();
+        let times = |known: Known| {
+            Known::new(
+                over * known.value,
+                over * known.error + 4.0 * f64::EPSILON * over * known.value,
+            )
+        };
+        if seen.white {
+            let unknown = Known::new(f64::NAN, f64::NAN);
+            channels.push(piloted("path length", times(Known::exact(problem.bounds().content()))));
+            channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
+        }
+        if let Some(content) = majorants.content().filter(|_| seen.tentative) {
+            channels.push(piloted("tentative collisions", times(Known::exact(content))));
+        }
+    }
+    let empty = space::energy_channel(f64::INFINITY);
+    let prediction = Prediction::single(empty.clone(), CountLaw::always(0.0));
+    if channels.is_empty() {
+        // Refused, or forced without an answer to be wrong about.
+        channels.push(empty);
+    }
+    Prediction { channels, lookups: None, ..prediction }
+}
+
+/// A channel whose spread theory does not know, with light tails.
+fn piloted(name: &str, truth: Known) -> Channel {
+    let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
+    Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
+}
+
+/// Makes a draw by the honest walk.
+pub(super) fn draw(
+    particle: &Particle,
+    setup: &Setup<Lambertian>,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let Some(majorants) = setup.space.as_deref() else { return NOTHING };
+    let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, lambertian));
+    let scene = setup.problem.scene();
+    let lookups = space::walk(particle, scene, majorants, start, &mut stay, rng);
+    Draw::free(stay.values(Seen::of(setup, particle)), lookups)
+}
+
+/// Makes a draw of an honest particle's channels by any steps and law of the angle with the normal.
+pub fn draw_with(
+    (steps, cosine): (&dyn Steps, fn(f64) -> f64),
+    particle: &Particle,
+    setup: &Setup<Lambertian>,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let Some(majorants) = setup.space.as_deref() else { return NOTHING };
+    let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, cosine));
+    let lookups = space::walk_by(steps, setup.problem.scene(), majorants, start, &mut stay, rng);
+    Draw::free(stay.values(Seen::of(setup, particle)), lookups)
+}
+
+/// Without σ̂ there is nothing to draw; such an experiment is refused.
+const NOTHING: Draw<Values> =
+    Draw { value: Values { at: [0.0; MOST], count: 1 }, lookups: 0, defect: 0.0 };
+
+/// The cosine with the normal of Lambertian light, `√u` of a uniform number.
+#[inline(always)]
+#[must_use]
+pub fn lambertian(u: f64) -> f64 {
+    (1.0 - u).sqrt()
+}
+
+#[inline(always)]
+fn start(problem: &Lambertian, rng: &mut Stream, cosine: fn(f64) -> f64) -> Start {
+    let (u, v) = (rng.uniform(), rng.uniform());
+    let (place, inward) = problem.place(u, v);
+    let cosine = cosine(rng.uniform());
+    Start { place, direction: frame::turned(inward, cosine, rng.uniform()), weight: 1.0 }
+}
+
+estimators! {
+    Lambertian:
+    particle::Walker,
+    splitting::Splitter,
+}

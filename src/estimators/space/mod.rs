@@ -1,0 +1,145 @@
+//! Walks of particles through volumes: what all problems in space share.
+
+pub mod particle;
+pub mod walk;
+
+use std::sync::Arc;
+
+use super::{Refusal, Setup};
+use crate::geometry::Bounds;
+use crate::media::Majorants;
+use crate::numeric::Known;
+use crate::problems::{Problem, Scene};
+use crate::theory::space::Walks;
+use crate::theory::{Channel, Moments, Tails};
+
+pub use particle::{Particle, Splitting};
+pub use walk::{Collision, Scattering, Sink, Start, Steps, walk, walk_by};
+
+/// Rounding of a sum over the collisions of a walk.
+const ROUNDING: f64 = 1e-12;
+/// More collisions than this on a straight way through a volume are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e4;
+
+/// σ̂ in space, which every estimator that walks takes.
+///
+/// # Errors
+///
+/// That there is none.
+pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusal> {
+    setup.space.as_ref().ok_or_else(|| Refusal::mismatch("σ̂ in space", "none is given"))
+}
+
+/// What bounds on the walks of a particle depend on.
+#[must_use]
+pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
+    let across = match majorants.bounds() {
+        Bounds::Everywhere => f64::INFINITY,
+        Bounds::Sphere { radius, .. } => 2.0 * radius,
+        Bounds::Box(within) => (within.high - within.low).norm(),
+    };
+    Walks {
+        rule: particle.rule,
+        roulette: particle.roulette,
+        splits: particle.splitting != Splitting::None,
+        largest_ratio: majorants.largest_ratio(),
+        albedo: scene.albedo.range(),
+        depth: majorants.largest() * across,
+    }
+}
+
+/// Whether a rule exists for a σ̂, and its walks end within reason.
+///
+/// # Errors
+///
+/// The violated inequality.
+pub fn realisable<P: Problem>(
+    setup: &Setup<P>,
+    scene: &Scene,
+    particle: &Particle,
+) -> Result<(), Refusal> {
+    let walks = walks(scene, majorants(setup)?, particle);
+    if walks.depth > MOST_COLLISIONS {
+        let needs = "∫σ̂ ≤ 1e4 straight through the volume";
+        return Err(Refusal::mismatch(needs, format!("it may be {:e}", walks.depth)));
+    }
+    let limit = particle.rule.limits(walks.albedo[1])[1];
+    if walks.ratio() > limit {
+        let needs = particle.rule.needs();
+        let found = format!("σ_t may reach {:.6} times σ̂ in the volume", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    }
+    Ok(())
+}
+
+/// The energy that a particle brings, 1 on average, where its spread is known or bounded.
+///
+/// # Errors
+///
+/// Why no bound is known, and what would help.
+pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
+    let Some(bound) = walks.energy_variance() else {
+        let needs = "a variance that theory bounds: r < 2/(a + 1), or r ≤ 1 with roulette";
+        let found =
+            format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    };
+    Ok(energy_channel(bound))
+}
+
+/// The same given the bound.
+#[must_use]
+pub fn energy_channel(bound: f64) -> Channel {
+    let certain = Channel::unbiased(Known::new(1.0, ROUNDING), Moments::certain(1.0), Tails::LIGHT);
+    if bound == 0.0 {
+        return certain;
+    }
+    Channel { moments: None, most_variance: Some(bound), ..certain }
+}
+
+/// The page of an estimator in space: all that differs is how it is read, as in
+/// `walker!(Furnace, Particle, Particle::read)`.
+macro_rules! walker {
+    ($Problem:ident, $Page:ident, $read:path) => {
+        /// A particle that walks; σ̂ in space is its input.
+        #[derive(Debug, Clone)]
+        pub struct $Page($crate::estimators::space::Particle);
+
+        impl $crate::estimators::Estimator<$Problem> for $Page {
+            const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+
+            fn read(settings: &$crate::catalogue::Settings) -> Option<Self> {
+                $read(settings).map(Self)
+            }
+
+            fn label(&self, _: bool) -> String {
+                self.0.label()
+            }
+
+            fn domain(
+                &self,
+                setup: &$crate::estimators::Setup<$Problem>,
+            ) -> Result<(), $crate::estimators::Refusal> {
+                super::domain(setup, &self.0)
+            }
+
+            fn predict(
+                &self,
+                setup: &$crate::estimators::Setup<$Problem>,
+            ) -> $crate::theory::Prediction {
+                super::predict(setup, &self.0)
+            }
+
+            #[inline]
+            fn draw<M: $crate::media::Extinction>(
+                &self,
+                setup: &$crate::estimators::Setup<$Problem>,
+                _: &M,
+                rng: &mut $crate::rng::Stream,
+            ) -> $crate::estimators::Draw<<$Problem as $crate::problems::Problem>::Value> {
+                super::draw(&self.0, setup, rng)
+            }
+        }
+    };
+}
+pub(super) use walker;

@@ -1,0 +1,195 @@
+//! Shadow rays from scatterings to the light of a ball, and what a walk finds by itself.
+//!
+//! ```text
+//! at a scattering of weight w, the albedo in it:   X += w Ω/4π T̂
+//! environment       a direction of any odds alike, Ω = 4π, T̂ to the surface
+//! black sphere      a direction in its cone, Ω = 2π(1 − √(1 − ρ²/r²)), T̂ to where it meets the sphere
+//! distant light     its direction, irradiance 4π, T̂ to the surface
+//! ```
+//!
+//! Where there are shadow rays, light that a walk meets after a scattering is theirs and is not counted
+//! again; met before the first one, it is. A point whose mean intensity is sought is a first scattering of
+//! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
+
+use crate::estimators::single_scattering::connection;
+use crate::estimators::space::{Scattering, Sink};
+use crate::geometry::{Point, Ray, frame};
+use crate::numeric::{Lane, Span};
+use crate::problems::Sphere;
+use crate::problems::sphere::{Light, Sought};
+use crate::rng::Stream;
+use crate::theory::single::Tracking;
+
+/// The steps of next-event estimation that a known bug may replace.
+pub trait Connect: Sync {
+    /// The weight of a shadow ray.
+    fn weight(&self, sphere: &Sphere, at: &Scattering) -> f64 {
+        let _ = sphere;
+        at.weight
+    }
+
+    /// `Ω/4π` of a black sphere of radius ρ, seen from a distance r.
+    fn share(&self, core: f64, distance: f64) -> f64 {
+        0.5 * cone(core, distance)
+    }
+
+    /// The stretch of a shadow ray: within the ball, up to the light.
+    fn reach(&self, within: Span, light: f64) -> Span {
+        Span::new(within.from, light.min(within.to))
+    }
+
+    /// Whether light that a walk meets after so many scatterings counts.
+    fn counts(&self, order: u32) -> bool {
+        order == 0
+    }
+}
+
+/// Next-event estimation as it should be.
+#[derive(Debug, Clone, Copy)]
+pub struct Honest;
+
+impl Connect for Honest {}
+
+/// `1 − √(1 − ρ²/r²)`, without cancellation.
+#[inline(always)]
+fn cone(core: f64, distance: f64) -> f64 {
+    let square = core * core / (distance * distance);
+    square / (1.0 + Lane::or_more(1.0 - square, 0.0).sqrt())
+}
+
+/// How far it is to a sphere, for what comes from outside and meets it.
+#[inline(always)]
+#[must_use]
+pub fn meets(origin: Point, direction: Point, centre: Point, radius: f64) -> Option<f64> {
+    let to_centre = centre - origin;
+    let foot = to_centre.dot(direction);
+    let offset = (to_centre - direction * foot).norm();
+    if foot <= 0.0 || offset >= radius {
+        return None;
+    }
+    Some(Lane::or_more(foot - ((radius - offset) * (radius + offset)).sqrt(), 0.0))
+}
+
+/// A walk that looks for light.
+pub struct Seeker<'a> {
+    sphere: &'a Sphere,
+    connect: Option<(&'a dyn Connect, Tracking)>,
+    found: f64,
+}
+
+impl<'a> Seeker<'a> {
+    /// With shadow rays, or without.
+    #[must_use]
+    pub fn new(sphere: &'a Sphere, connect: Option<(&'a dyn Connect, Tracking)>) -> Self {
+        Self { sphere, connect, found: 0.0 }
+    }
+
+    /// What it has found.
+    #[must_use]
+    pub fn found(&self) -> f64 {
+        self.found
+    }
+
+    /// The shadow ray of a point whose mean intensity is sought, and its lookups.
+    pub fn look_around(&mut self, place: Point, rng: &mut Stream) -> u32 {
+        let Some((connect, shadow)) = self.connect else { return 0 };
+        self.cast(connect, shadow, (place, 1.0), rng)
+    }
+
+    /// Casts a shadow ray from a place with a weight.
+    fn cast(
+        &mut self,
+        connect: &dyn Connect,
+        shadow: Tracking,
+        (place, weight): (Point, f64),
+        rng: &mut Stream,
+    ) -> u32 {
+        if weight == 0.0 {
+            return 0;
+        }
+        let (direction, share, light) = match self.sphere.light() {
+            Light::Environment => {
+                let cosine = 2.0 * rng.uniform() - 1.0;
+                let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
+                (direction, 1.0, f64::INFINITY)
+            }
+            Light::Distant(direction) => (direction, 1.0, f64::INFINITY),
+            Light::BlackSphere(core) => {
+                let to_centre = self.sphere.centre() - place;
+                let distance = to_centre.norm();
+                let cosine = 1.0 - rng.uniform() * cone(core, distance);
+                let axis = to_centre * (1.0 / distance);
+                let direction = frame::turned(axis, cosine, rng.uniform());
+                // A direction at the edge may miss by rounding: it ends at the point of the edge.
+                let light = meets(place, direction, self.sphere.centre(), core)
+                    .unwrap_or(distance * cosine);
+                (direction, connect.share(core, distance), light)
+            }
+        };
+        let ray = Ray { origin: place, direction, length: f64::INFINITY };
+        let within = self.sphere.scene().volume.bounds().clip(&ray);
+        let inside = connect.reach(within, light);
+        if inside.is_empty() {
+            self.found += weight * share;
+            return 0;
+        }
+        let volume = &self.sphere.scene().volume;
+        let (through, lookups) = connection::transmittance(volume, &ray, inside, shadow, rng);
+        self.found += weight * share * through;
+        lookups
+    }
+}
+
+impl Sink for Seeker<'_> {
+    fn scattered(&mut self, at: &Scattering, rng: &mut Stream) -> u32 {
+        let Some((connect, shadow)) = self.connect else { return 0 };
+        let weight = connect.weight(self.sphere, at);
+        self.cast(connect, shadow, (at.place, weight), rng)
+    }
+
+    fn escaped(&mut self, at: Point, _: Point, weight: f64, order: u32) {
+        let is_light = match self.sphere.light() {
+            Light::Environment => true,
+            Light::Distant(_) => false,
+            Light::BlackSphere(core) => {
+                let middle = 0.5 * (core + self.sphere.radius());
+                (at - self.sphere.centre()).norm() < middle
+            }
+        };
+        let counts = match self.connect {
+            None => true,
+            Some((connect, _)) => {
+                let is_point = self.sphere.sought() == Sought::MeanIntensity;
+                connect.counts(order + u32::from(is_point))
+            }
+        };
+        if is_light && counts {
+            self.found += weight;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_ray_meets_a_sphere_before_it_and_none_behind() {
+        let centre = Point([0.0, 0.0, 2.0]);
+        let up = Point([0.0, 0.0, 1.0]);
+        assert_eq!(meets(Point([0.0; 3]), up, centre, 0.5), Some(1.5));
+        assert_eq!(meets(Point([0.0; 3]), up * -1.0, centre, 0.5), None);
+        assert_eq!(meets(Point([0.6, 0.0, 0.0]), up, centre, 0.5), None);
+        // 3-4-5.
+        let aside = meets(Point([0.3, 0.0, 0.0]), up, centre, 0.5).expect("it meets");
+        assert!((aside - 1.6).abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_cone_of_a_sphere_is_half_space_at_its_surface_and_shrinks_like_the_square() {
+        assert_eq!(cone(0.3, 0.3), 1.0);
+        assert!((cone(0.6, 1.0) - 0.2).abs() < 1e-15);
+        assert!((cone(1e-6, 1.0) - 0.5e-12).abs() < 1e-24);
+        assert!((Honest.share(0.6, 1.0) - 0.1).abs() < 1e-15);
+    }
+}

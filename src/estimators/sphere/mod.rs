@@ -1,0 +1,275 @@
+//! Walks from an eye in or before a ball to its light.
+
+pub mod connect;
+
+use crate::estimators::space::{self, Particle, Start, Steps};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::geometry::{Point, frame};
+use crate::media::Majorants;
+use crate::media::majorants::Flight;
+use crate::numeric::Known;
+use crate::problems::Sphere;
+use crate::problems::sphere::{Light, Sought};
+use crate::rng::Stream;
+use crate::theory::single::Tracking;
+use crate::theory::sphere::{Answer, Asked, Lights, Scene, Spread, cached};
+use crate::theory::{Channel, CountLaw, Law, Moments, Odds, ParticleRule, Prediction, Tails};
+
+pub use connect::{Connect, Honest, Seeker};
+
+/// The largest error of an exact answer, relative to it, that is worth drawing against.
+const BLURRED: f64 = 1e-4;
+/// The optical depth from the surface to the centre up to which the equation is solved.
+const DEEPEST: f64 = 30.0;
+/// A tracked transmittance may have this second moment, relative to that of an untracked one.
+const WILDEST: f64 = 1e3;
+/// Bounds on σ_t are raised by a share like this, because lookups are rounded.
+const SLACK: f64 = 1e-9;
+/// More tentative collisions than this on a shadow ray are a mistake in the case.
+const MOST_COLLISIONS: f64 = 1e4;
+
+/// The exact answer; `None` where the equation is not solved.
+fn truth(sphere: &Sphere) -> Option<Answer> {
+    if sphere.majorant() * sphere.radius() > DEEPEST {
+        return None;
+    }
+    let (core, lights) = match sphere.light() {
+        Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
+        Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
+    };
+    let asked = match sphere.sought() {
+        Sought::Radiance => Asked::Radiance { offset: sphere.offset(), from: sphere.begins() },
+        Sought::MeanIntensity => Asked::Mean(sphere.distance()),
+    };
+    let scene = Scene {
+        radius: sphere.radius(),
+        core,
+        albedo: sphere.scene().albedo.even()?,
+        lights,
+        is_distant: matches!(sphere.light(), Light::Distant(_)),
+        asked,
+    };
+    let answer = cached(&scene, &|r2| sphere.extinction(r2))?;
+    (answer.value.error <= BLURRED * answer.value.value.abs()).then_some(answer)
+}
+
+/// Whether a rule exists here, its spread has a bound, and there is a truth to judge it by.
+fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
+    let sphere = &setup.problem;
+    space::realisable(setup, sphere.scene(), particle)?;
+    let walks = space::walks(sphere.scene(), space::majorants(setup)?, particle);
+    if !walks.never_grows() {
+        let needs = "σ̂ ≥ σ_t, so that theory bounds the variance";
+        let found = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
+        return Err(Refusal::mismatch(needs, found));
+    }
+    if truth(sphere).is_none() {
+        let needs = "a ball that Peierls' equation is solved for: σ_t R ≤ 30";
+        let found = format!("σ_t R may reach {:.6}", sphere.majorant() * sphere.radius());
+        return Err(Refusal::mismatch(needs, found));
+    }
+    Ok(())
+}
+
+/// Whether a walk finds the light by itself.
+///
+/// # Errors
+///
+/// The violated inequality, or that the light cannot be met.
+fn domain(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
+    if matches!(setup.problem.light(), Light::Distant(_)) {
+        let needs = "a light that a walk can meet";
+        return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
+    }
+    realisable(setup, particle)
+}
+
+/// G, a bound on `E[T̂²]/T` of tracked shadow rays through σ_t up to a majorant and a length:
+/// `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
+fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
+    let Tracking::Ratio { sampling, control } = shadow else { return 1.0 };
+    // It is convex in σ_t: largest at an end.
+    let at = |sigma: f64| (sigma - control) * (sigma - control) / sampling - sigma;
+    let worst = at(0.0).max(at(majorant)).max(0.0);
+    (length * worst).exp()
+}
+
+/// The same on any shadow ray through a ball.
+fn gain_in(sphere: &Sphere, shadow: Tracking) -> f64 {
+    gain(sphere.majorant(), 2.0 * sphere.radius(), shadow)
+}
+
+/// Whether shadow rays are unbiased and end, beside what the walk needs.
+///
+/// # Errors
+///
+/// The violated inequality.
+fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Result<(), Refusal> {
+    realisable(setup, particle)?;
+    let sphere = &setup.problem;
+    if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
+        let collisions = 2.0 * sampling * sphere.radius();
+        if collisions.is_nan() || collisions > MOST_COLLISIONS {
+            let needs = "a shadow's σ̂ of at most 1e4 collisions across the ball";
+            return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
+        }
+    }
+    if let Tracking::Delta { sampling } = shadow
+        && sampling < sphere.majorant() * (1.0 - SLACK)
+    {
+        let found = format!("σ̄ = {sampling} and σ_t is bounded by {:.6} only", sphere.majorant());
+        return Err(Refusal::mismatch("σ̄ ≥ σ_t on every shadow ray", found));
+    }
+    let gain = gain_in(sphere, shadow);
+    if gain > WILDEST {
+        let needs = "a shadow's σ̂ and σ_c that keep E[T̂²] below 1e3 T";
+        return Err(Refusal::mismatch(needs, format!("it is bounded by {gain:.3e} T only")));
+    }
+    Ok(())
+}
+
+/// No answer: what is refused is not predicted.
+const UNKNOWN: Answer = Answer {
+    value: Known { value: f64::NAN, error: f64::INFINITY },
+    spread: Spread { unscattered: f64::NAN, lit: f64::NAN, crossed: f64::NAN },
+};
+
+fn prediction(value: Known, square: f64) -> Prediction {
+    let most = (square - value.value * value.value).max(0.0);
+    let channel = Channel::unbiased(value, Moments::certain(value.value), Tails::LIGHT);
+    let channel = Channel { moments: None, most_variance: Some(most), ..channel };
+    Prediction { lookups: None, ..Prediction::single(channel, CountLaw::always(0.0)) }
+}
+
+/// A walk that finds the light by itself: draws from 0 to 1, `E[X²] ≤ E[X]`; nothing but 0 and 1 where no
+/// weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
+fn predict(setup: &Setup<Sphere>, particle: &Particle) -> Prediction {
+    let sphere = &setup.problem;
+    if sphere.light() == Light::Environment && sphere.scene().albedo.even() == Some(1.0) {
+        let prediction = Prediction::single(space::energy_channel(0.0), CountLaw::always(0.0));
+        return Prediction { lookups: None, ..prediction };
+    }
+    let value = truth(sphere).unwrap_or(UNKNOWN).value;
+    let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);
+    if is_chance && particle.roulette.is_none() {
+        all_or_nothing(value)
+    } else {
+        prediction(value, value.value)
+    }
+}
+
+/// A draw is 1 with the chance that is sought, else 0.
+fn all_or_nothing(value: Known) -> Prediction {
+    let chance = value.value;
+    // E[Xᵏ] is the same for every k: the moments of a product whose losses are all −ln E[X].
+    let error = 4.0 * value.error / (chance * (1.0 - chance));
+    let moments = Moments::of_product(chance, [-chance.ln(); 4], error);
+    let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
+    let channel = Channel::unbiased(value, moments, tails);
+    Prediction {
+        lookups: None,
+        law: Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)])),
+        ..Prediction::single(channel, CountLaw::always(0.0))
+    }
+}
+
+/// Next-event estimation.
+fn predict_connected(setup: &Setup<Sphere>, shadow: Tracking) -> Prediction {
+    let answer = truth(&setup.problem).unwrap_or(UNKNOWN);
+    prediction(answer.value, answer.spread.square(gain_in(&setup.problem, shadow)))
+}
+
+/// A particle that a black sphere stops.
+struct Stopped<'a> {
+    particle: &'a Particle,
+    core: Option<(Point, f64)>,
+}
+
+impl Steps for Stopped<'_> {
+    #[inline(always)]
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+        self.particle.odds_at(ratio, albedo)
+    }
+
+    #[inline(always)]
+    fn fly(&self, majorants: &Majorants, flight: &mut Flight, depth: f64) -> Option<f64> {
+        let flown = majorants.fly(flight, depth);
+        let Some((centre, radius)) = self.core else { return flown };
+        match connect::meets(flight.origin, flight.direction, centre, radius) {
+            Some(at) if at < flight.t => {
+                flight.t = at;
+                None
+            }
+            _ => flown,
+        }
+    }
+
+    #[inline(always)]
+    fn keep(&self, rng: &mut Stream, weight: f64) -> Option<f64> {
+        self.particle.keep(rng, weight)
+    }
+}
+
+/// Makes a draw: with shadow rays, or without.
+pub fn draw_by(
+    particle: &Particle,
+    connect: Option<(&dyn Connect, Tracking)>,
+    setup: &Setup<Sphere>,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let sphere = &*setup.problem;
+    let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
+    let mut seeker = Seeker::new(sphere, connect);
+    let (place, mut lookups) = (sphere.entry(), 0);
+    let direction = match sphere.sought() {
+        Sought::Radiance => sphere.direction(),
+        Sought::MeanIntensity => {
+            lookups += seeker.look_around(place, rng);
+            frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
+        }
+    };
+    let core = match sphere.light() {
+        Light::BlackSphere(radius) => Some((sphere.centre(), radius)),
+        Light::Environment | Light::Distant(_) => None,
+    };
+    let steps = Stopped { particle, core };
+    let start = Start { place, direction, weight: 1.0 };
+    lookups += space::walk_by(&steps, sphere.scene(), majorants, start, &mut seeker, rng);
+    Draw::free([seeker.found()], lookups)
+}
+
+fn draw(particle: &Particle, setup: &Setup<Sphere>, rng: &mut Stream) -> Draw<[f64; 1]> {
+    draw_by(particle, None, setup, rng)
+}
+
+estimators! {
+    Sphere:
+    particle::Walker,
+    next_event::NextEvent,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_gain_of_a_shadow_is_a_hand_value() {
+        let ratio = |sampling: f64, control: f64| Tracking::Ratio { sampling, control };
+        assert_eq!(gain(1.0, 2.0, Tracking::Exact), 1.0);
+        assert_eq!(gain(1.0, 2.0, Tracking::Delta { sampling: 1.0 }), 1.0);
+        // A majorant keeps T̂ in [0, 1]; half of σ_t makes E[T̂²] = e^(1/0.5 − 1) T per length.
+        assert_eq!(gain(1.0, 2.0, ratio(1.0, 0.0)), 1.0);
+        assert!((gain(1.0, 2.0, ratio(0.5, 0.0)) - 2f64.exp()).abs() < 1e-14);
+        // A control of 1 where there is nothing: E[T̂²] = e^(1/2) per length.
+        assert!((gain(1.0, 3.0, ratio(2.0, 1.0)) - 1.5f64.exp()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_draw_of_chance_has_the_variance_of_a_coin() {
+        let found = all_or_nothing(Known::new(0.2, 1e-9));
+        let moments = found.channels[0].moments.expect("known");
+        assert!((moments.variance() - 0.16).abs() < 1e-15);
+        // (1 − 3p(1 − p))/(p(1 − p)).
+        assert!((moments.kurtosis().expect("known") - 0.52 / 0.16).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,74 @@
+//! Next-event estimation: a shadow ray to the light from every scattering of a walk.
+//!
+//! ```text
+//! X = [light met before the first scattering] + Σ w Ω/4π T̂ over the scatterings
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `rule`, `roulette` | how the particle walks, see the page `particle` | `rule` required |
+//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `exact = {}` |
+//!
+//! Shadow rays are delta tracked, ratio tracked, residual-ratio tracked (`control`), or taken from exact
+//! optical depths. They are clipped to the ball and to the light.
+//!
+//! Unbiased for every σ̂ of walk and shadow rays, but for a delta-tracked shadow, which needs a majorant.
+//! Needed is `σ̂ ≥ σ_t` of the walk, and a σ̂ and σ_c of shadow rays that are not far from σ_t: then theory
+//! bounds the variance, sharply where weights and tracked transmittances are 0 or 1. The number of
+//! lookups is not known. The exact shadow uses the platform's library: the last bits of draws with one may
+//! differ between machines.
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
+//! transport*, ACM Transactions on Graphics 38 (2019), section 5.3; J. Novák, A. Selle, W. Jarosz,
+//! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
+//! Graphics 33 (2014). The bound is derived in `theory/sphere/mod.rs`.
+
+use super::Honest;
+use crate::catalogue::Settings;
+use crate::estimators::single_scattering::connection;
+use crate::estimators::space::Particle;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Extinction;
+use crate::problems::Sphere;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+use crate::theory::single::Tracking;
+
+/// A walk with shadow rays.
+#[derive(Debug, Clone)]
+pub struct NextEvent {
+    particle: Particle,
+    shadow: Tracking,
+}
+
+impl Estimator<Sphere> for NextEvent {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let particle = Particle::read(settings);
+        let shadow = connection::read_shadow(settings);
+        Some(Self { particle: particle?, shadow: shadow? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        format!("{}, {}", self.particle.label(), connection::shadow_label(self.shadow))
+    }
+
+    fn domain(&self, setup: &Setup<Sphere>) -> Result<(), Refusal> {
+        super::connected(setup, &self.particle, self.shadow)
+    }
+
+    fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
+        super::predict_connected(setup, self.shadow)
+    }
+
+    #[inline]
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Sphere>,
+        _: &M,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        super::draw_by(&self.particle, Some((&Honest, self.shadow)), setup, rng)
+    }
+}

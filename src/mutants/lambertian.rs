@@ -1,0 +1,68 @@
+//! Wrong walks under light from all sides: flights and starts.
+
+use super::target::{LAMBERTIAN, LAMBERTIAN_CELLS, Target};
+use super::{About, Draws, Mutant};
+use crate::estimators::lambertian::{draw_with, lambertian};
+use crate::estimators::space::{Particle, Steps};
+use crate::estimators::{Draw, Setup};
+use crate::media::Extinction;
+use crate::media::Majorants;
+use crate::media::majorants::Flight;
+use crate::problems::Lambertian;
+use crate::problems::lambertian::Values;
+use crate::rng::Stream;
+use crate::theory::{Odds, ParticleRule};
+
+use ParticleRule::{Analog, NonTerminating};
+
+/// The family.
+#[must_use]
+#[rustfmt::skip] // one mutant, one entry
+pub fn mutants() -> Vec<Mutant<Lambertian>> {
+    let (white, cells) = (Particle::of(NonTerminating), Particle::of(Analog));
+    vec![
+        under("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, white, (white, |u| 1.0 - u)),
+        under("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, cells, (Stale, lambertian)),
+    ]
+}
+
+fn under<S: Steps + Clone + Send + Sync + 'static>(
+    name: &'static str,
+    bug: &'static str,
+    target: Target,
+    honest: Particle,
+    (steps, cosine): (S, fn(f64) -> f64),
+) -> Mutant<Lambertian> {
+    let about = About { name, bug, target, check: "mean" };
+    Mutant::new(about, Walk(steps, cosine, honest), Walk(honest, lambertian, honest))
+}
+
+/// A walk by its steps and the law of its start, and the particle whose channels it has.
+#[derive(Clone)]
+struct Walk<S>(S, fn(f64) -> f64, Particle);
+
+impl<S: Steps + Clone + Send + Sync + 'static> Draws<Lambertian> for Walk<S> {
+    fn draw<M: Extinction>(
+        &self,
+        setup: &Setup<Lambertian>,
+        _: &M,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        draw_with((&self.0, self.1), &self.2, setup, rng)
+    }
+}
+
+/// The first cell's σ̂ for the depth, the last one's for the odds.
+#[derive(Clone)]
+struct Stale;
+
+impl Steps for Stale {
+    fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
+        Analog.odds(ratio, albedo)
+    }
+
+    fn fly(&self, majorants: &Majorants, flight: &mut Flight, depth: f64) -> Option<f64> {
+        let begun = majorants.here(flight);
+        majorants.fly_by(flight, depth, |_| begun)
+    }
+}

@@ -1,0 +1,83 @@
+//! The radiance along a ray into a furnace: whatever is inside, it is 1.
+//!
+//! ```text
+//! light of radiance 1 comes from all sides; where the medium absorbs it also emits, as hot as its walls
+//! L = Σ w r (1 − a) over the collisions of a walk + w where it leaves,   E[L] = 1
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `volume` with `ray = { origin, direction, length }` | σ_t in space, with bounds, and the ray; what counts of the ray is where it enters the bounds | required |
+//! | `albedo` | a in [0, 1]: a number, or a field in space such as `sines = { … }` | required unless swept |
+//! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
+//! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! With a = 1 it is the white furnace; with any other a, constant or not, Kirchhoff's law makes it one: what
+//! leaves and what is absorbed are together all the light that there was. It holds for every medium, phase
+//! function, σ̂ and rule, so that every medium has a test of its walks, and a renderer's bug in weights
+//! cannot hide in a medium whose picture nobody knows. How much leaves and how much is absorbed is not
+//! known; their sum is.
+//!
+//! Directions do not matter for L, see `trueflight explain lambertian` for those.
+//!
+//! Source: G. Kirchhoff, *Ueber das Verhältniss zwischen dem Emissionsvermögen und dem Absorptionsvermögen
+//! der Körper für Wärme und Licht*, Annalen der Physik 185 (1860).
+
+use super::{Problem, Scene};
+use crate::catalogue::Settings;
+use crate::geometry::{Point, Ray};
+use crate::media::{Body, Medium, Volume};
+
+/// The radiance along a ray into a furnace.
+pub struct Furnace {
+    scene: Scene,
+    ray: Ray,
+    medium: Medium,
+}
+
+impl Furnace {
+    /// The medium in space.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Where the ray enters the bounds, or begins within them; `None` where it misses them.
+    #[must_use]
+    pub fn entry(&self) -> Option<Point> {
+        let ray = Ray { length: f64::INFINITY, ..self.ray };
+        let inside = self.scene.volume.bounds().clip(&ray);
+        (!inside.is_empty()).then(|| ray.at(inside.from))
+    }
+
+    /// The direction of the ray.
+    #[must_use]
+    pub fn direction(&self) -> Point {
+        self.ray.direction
+    }
+}
+
+impl Problem for Furnace {
+    type Value = [f64; 1];
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let scene = Scene::bounded(body, settings)?;
+        let Body::Volume { ray, .. } = body? else { return None };
+        Some(Self { scene, ray: *ray, medium: body?.medium() })
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn volume(&self) -> Option<&Volume> {
+        Some(&self.scene.volume)
+    }
+
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let scene = self.scene.with_albedo(albedo);
+        Some(Self { scene, ray: self.ray, medium: self.medium.clone() })
+    }
+}

@@ -1,0 +1,191 @@
+//! A body under light from all sides: how long particles stay in it, and how often they collide.
+//!
+//! ```text
+//! particles enter evenly over the boundary, with the Lambertian law cos θ/π about its normal
+//! a = 1:                   mean path Σ w ℓ = 4V/S,   mean collisions Σ w r = (4/S) ∫σ_t dV
+//! a > 0, non-terminating:   mean tentative collisions = (4/S) ∫σ̂ dV
+//! every a, every rule:      Σ w r (1 − a) + w where it leaves = 1
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `volume` with `ray = { origin, direction, length }` | σ_t in space, with bounds; the ray is not walked, plots of σ_t show it | required |
+//! | `albedo` | a in [0, 1]: a number, or a field in space such as `sines = { … }` | required unless swept |
+//! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
+//! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `estimators` | what is tested | required |
+//!
+//! V and S are volume and surface of the bounds, whatever is in them: light from all sides fills a body that
+//! does not absorb evenly, in all directions, however it scatters. So every heterogeneous medium has an
+//! exact test of its flights, directions and lookups. A channel is there where its answer is known:
+//!
+//! | channel | for |
+//! |---|---|
+//! | `energy` | every experiment whose spread theory bounds, see `trueflight explain furnace` |
+//! | `path length`, `collisions` | a = 1 everywhere and `σ̂ ≥ σ_t` |
+//! | `tentative collisions` | the rule `non-terminating` alone, a > 0, any σ̂ that is constant or, in a box, local |
+//!
+//! `∫σ_t dV` is a cubature over chords of exact optical depths, with a stated error. How far counts and
+//! lengths of a walk scatter about their mean theory does not know; their tails are light, and they are
+//! judged by twice the variance of pilot draws.
+//!
+//! Source: A. Mazzolo, C. de Mulatier, A. Zoia, *Cauchy's formulas for random walks in bounded domains*,
+//! Journal of Mathematical Physics 55, 083308 (2014); S. Blanco, R. Fournier, *An invariance property of
+//! diffusive random walks*, Europhysics Letters 61 (2003).
+
+use std::sync::OnceLock;
+
+use super::{Problem, Scene};
+use crate::catalogue::Settings;
+use crate::geometry::{Bounds, Point};
+use crate::media::{Body, Medium, Volume};
+use crate::numeric::Known;
+
+pub use super::rod::Values;
+
+/// A body under light from all sides.
+pub struct Lambertian {
+    scene: Scene,
+    medium: Medium,
+    content: OnceLock<Option<Known>>,
+}
+
+impl Lambertian {
+    /// The medium in space.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// The boundary.
+    #[must_use]
+    pub fn bounds(&self) -> Bounds {
+        self.scene.volume.bounds()
+    }
+
+    /// `4/S`, 1/length².
+    #[must_use]
+    pub fn four_over_surface(&self) -> f64 {
+        self.bounds().surface().map_or(0.0, |surface| 4.0 / surface)
+    }
+
+    /// `∫σ_t dV`, found when it is first asked for.
+    pub fn content(&self, find: impl FnOnce() -> Option<Known>) -> Option<Known> {
+        *self.content.get_or_init(find)
+    }
+
+    /// The place on the boundary that two numbers find, evenly, and the normal there that points inward.
+    #[inline(always)]
+    #[must_use]
+    pub fn place(&self, u: f64, v: f64) -> (Point, Point) {
+        match self.bounds() {
+            Bounds::Sphere { centre, radius } => {
+                let outward =
+                    crate::geometry::frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * u - 1.0, v);
+                (centre + outward * radius, outward * -1.0)
+            }
+            Bounds::Box(within) => {
+                let size = within.high - within.low;
+                let [a, b, c] = size.0;
+                let areas = [b * c, c * a, a * b];
+                // Which pair of faces, which of the two, and where across it: all from one number.
+                let mut left = u * (areas[0] + areas[1] + areas[2]);
+                let mut axis = 0;
+                while axis < 2 && left >= areas[axis] {
+                    left -= areas[axis];
+                    axis += 1;
+                }
+                let share = (2.0 * left / areas[axis]).min(2.0);
+                let is_high = share >= 1.0;
+                let along = (if is_high { share - 1.0 } else { share }).min(1.0);
+                let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
+                let mut place = within.low;
+                place.0[axis] = if is_high { within.high.0[axis] } else { within.low.0[axis] };
+                place.0[first] += along * size.0[first];
+                place.0[second] += v * size.0[second];
+                let mut inward = Point([0.0; 3]);
+                inward.0[axis] = if is_high { -1.0 } else { 1.0 };
+                (place, inward)
+            }
+            // Refused when it is read.
+            Bounds::Everywhere => (Point([0.0; 3]), Point([0.0, 0.0, 1.0])),
+        }
+    }
+}
+
+impl Problem for Lambertian {
+    /// The channels that theory knows, see `estimators/lambertian`.
+    type Value = Values;
+
+    fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
+        let scene = Scene::bounded(body, settings)?;
+        Some(Self { scene, medium: body?.medium(), content: OnceLock::new() })
+    }
+
+    fn medium(&self) -> &Medium {
+        &self.medium
+    }
+
+    fn volume(&self) -> Option<&Volume> {
+        Some(&self.scene.volume)
+    }
+
+    fn with_albedo(&self, albedo: f64) -> Option<Self> {
+        let content = self.content.clone();
+        Some(Self { scene: self.scene.with_albedo(albedo), medium: self.medium.clone(), content })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Aabb;
+    use crate::media::Volume;
+    use crate::media::eq21::Eq21;
+    use crate::phase::{Phase, isotropic::Isotropic};
+    use std::sync::Arc;
+
+    fn under_light(volume: Volume) -> Lambertian {
+        let volume = Arc::new(volume);
+        let ray =
+            crate::geometry::Ray::new(Point([0.5; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("");
+        let body = Body::Volume { name: String::new(), volume: volume.clone(), ray };
+        let scene = Scene {
+            volume,
+            albedo: crate::problems::Albedo::Even(1.0),
+            phase: Phase::Isotropic(Isotropic),
+        };
+        Lambertian { scene, medium: body.medium(), content: OnceLock::new() }
+    }
+
+    #[test]
+    fn places_lie_on_the_sphere_and_look_inward() {
+        let sphere = under_light(Volume::Eq21(Eq21));
+        for (u, v) in [(0.0, 0.3), (0.4, 0.9), (0.999, 0.0)] {
+            let (place, inward) = sphere.place(u, v);
+            assert!(((place - Point([0.0, 0.0, 10.0])).norm() - 10.0).abs() < 1e-13);
+            assert!((place + inward * 10.0 - Point([0.0, 0.0, 10.0])).norm() < 1e-13);
+        }
+        assert!(
+            (sphere.four_over_surface() * 4.0 * std::f64::consts::PI * 100.0 - 4.0).abs() < 1e-14
+        );
+    }
+
+    #[test]
+    fn each_face_of_a_box_gets_its_share() {
+        let within = Aabb { low: Point([0.0; 3]), high: Point([1.0, 2.0, 3.0]) };
+        let cuboid = under_light(Volume::Constant(crate::media::constant::Constant::new(
+            1.0,
+            Bounds::Box(within),
+        )));
+        // Areas 6, 3, 2 twice: of 11 parts u takes six for x, three for y, two for z.
+        let (place, inward) = cuboid.place(1.0 / 11.0, 0.5);
+        assert_eq!((inward, place.0[0]), (Point([1.0, 0.0, 0.0]), 0.0));
+        assert!((place.0[1] - 2.0 / 3.0).abs() < 1e-14 && place.0[2] == 1.5);
+        assert_eq!(cuboid.place(4.0 / 11.0, 0.5).1, Point([-1.0, 0.0, 0.0]));
+        assert_eq!(cuboid.place(6.5 / 11.0, 0.5).1, Point([0.0, 1.0, 0.0]));
+        assert_eq!(cuboid.place(8.5 / 11.0, 0.5).1, Point([0.0, -1.0, 0.0]));
+        assert_eq!(cuboid.place(10.5 / 11.0, 0.5).1, Point([0.0, 0.0, -1.0]));
+    }
+}

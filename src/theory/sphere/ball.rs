@@ -1,0 +1,129 @@
+//! Integrals along rays through a ball.
+//!
+//! ```text
+//! ∫ σ_t(t) S(t) e^{−τ(0, t)} dt,   S the polynomials of the shells that the ray crosses
+//! ```
+
+use super::shells::{Centre, Row, Rules, Shell, Shells};
+
+/// An optical depth up to which one Gauss rule follows the exponential.
+const SMOOTH: f64 = 2.0;
+/// Nodes beyond those that integrate the polynomial times σ_t.
+const BEYOND: usize = 5;
+/// The fewest nodes: they integrate σ_t exactly where it is cubic in `r²`.
+const FEWEST: usize = 9;
+/// The most nodes.
+pub(super) const MOST: usize = 32;
+
+/// A ball with a radial extinction.
+pub struct Ball<'a> {
+    /// R.
+    pub radius: f64,
+    /// What is at its centre.
+    pub centre: Centre,
+    /// σ_t as a function of `r²`.
+    pub extinction: &'a dyn Fn(f64) -> f64,
+}
+
+/// A ray from `from` to `to`, distances from its foot.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Passage {
+    /// The square of its distance from the centre.
+    pub offset2: f64,
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// Whether it ends on the black sphere.
+    pub hits: bool,
+}
+
+impl Ball<'_> {
+    /// The ray that begins at a distance from its foot and looks on.
+    #[must_use]
+    pub fn passage(&self, offset2: f64, from: f64) -> Passage {
+        let half = (self.radius * self.radius - offset2).max(0.0).sqrt();
+        let from = from.max(-half);
+        if let Centre::Black(core) = self.centre
+            && from < 0.0
+            && offset2 < core * core
+        {
+            let to = -(core * core - offset2).sqrt();
+            return Passage { offset2, from, to: to.max(from), hits: true };
+        }
+        Passage { offset2, from, to: half.max(from), hits: false }
+    }
+
+    /// Adds `weight ∫ σ_t S e^{−τ} dt` to a row, and answers `e^{−τ}` at the ray's end.
+    pub fn collect(
+        &self,
+        passage: &Passage,
+        shells: &Shells,
+        rules: &Rules,
+        weight: f64,
+        row: &mut Row,
+    ) -> f64 {
+        let mut depth = 0.0;
+        crossings(passage, shells, |shell, from, to| {
+            let nodes = (shell.nodes + BEYOND).max(FEWEST);
+            self.panel(passage.offset2, from, to, nodes, rules, &mut depth, |r2, share| {
+                row.add(shell, r2, weight * share);
+            });
+        });
+        (-depth).exp()
+    }
+
+    /// One panel: hands out `r²` and `σ_t e^{−τ} dt` at each node, and adds to the optical depth.
+    pub(super) fn panel(
+        &self,
+        offset2: f64,
+        from: f64,
+        to: f64,
+        nodes: usize,
+        rules: &Rules,
+        depth: &mut f64,
+        mut each: impl FnMut(f64, f64),
+    ) {
+        let middle = 0.5 * (from + to);
+        let guess = (self.extinction)(offset2 + middle * middle) * (to - from);
+        let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
+        let length = (to - from) / parts;
+        let rule = rules.of(nodes);
+        let mut sigma = [0.0; MOST];
+        let sigma = &mut sigma[..rule.nodes.len().min(MOST)];
+        for part in 0..parts as usize {
+            let begin = from + length * part as f64;
+            for (sigma, x) in sigma.iter_mut().zip(&rule.nodes) {
+                let t = begin + length * x;
+                *sigma = (self.extinction)(offset2 + t * t);
+            }
+            for (i, x) in rule.nodes.iter().enumerate() {
+                let t = begin + length * x;
+                let running: f64 = rule.running[i].iter().zip(&*sigma).map(|(w, s)| w * s).sum();
+                let share = rule.weights[i] * length * sigma[i];
+                each(offset2 + t * t, share * (-*depth - length * running).exp());
+            }
+            let mean: f64 = rule.weights.iter().zip(&*sigma).map(|(w, s)| w * s).sum();
+            *depth += length * mean;
+        }
+    }
+}
+
+/// The parts of a ray in each shell, in their order.
+fn crossings(passage: &Passage, shells: &Shells, mut each: impl FnMut(&Shell, f64, f64)) {
+    let at = |r2: f64| (r2 - passage.offset2).max(0.0).sqrt();
+    // Inwards, through the shell of the foot, and out again.
+    for shell in shells.shells.iter().rev() {
+        let (outer, inner) = (-at(shell.to), -at(shell.from));
+        let (from, to) = (outer.max(passage.from), inner.min(passage.to));
+        if from < to {
+            each(shell, from, to);
+        }
+    }
+    for shell in &shells.shells {
+        let (from, to) = (at(shell.from).max(passage.from), at(shell.to).min(passage.to));
+        if from < to {
+            each(shell, from, to);
+        }
+    }
+}

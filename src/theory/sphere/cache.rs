@@ -1,0 +1,120 @@
+//! Answers that were worked out before: experiments of one ball share theirs.
+
+use std::collections::HashMap;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+
+use super::ball::Ball;
+use super::shells::Resolution;
+use super::{Asked, Lights, Solved, Spread, centre_of};
+use crate::numeric::Known;
+
+/// More answers than this are forgotten, all together.
+const MOST: usize = 1024;
+
+/// All that an answer depends on, but for σ_t.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scene {
+    /// R.
+    pub radius: f64,
+    /// The radius of a black sphere at the centre.
+    pub core: Option<f64>,
+    /// a.
+    pub albedo: f64,
+    /// Who shines.
+    pub lights: Lights,
+    /// Whether the environment stands for a distant light, looked at from the centre.
+    pub is_distant: bool,
+    /// What is asked about.
+    pub asked: Asked,
+}
+
+/// What there is to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Answer {
+    /// The value.
+    pub value: Known,
+    /// How far draws of next-event estimation stray from it.
+    pub spread: Spread,
+}
+
+type Slot = Arc<OnceLock<Option<Answer>>>;
+
+static ANSWERS: LazyLock<Mutex<HashMap<Vec<u64>, Slot>>> = LazyLock::new(Mutex::default);
+
+impl Scene {
+    /// The bits of all numbers, and of σ_t at so many places that no other field shares them.
+    fn key(&self, extinction: &dyn Fn(f64) -> f64) -> Vec<u64> {
+        let (kind, asked) = match self.asked {
+            Asked::Mean(r) => (0.0, [r, 0.0]),
+            Asked::Radiance { offset, from } => (1.0, [offset, from]),
+        };
+        let lights = [self.lights.environment, self.lights.core];
+        let core = self.core.unwrap_or(-1.0);
+        let distant = f64::from(u8::from(self.is_distant));
+        let mut numbers = vec![self.radius, core, self.albedo, kind, distant];
+        numbers.extend(lights);
+        numbers.extend(asked);
+        let outer = self.radius * self.radius;
+        numbers.extend((0..=32).map(|i| extinction(outer * f64::from(i) / 32.0)));
+        numbers.into_iter().map(f64::to_bits).collect()
+    }
+
+    fn answer(&self, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
+        let centre = centre_of(self.core);
+        let ball = Ball { radius: self.radius, centre, extinction };
+        let solve = |resolution| Solved::new(&ball, self.albedo, self.lights, resolution);
+        let fine = solve(Resolution::COARSE)?;
+        let coarse = solve(Resolution::COARSE.coarser())?;
+        let value = Resolution::COARSE.known(fine.answer(self.asked), coarse.answer(self.asked));
+        Some(Answer { value, spread: fine.spread(self.asked, self.is_distant)? })
+    }
+}
+
+/// The answer, which is worked out once and only once, whoever asks.
+#[must_use]
+pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
+    let slot = {
+        // A panic of someone else leaves whole slots behind.
+        let mut answers = ANSWERS.lock().unwrap_or_else(PoisonError::into_inner);
+        if answers.len() >= MOST {
+            answers.clear();
+        }
+        answers.entry(scene.key(extinction)).or_default().clone()
+    };
+    *slot.get_or_init(|| scene.answer(extinction))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_differs_is_kept_apart() {
+        let sky = Lights { environment: 1.0, core: 0.0 };
+        let scene = Scene {
+            radius: 1.0,
+            core: None,
+            albedo: 0.5,
+            lights: sky,
+            is_distant: false,
+            asked: Asked::Mean(0.5),
+        };
+        let of = |scene: &Scene, sigma: f64| {
+            let found = cached(scene, &|_| sigma).expect("a medium");
+            assert_eq!(Some(found), cached(scene, &|_| sigma));
+            assert_eq!(Some(found), scene.answer(&|_| sigma));
+            found.value.value
+        };
+        let values = [
+            of(&scene, 1.0),
+            of(&scene, 1.1),
+            of(&Scene { albedo: 0.6, ..scene }, 1.0),
+            of(&Scene { core: Some(0.2), ..scene }, 1.0),
+            of(&Scene { asked: Asked::Mean(0.6), ..scene }, 1.0),
+            of(&Scene { asked: Asked::Radiance { offset: 0.5, from: 0.0 }, ..scene }, 1.0),
+        ];
+        for (i, x) in values.iter().enumerate() {
+            assert!(values[..i].iter().all(|y| x != y));
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! The directions in which a point of a ball looks, each with its weight: `½∫₋₁¹ I dν`.
+//!
+//! ν is the cosine with the direction away from the centre. The radiance changes its character where
+//! the point looks along the surface, `|ν| ≲ √(R² − r²)/r`, along the edge of a black sphere, and
+//! closely past a point source; panels are graded towards these. Rays that end on a black sphere are
+//! counted by `q = √(ρ² − p²)`, in which their lengths are smooth, and rays that pass the centre by p.
+
+use super::shells::{Centre, Resolution, Rules};
+
+/// A line of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sight {
+    /// The square of its distance from the centre, p².
+    pub offset2: f64,
+    /// Where it begins, from its foot: `rν`.
+    pub from: f64,
+    /// Its share of `½∫ dν`.
+    pub weight: f64,
+}
+
+/// `0, scale, 2 scale, 4 scale, …, end`.
+fn doubling(scale: f64, end: f64) -> Vec<f64> {
+    let mut edges = vec![0.0];
+    let mut edge = scale;
+    while edge < 0.75 * end {
+        edges.push(edge);
+        edge *= 2.0;
+    }
+    edges.push(end);
+    edges
+}
+
+/// All sights from a point at the distance r from the centre, `0 ≤ r ≤ R`.
+#[must_use]
+pub fn from_point(
+    r: f64,
+    radius: f64,
+    centre: Centre,
+    resolution: Resolution,
+    rules: &Rules,
+) -> Vec<Sight> {
+    if r <= 0.0 {
+        return vec![Sight { offset2: 0.0, from: 0.0, weight: 1.0 }];
+    }
+    let mut sights = Vec::new();
+    let rule = rules.of(resolution.directions);
+    let mut on = |edges: &[f64], sight: &dyn Fn(f64, f64) -> Sight| {
+        for edge in edges.windows(2) {
+            let length = edge[1] - edge[0];
+            for (&x, &w) in rule.nodes.iter().zip(&rule.weights) {
+                sights.push(sight(edge[0] + length * x, w * length));
+            }
+        }
+    };
+    let r2 = r * r;
+    let of_t =
+        |t: f64, dt: f64| Sight { offset2: (r2 - t * t).max(0.0), from: t, weight: 0.5 * dt / r };
+    let along = ((radius - r) * (radius + r)).max(0.0).sqrt().max(1e-9 * radius);
+    // No panel is wider than a quarter of the range of ν.
+    let surface = along.min(0.5 * r);
+    on(&doubling(surface, r), &of_t);
+    let mirrored = |t: f64, dt: f64| of_t(-t, dt);
+    match centre {
+        Centre::Medium => on(&doubling(surface, r), &mirrored),
+        Centre::Black(core) => {
+            let gap = ((r - core) * (r + core)).max(0.0).sqrt();
+            // From the surface's directions to the middle, and on to the edge of the black sphere.
+            let half = 0.5 * gap;
+            on(&doubling(along.min(half), half), &mirrored);
+            let finest = half * 0.5f64.powi(resolution.core as i32 / 2);
+            let from_edge = |x: f64, dx: f64| {
+                let offset2 = core * core + x * (2.0 * gap - x);
+                Sight { offset2, from: -(gap - x), weight: 0.5 * dx / r }
+            };
+            on(&doubling(finest, half), &from_edge);
+            let onto = |q: f64, dq: f64| {
+                let from = (gap * gap + q * q).sqrt();
+                Sight {
+                    offset2: core * core - q * q,
+                    from: -from,
+                    weight: 0.5 * q * dq / (r * from),
+                }
+            };
+            let finest = gap.min(core) * 0.5f64.powi(resolution.core as i32 / 4);
+            on(&doubling(finest.max(1e-9 * core), core), &onto);
+        }
+        Centre::Point => {
+            let half = r * std::f64::consts::FRAC_1_SQRT_2;
+            on(&doubling(surface.min(half), half), &mirrored);
+            let past = |p: f64, dp: f64| {
+                let from = ((r - p) * (r + p)).sqrt();
+                Sight { offset2: p * p, from: -from, weight: 0.5 * p * dp / (r * from) }
+            };
+            on(&doubling(half * 0.5f64.powi(resolution.centre as i32 / 2), half), &past);
+        }
+    }
+    sights
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_weights_fill_the_sphere_of_directions() {
+        let rules = Rules::new(20);
+        for centre in [Centre::Medium, Centre::Black(0.4), Centre::Point] {
+            for r in [0.4 + 1e-9, 0.5, 0.9, 1.0 - 1e-9] {
+                let sights = from_point(r, 1.0, centre, Resolution::COARSE, &rules);
+                let total: f64 = sights.iter().map(|sight| sight.weight).sum();
+                // Half the solid angle of the black sphere is that of its cone.
+                assert!((total - 1.0).abs() < 1e-11, "{centre:?} at {r}: {total}");
+                if let Centre::Black(core) = centre {
+                    let hits = sights.iter().filter(|s| s.from < 0.0 && s.offset2 < core * core);
+                    let share: f64 = hits.map(|sight| sight.weight).sum();
+                    let exact = 0.5 * (1.0 - (1.0 - core * core / (r * r)).sqrt());
+                    assert!((share - exact).abs() < 1e-9, "{share} instead of {exact} at {r}");
+                }
+            }
+        }
+    }
+}

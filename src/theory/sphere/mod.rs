@@ -1,0 +1,321 @@
+//! The ball: isotropic scattering in a radially symmetric medium, by Peierls' integral equation.
+//!
+//! ```text
+//! J(r) = ½ ∫₋₁¹ I(r, ν) dν,   I(r, ν) = L e^{−τ(0, s)} + ∫₀ˢ σ_t a J e^{−τ(0, t)} dt
+//! ```
+//!
+//! J is the mean intensity, `I(r, ν)` the radiance that arrives at a point at the distance r from the
+//! centre, seen in a direction of the cosine ν with the outward one; the line of sight ends after the
+//! length s, at the surface or at a black sphere, where the radiance is L. J is a polynomial of `r²` in
+//! each of many shells ([`shells`]); the equation is met at their Gauss nodes, with the integrals along
+//! lines of sight cut at the shells' surfaces ([`ball`]) and graded over directions ([`directions`]).
+//! Any answer is computed twice, with fewer nodes and a coarser grading the second time, and the
+//! difference is stated as its error.
+//!
+//! What starts at a point in a direction of any odds alike escapes with the probability `J(r)` under an
+//! environment of radiance 1: by reciprocity. A distant light looks from the centre like an
+//! environment of the same fluence, from other places it does not.
+//!
+//! Source: R. Peierls, *Critical conditions in neutron multiplication*, Mathematical Proceedings of the
+//! Cambridge Philosophical Society 35 (1939); G. I. Bell, S. Glasstone, *Nuclear Reactor Theory* (Van
+//! Nostrand Reinhold, 1970), section 1.2.
+
+pub mod ball;
+pub mod cache;
+pub mod directions;
+pub mod point;
+pub mod shells;
+
+use crate::numeric::Known;
+use crate::numeric::matrix::Matrix;
+
+use ball::Ball;
+use shells::{Centre, Resolution, Row, Rules, Shells};
+
+pub use cache::{Answer, Scene, cached};
+
+/// The radiances at the ends of lines of sight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lights {
+    /// Around the ball.
+    pub environment: f64,
+    /// Of the black sphere at the centre.
+    pub core: f64,
+}
+
+/// What is asked about.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Asked {
+    /// The mean intensity at a distance from the centre.
+    Mean(f64),
+    /// The radiance that arrives along a line of sight.
+    Radiance {
+        /// Its distance from the centre.
+        offset: f64,
+        /// Where it begins, from its foot; before the ball for −∞.
+        from: f64,
+    },
+}
+
+/// A ball in which the equation of one albedo and one light is solved.
+pub struct Solved<'a> {
+    ball: &'a Ball<'a>,
+    lights: Lights,
+    resolution: Resolution,
+    shells: Shells,
+    rules: Rules,
+    albedo: f64,
+    /// `r²` of the nodes.
+    nodes: Vec<f64>,
+    /// What `aJ` at the nodes adds to `aJ` at the nodes.
+    matrix: Matrix,
+    /// Unscattered light at the nodes, `J₀`.
+    direct: Vec<f64>,
+    /// `aJ` at the nodes.
+    source: Vec<f64>,
+}
+
+/// Light that arrives unscattered, and the weights of aJ at the nodes in the light that is scattered.
+type Arriving = (f64, Vec<f64>);
+
+fn product(weights: &[f64], values: &[f64]) -> f64 {
+    weights.iter().zip(values).map(|(w, x)| w * x).sum()
+}
+
+impl<'a> Solved<'a> {
+    /// Solves the equation; `None` where the medium is no medium: σ_t or a negative, or a above 1.
+    #[must_use]
+    pub fn new(
+        ball: &'a Ball<'a>,
+        albedo: f64,
+        lights: Lights,
+        resolution: Resolution,
+    ) -> Option<Self> {
+        let shells = Shells::new(ball.radius, ball.centre, ball.extinction, resolution);
+        let rules = Rules::new(resolution.nodes + 8);
+        let nodes = shells.nodes(&rules);
+        let (direct, source) = (Vec::new(), Vec::new());
+        let matrix = Matrix::new(1, 1, |_, _| 0.0);
+        let mut solved =
+            Self { ball, lights, resolution, shells, rules, albedo, nodes, matrix, direct, source };
+        let rows: Vec<Arriving> =
+            solved.nodes.iter().map(|r2| solved.mean_row(r2.sqrt())).collect();
+        let count = rows.len();
+        solved.matrix = Matrix::new(count, count, |i, j| albedo * rows[i].1[j]);
+        solved.direct = rows.into_iter().map(|row| row.0).collect();
+        solved.source = solved.gathered(&solved.direct)?;
+        Some(solved)
+    }
+
+    /// What a score g at each scattering, a function of the place given at the nodes, comes to:
+    /// `aY` of `Y = g + K aY`.
+    fn gathered(&self, score: &[f64]) -> Option<Vec<f64>> {
+        let scattered = Matrix::new(score.len(), 1, |i, _| self.albedo * score[i]);
+        let found = self.matrix.series_times(&scattered)?;
+        let found: Vec<f64> = (0..score.len()).map(|i| found.at(i, 0)).collect();
+        found.iter().all(|x| x.is_finite()).then_some(found)
+    }
+
+    /// Adds what arrives along one line of sight to a row; answers the unscattered part.
+    fn sight(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
+        let passage = self.ball.passage(offset2, from);
+        let left = self.ball.collect(&passage, &self.shells, &self.rules, weight, row);
+        weight * left * if passage.hits { self.lights.core } else { self.lights.environment }
+    }
+
+    fn mean_row(&self, r: f64) -> Arriving {
+        let mut row = Row::new(self.shells.count);
+        let ball = self.ball;
+        let sights =
+            directions::from_point(r, ball.radius, ball.centre, self.resolution, &self.rules);
+        let direct: f64 = sights
+            .iter()
+            .map(|sight| self.sight(sight.offset2, sight.from, sight.weight, &mut row))
+            .sum();
+        (direct, row.weights(&self.shells, &self.rules))
+    }
+
+    fn arriving(&self, asked: Asked) -> Arriving {
+        match asked {
+            Asked::Mean(r) => self.mean_row(r),
+            Asked::Radiance { offset, from } => {
+                let mut row = Row::new(self.shells.count);
+                let direct = self.sight(offset * offset, from, 1.0, &mut row);
+                (direct, row.weights(&self.shells, &self.rules))
+            }
+        }
+    }
+
+    /// The answer to a question.
+    #[must_use]
+    pub fn answer(&self, asked: Asked) -> f64 {
+        let (direct, weights) = self.arriving(asked);
+        direct + product(&weights, &self.source)
+    }
+
+    /// What bounds the square of what next-event estimation says, see [`Spread`].
+    fn spread(&self, asked: Asked, is_distant: bool) -> Option<Spread> {
+        let brightest = |r2: f64| match self.ball.centre {
+            Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
+            _ => 1.0,
+        };
+        let crossed = |most: f64, direct: f64, all: f64| {
+            2.0 * (all - direct).max(0.0) * if is_distant { most } else { direct }
+        };
+        let (mut lit_scores, mut crossed_scores) = (Vec::new(), Vec::new());
+        let scattered = self.matrix.applied(&self.source);
+        for ((&r2, &direct), &more) in self.nodes.iter().zip(&self.direct).zip(&scattered) {
+            lit_scores.push(brightest(r2) * direct);
+            // The matrix has the albedo in it.
+            let all = if self.albedo > 0.0 { direct + more / self.albedo } else { direct };
+            crossed_scores.push(crossed(brightest(r2), direct, all));
+        }
+        let (direct, weights) = self.arriving(asked);
+        let lit = product(&weights, &self.gathered(&lit_scores)?);
+        let more = product(&weights, &self.gathered(&crossed_scores)?);
+        let found = Spread { unscattered: 0.0, lit, crossed: more };
+        Some(match asked {
+            Asked::Radiance { .. } => Spread { unscattered: direct, ..found },
+            Asked::Mean(r) => {
+                let (most, all) = (brightest(r * r), direct + product(&weights, &self.source));
+                let lit = lit + most * direct;
+                Spread { lit, crossed: more + crossed(most, direct, all), ..found }
+            }
+        })
+    }
+}
+
+/// What bounds `E[X²]` of next-event estimation by walks whose weights stay in `[0, 1]`.
+///
+/// With h what a shadow ray brings at a scattering and X' what is still to come there, in units of the
+/// weight w, `X = Σ w h` and
+///
+/// ```text
+/// E[X²] = E[Σ w² (h² + 2 h̄ (X̄' − h̄))] ≤ unscattered + G lit + crossed
+/// lit = E[Σ w H h̄],   crossed = E[Σ w 2 h̄ (J − h̄)],   h̄ = J₀, H the brightest that h may be untracked
+/// ```
+///
+/// since `w² ≤ w` and, for a tracked transmittance T̂, `E[T̂²] ≤ G T`. Both sums are answers of the same
+/// equation. For walks of weight 0 or 1 and delta-tracked shadow rays, `G = 1`, both sides are equal. A
+/// distant light is not even, `h̄ ≤ H` instead of J₀.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spread {
+    /// What arrives without a scattering.
+    pub unscattered: f64,
+    /// `E[Σ w H h̄]`.
+    pub lit: f64,
+    /// `E[Σ w 2 h̄ (J − h̄)]`.
+    pub crossed: f64,
+}
+
+impl Spread {
+    /// The bound on `E[X²]`, given that on `E[T̂²]/T`.
+    #[must_use]
+    pub fn square(&self, gain: f64) -> f64 {
+        self.unscattered + gain * self.lit + self.crossed
+    }
+}
+
+/// Answers to several questions about one ball, with their errors; `None` where it is no medium.
+#[must_use]
+pub fn answers(
+    ball: &Ball,
+    albedo: f64,
+    lights: Lights,
+    resolution: Resolution,
+    asked: &[Asked],
+) -> Option<Vec<Known>> {
+    let fine = Solved::new(ball, albedo, lights, resolution)?;
+    let coarse = Solved::new(ball, albedo, lights, resolution.coarser())?;
+    let known = |&asked: &Asked| resolution.known(fine.answer(asked), coarse.answer(asked));
+    Some(asked.iter().map(known).collect())
+}
+
+/// Whether there is a black sphere that light may end on.
+#[must_use]
+pub fn centre_of(core: Option<f64>) -> Centre {
+    core.map_or(Centre::Medium, Centre::Black)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
+
+    #[test]
+    fn a_white_ball_in_a_white_environment_is_not_seen() {
+        let extinction = |r2: f64| 3.0 - r2;
+        let ball = Ball { radius: 1.3, centre: Centre::Medium, extinction: &extinction };
+        let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
+        for asked in [
+            Asked::Mean(0.0),
+            Asked::Mean(0.9),
+            Asked::Mean(1.3),
+            Asked::Radiance { offset: 0.4, from: f64::NEG_INFINITY },
+            Asked::Radiance { offset: 0.4, from: 0.2 },
+        ] {
+            assert!((solved.answer(asked) - 1.0).abs() < 1e-9, "{asked:?}");
+        }
+    }
+
+    #[test]
+    fn a_white_ball_with_a_lamp_as_bright_as_the_sky_is_not_seen() {
+        let ball = Ball { radius: 1.5, centre: Centre::Black(0.3), extinction: &|_| 1.0 };
+        let lights = Lights { environment: 1.0, core: 1.0 };
+        let solved = Solved::new(&ball, 1.0, lights, Resolution::COARSE).expect("a medium");
+        for asked in [
+            Asked::Mean(0.31),
+            Asked::Mean(1.2),
+            Asked::Radiance { offset: 0.1, from: f64::NEG_INFINITY },
+        ] {
+            assert!((solved.answer(asked) - 1.0).abs() < 1e-9, "{asked:?}");
+        }
+    }
+
+    #[test]
+    fn an_absorber_attenuates_and_nothing_else() {
+        // From the centre all ways out are one radius long.
+        let ball = Ball { radius: 2.0, centre: Centre::Medium, extinction: &|_| 0.7 };
+        let solved = Solved::new(&ball, 0.0, SKY, Resolution::COARSE).expect("a medium");
+        assert!((solved.answer(Asked::Mean(0.0)) - (-1.4f64).exp()).abs() < 1e-13);
+        let across = Asked::Radiance { offset: 1.2, from: f64::NEG_INFINITY };
+        assert!((solved.answer(across) - (-0.7f64 * 3.2).exp()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn a_light_and_an_eye_may_change_places() {
+        // What enters from all sides and is absorbed by the black sphere, and what the sphere sends
+        // out: J of the sky at its surface against the power that leaves the ball.
+        let ball =
+            Ball { radius: 1.5, centre: Centre::Black(0.4), extinction: &|r2| 1.5 - 0.4 * r2 };
+        let solve = |lights| Solved::new(&ball, 0.8, lights, Resolution::COARSE).expect("a medium");
+        let sky = solve(SKY);
+        let lamp = solve(Lights { environment: 0.0, core: 1.0 });
+        let rules = Rules::new(40);
+        // Flux onto the black sphere from the sky: ∫ I cos over its surface; and through the ball's
+        // surface from the lamp. Both counted by lines of sight: 2π ∫ I p dp.
+        let out = rules.of(40);
+        let flux = |solved: &Solved, from: f64, to: f64, begin: fn(f64, f64) -> f64| {
+            out.integrate(from, to, |p| {
+                p * solved.answer(Asked::Radiance { offset: p, from: begin(p, 0.4) })
+            })
+        };
+        let far: fn(f64, f64) -> f64 = |_, _| f64::NEG_INFINITY;
+        let near: fn(f64, f64) -> f64 = |p, core| (core * core - p * p).sqrt();
+        let received = flux(&sky, 0.0, 0.4, near);
+        let sent = flux(&lamp, 0.0, 0.4, far) + flux(&lamp, 0.4, 1.5, far);
+        assert!((received - sent).abs() < 1e-5 * sent, "{received} {sent}");
+    }
+
+    #[test]
+    fn the_square_of_what_a_thin_ball_scatters_is_a_hand_value() {
+        // One scattering at most, h = 1 almost surely: X = 1 unscattered or scattered, never both.
+        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-6 };
+        let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
+        let through = Asked::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
+        let spread = solved.spread(through, false).expect("finite");
+        assert!((spread.square(1.0) - 1.0).abs() < 1e-10, "{spread:?}");
+        assert!((spread.lit - 2e-6).abs() < 1e-11 && spread.crossed < 1e-11);
+    }
+}

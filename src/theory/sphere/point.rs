@@ -1,0 +1,129 @@
+//! A point source at the centre of a ball, order by order of scattering.
+//!
+//! ```text
+//! J₀(r) = P e^{−τ(0, r)}/(4πr)²,   Jₙ = K a Jₙ₋₁,   radiance of order n: ∫ σ_t a Jₙ₋₁ e^{−τ} dt
+//! ```
+//!
+//! K is the operator of [`super`]. `J₀` is a function, integrated as such: no polynomial follows
+//! `1/r²` to the centre. `J₁`, which goes like `1/r`, and all others are polynomials of `r²` in shells
+//! that are halved towards the centre.
+
+use std::f64::consts::PI;
+
+use super::ball::{Ball, Passage};
+use super::directions;
+use super::shells::{Centre, Resolution, Row, Rules, Shells};
+use crate::numeric::Known;
+use crate::numeric::matrix::Matrix;
+
+/// The radiance of light that was scattered once, twice, … and at all along each line of sight that
+/// passes the centre at a distance.
+fn radiances(
+    ball: &Ball,
+    albedo: f64,
+    offsets: &[f64],
+    orders: usize,
+    resolution: Resolution,
+) -> Option<Vec<Vec<f64>>> {
+    let shells = Shells::new(ball.radius, Centre::Point, ball.extinction, resolution);
+    let rules = Rules::new(resolution.nodes + 8);
+    let nodes = shells.nodes(&rules);
+    let (mut first, mut rows) = (Vec::new(), Vec::new());
+    for r2 in &nodes {
+        let r = r2.sqrt();
+        let (mut row, mut direct) = (Row::new(shells.count), 0.0);
+        for sight in directions::from_point(r, ball.radius, Centre::Point, resolution, &rules) {
+            let passage = ball.passage(sight.offset2, sight.from);
+            ball.collect(&passage, &shells, &rules, sight.weight, &mut row);
+            direct += sight.weight * unscattered(ball, &passage, resolution, &rules);
+        }
+        first.push(albedo * direct);
+        rows.push(row.weights(&shells, &rules));
+    }
+    let matrix = Matrix::new(nodes.len(), nodes.len(), |i, j| albedo * rows[i][j]);
+    let single = Matrix::new(nodes.len(), 1, |i, _| first[i]);
+    let all = matrix.series_times(&single)?;
+    let all: Vec<f64> = (0..nodes.len()).map(|i| all.at(i, 0)).collect();
+    let of = |offset: &f64| {
+        let passage = ball.passage(offset * offset, f64::NEG_INFINITY);
+        let mut row = Row::new(shells.count);
+        ball.collect(&passage, &shells, &rules, albedo, &mut row);
+        let weights = row.weights(&shells, &rules);
+        let through = |j: &[f64]| -> f64 { weights.iter().zip(j).map(|(w, x)| w * x).sum() };
+        let single = albedo * unscattered(ball, &passage, resolution, &rules);
+        let mut found = vec![single];
+        let mut intensity = first.clone();
+        for _ in 1..orders {
+            found.push(through(&intensity));
+            intensity = matrix.applied(&intensity);
+        }
+        found.push(single + through(&all));
+        found
+    };
+    Some(offsets.iter().map(of).collect())
+}
+
+/// `∫ σ_t J₀ e^{−τ} dt` along a line of sight that does not meet the centre, for a source of power 1.
+fn unscattered(ball: &Ball, passage: &Passage, resolution: Resolution, rules: &Rules) -> f64 {
+    let offset = passage.offset2.sqrt();
+    // Panels follow the distance from the centre.
+    let mut edges = vec![0.0];
+    let mut edge = 0.5 * offset;
+    while edge < 2.0 * ball.radius {
+        edges.push(edge);
+        edge *= 2.0;
+    }
+    edges.push(2.0 * ball.radius);
+    let inwards = edges.windows(2).rev().map(|edge| (-edge[1], -edge[0]));
+    let outwards = edges.windows(2).map(|edge| (edge[0], edge[1]));
+    let radial = rules.of(resolution.nodes);
+    let (mut sum, mut depth) = (0.0, 0.0);
+    for (from, to) in inwards.chain(outwards) {
+        let (from, to) = (from.max(passage.from), to.min(passage.to));
+        if from < to {
+            let nodes = resolution.nodes + 4;
+            ball.panel(passage.offset2, from, to, nodes, rules, &mut depth, |r2, share| {
+                let depth = radial.integrate(0.0, r2.sqrt(), |r| (ball.extinction)(r * r));
+                sum += share * (-depth).exp() / (16.0 * PI * PI * r2);
+            });
+        }
+    }
+    sum
+}
+
+/// For each line of sight, by its distance from the centre, which is not 0: the radiance that a point
+/// source of power 1 at the centre sends along it after one scattering, after two, …, and in all, with
+/// their errors. `None` where the ball is no medium, or is not a medium up to its centre.
+#[must_use]
+pub fn orders(
+    ball: &Ball,
+    albedo: f64,
+    offsets: &[f64],
+    orders: usize,
+    resolution: Resolution,
+) -> Option<Vec<Vec<Known>>> {
+    if ball.centre != Centre::Medium || offsets.iter().any(|&offset| offset <= 0.0) {
+        return None;
+    }
+    let fine = radiances(ball, albedo, offsets, orders, resolution)?;
+    let coarse = radiances(ball, albedo, offsets, orders, resolution.coarser())?;
+    let known = |(&fine, &coarse): (&f64, &f64)| resolution.known(fine, coarse);
+    let rows = fine.iter().zip(&coarse);
+    Some(rows.map(|(fine, coarse)| fine.iter().zip(coarse).map(known).collect()).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn single_scattering_in_a_thin_ball_is_a_hand_value() {
+        // σ → 0: ∫ σ a dt/(16π²(p² + t²)) = (σa/16π²) (2/p) arctan(h/p), h half the chord.
+        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-9 };
+        let found = orders(&ball, 0.5, &[0.6], 2, Resolution::COARSE).expect("a medium");
+        let exact = 0.5e-9 / (16.0 * PI * PI) * (2.0 / 0.6) * (0.8f64 / 0.6).atan();
+        assert!((found[0][0].value - exact).abs() < 1e-7 * exact);
+        assert!(found[0][1].value < 1e-8 * exact);
+        assert!(orders(&ball, 0.5, &[0.0], 2, Resolution::COARSE).is_none());
+    }
+}

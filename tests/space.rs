@@ -1,0 +1,264 @@
+//! Walks in space: exact answers against reference values that were computed by other means, what is
+//! skipped, and the draws of every shipped case.
+
+mod common;
+
+use common::{case, none, options};
+use serde::Deserialize;
+use trueflight::estimators::DrawBuffer;
+use trueflight::harness::record::Verdict;
+use trueflight::harness::{Case, Plan, judge, run};
+use trueflight::media::Volume;
+use trueflight::media::eq21::Eq21;
+use trueflight::rng::{Address, Streams};
+use trueflight::theory::space::content::content;
+use trueflight::theory::space::infinite::{collisions_within, fluence};
+
+#[derive(Deserialize)]
+struct Reference {
+    id: String,
+    params: Params,
+    value: Numbers,
+}
+
+#[derive(Deserialize)]
+struct Params {
+    c: Option<f64>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Numbers {
+    One(f64),
+    Many(Vec<f64>),
+}
+
+impl Reference {
+    fn one(&self) -> f64 {
+        match self.value {
+            Numbers::One(value) => value,
+            Numbers::Many(_) => panic!("{} is one number", self.id),
+        }
+    }
+
+    fn many(&self) -> &[f64] {
+        match &self.value {
+            Numbers::Many(values) => values,
+            Numbers::One(_) => panic!("{} is a list", self.id),
+        }
+    }
+}
+
+fn references(prefix: &str) -> Vec<Reference> {
+    let all: Vec<Reference> =
+        serde_json::from_str(include_str!("data/space.json")).expect("the reference values");
+    let found: Vec<Reference> =
+        all.into_iter().filter(|reference| reference.id.starts_with(prefix)).collect();
+    assert!(!found.is_empty(), "no {prefix}");
+    found
+}
+
+#[test]
+fn the_sphere_of_equation_21_has_the_content_of_the_reference() {
+    let known = content(&Volume::Eq21(Eq21)).expect("bounded");
+    let held = references("eq21/int_sigma_dV")[0].one();
+    assert!((known.value / held - 1.0).abs() < 1e-13, "{known:?}");
+    let surface = 400.0 * std::f64::consts::PI;
+    let collisions = references("eq21/a=1 mean collisions")[0].one();
+    assert!((4.0 * known.value / surface / collisions - 1.0).abs() < 1e-13);
+    let path = references("eq21/mean path")[0].one();
+    assert!((4.0 * 4000.0 * std::f64::consts::PI / 3.0 / surface - path).abs() < 1e-13);
+}
+
+#[test]
+fn fluence_and_collisions_around_a_point_source_are_those_of_the_references() {
+    for reference in references("inf/phi") {
+        let albedo = reference.params.c.expect("an albedo");
+        for (&value, distance) in reference.many().iter().zip([0.5, 1.0, 2.0, 5.0]) {
+            let found = fluence(albedo, distance);
+            let off = (found.value / value - 1.0).abs();
+            assert!(off < 1e-13, "c = {albedo}, r = {distance}: off by {off:e}");
+        }
+    }
+    let reference = &references("inf/collisions")[0];
+    for (&value, distance) in reference.many().iter().zip([0.5, 1.0, 2.0, 4.0]) {
+        let off = (collisions_within(0.9, distance).value / value - 1.0).abs();
+        assert!(off < 1e-13, "R = {distance}: off by {off:e}");
+    }
+}
+
+/// Draws of the first experiment of a case, and the streams behind them.
+fn draws_of(text: &str, count: usize) -> (DrawBuffer, Streams, f64) {
+    let cases = [case("space", text)];
+    let plan = Plan::new(&cases, &options(1, 100));
+    let ready = plan.cases[0].experiments[0].outcome.as_ref().expect("not refused");
+    let mut streams = Address { seed: 1, experiment: 7, block: 0, lane: 0 }.streams();
+    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    ready.experiment.fill(&mut streams, count, &mut buffer);
+    (buffer, streams, ready.experiment.skipped())
+}
+
+const RAY: &str = "ray = { origin = [0.5, 0.7, -1], direction = [0.1, 0.05, 1], length = 20 }";
+const LAYERS: &str = "volume.piecewise-constant = { breaks = [0, 1, 3, 4], values = [0.8, 0, 1.5],
+    bounds.box = { low = [0, 0, 0], high = [2, 2, 4] } }";
+
+fn furnace(volume: &str, albedo: f64, phase: &str, estimator: &str) -> String {
+    format!(
+        "title = \"t\"\n[problem.furnace]\n{volume}\n{RAY}\nalbedo = {albedo}\nphase.{phase}\n\
+         estimators = [{{ {estimator} }}]\n"
+    )
+}
+
+#[test]
+fn a_medium_that_only_absorbs_pays_for_transmittance_and_nothing_else() {
+    let walk = "particle = { rule = \"non-terminating\", sampling.constant = { value = 1.2 } }";
+    let volume = "volume.eq21 = {}";
+    let (isotropic, after, _) = draws_of(&furnace(volume, 0.0, "isotropic = {}", walk), 4096);
+    let forward = furnace(volume, 0.0, "henyey-greenstein = { g = 0.9 }", walk);
+    let (other, same, _) = draws_of(&forward, 4096);
+    assert_eq!((isotropic.values, &isotropic.lookups, after), (other.values, &other.lookups, same));
+    // A flight a number, as ratio tracking has it: the collisions are the same, draw by draw.
+    let ratio = format!(
+        "title = \"t\"\n[problem.transmittance]\n{volume}\n{RAY}\n\
+         estimators = [{{ ratio = {{ sampling.constant = {{ value = 1.2 }} }} }}]\n"
+    );
+    let (tracked, ..) = draws_of(&ratio, 4096);
+    assert_eq!(isotropic.lookups, tracked.lookups);
+}
+
+#[test]
+fn empty_cells_cost_no_lookup() {
+    let walk = |sampling: &str| {
+        let particle = format!("particle = {{ rule = \"non-terminating\", sampling.{sampling} }}");
+        draws_of(&furnace(LAYERS, 0.6, "isotropic = {}", &particle), 20_000)
+    };
+    let (whole, _, nothing) = walk("constant = { value = 1.5 }");
+    let (cells, _, skipped) = walk("local-majorants = { grid = [1, 1, 8] }");
+    assert_eq!((nothing, skipped), (0.0, 0.5));
+    let sum = |draws: &DrawBuffer| draws.lookups.iter().map(|&n| f64::from(n)).sum::<f64>();
+    assert!(sum(&cells) < 0.6 * sum(&whole), "{} of {}", sum(&cells), sum(&whole));
+    // Through nothing but empty cells there is no lookup at all.
+    let volume = LAYERS.replace("[0.8, 0, 1.5]", "[0, 0, 0]");
+    let walk = "particle = { rule = \"analog\", sampling.local-majorants = { grid = [2, 2, 2] } }";
+    let (empty, ..) = draws_of(&furnace(&volume, 0.6, "isotropic = {}", walk), 100);
+    assert_eq!((empty.lookups, &empty.values[0]), (vec![0; 100], &vec![1.0; 100]));
+}
+
+#[test]
+fn walks_are_refused_where_nothing_is_known_of_them() {
+    let refused = |text: &str| -> String {
+        let cases = [case("space", text)];
+        let plan = Plan::new(&cases, &options(1, 100));
+        match &plan.cases[0].experiments[0].outcome {
+            Err(refusal) => refusal.to_string(),
+            Ok(_) => String::new(),
+        }
+    };
+    let eq21 = |albedo: f64, estimator: &str| {
+        refused(&furnace("volume.eq21 = {}", albedo, "isotropic = {}", estimator))
+    };
+    let of = |rule: &str, sampling: &str| {
+        format!("particle = {{ rule = \"{rule}\", sampling.{sampling} }}")
+    };
+    let analog = eq21(0.7, &of("analog", "constant = { value = 0.8 }"));
+    assert_eq!(analog, "needs 0 ≤ σ_t ≤ σ̂, but σ_t may reach 1.250000 times σ̂ in the volume");
+    let below = eq21(0.7, &of("non-terminating", "constant = { value = 0.8 }"));
+    assert!(below.contains("a variance that theory bounds"), "{below}");
+    let ray = eq21(0.7, &of("weighted", "local-majorants = { segments = 8 }"));
+    assert!(ray.contains("σ̂ is given along the ray"), "{ray}");
+    let thick = eq21(0.7, &of("weighted", "constant = { value = 1000 }"));
+    assert!(thick.contains("1e4"), "{thick}");
+    let endless = refused(
+        "title = \"t\"\n[problem.infinite-medium]\nvolume.constant = { extinction = 1 }
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 1 }
+        albedo = 0.5\nphase.isotropic = {}
+        estimators = [{ particle = { rule = \"weighted\", sampling.constant = { value = 1 } } }]\n",
+    );
+    assert!(endless.contains("`weighted` never does"), "{endless}");
+}
+
+#[test]
+fn a_volume_without_bounds_is_a_mistake_with_a_cure() {
+    let text =
+        furnace("volume.constant = { extinction = 1 }", 0.5, "isotropic = {}", "particle = {}");
+    let error = common::mistakes(&text).expect("a mistake").render(false);
+    assert!(error.contains("never leave a volume without bounds"), "{error}");
+    assert!(error.contains("bounds.sphere"), "{error}");
+}
+
+#[test]
+fn what_no_page_takes_is_a_mistake_with_its_place() {
+    let wrong = |text: &str, expected: &str| {
+        let error = common::mistakes(text).map(|error| error.render(false)).unwrap_or_default();
+        assert!(error.contains(expected), "{expected} is not in: {error}");
+    };
+    let eq21 = |estimator: &str| furnace("volume.eq21 = {}", 0.5, "isotropic = {}", estimator);
+    let sampling = "sampling.constant.value = 1";
+    wrong(
+        &eq21(&format!("particle = {{ rule = \"analog\", roulette = 1.5, {sampling} }}")),
+        "`roulette` is above 1",
+    );
+    wrong(
+        &eq21(&format!("splitting = {{ rule = \"analog\", {sampling} }}")),
+        "splitting needs a bound",
+    );
+    let particle = format!("particle = {{ rule = \"analog\", {sampling} }}");
+    wrong(
+        &eq21(&particle).replace("albedo = 0.5", "albedo.constant = { extinction = 1.5 }"),
+        "the field may exceed 1 in the volume",
+    );
+    let infinite = |volume: &str, phase: &str, albedo: &str| {
+        format!(
+            "title = \"t\"\n[problem.infinite-medium]\n{volume}\n{RAY}\nalbedo{albedo}\n\
+             phase.{phase}\nradii = [1, 2]\nestimators = [{{ {particle} }}]\n"
+        )
+    };
+    let whole = "volume.constant = { extinction = 1 }";
+    let forward = "henyey-greenstein = { g = 0.5 }";
+    wrong(&infinite(whole, forward, " = 0.5"), "known for isotropic scattering");
+    wrong(&infinite("volume.eq21 = {}", "isotropic = {}", " = 0.5"), "has no end");
+    let field = ".constant = { extinction = 0.5 }";
+    wrong(&infinite(whole, "isotropic = {}", field), "albedo");
+    assert!(common::mistakes(&infinite(whole, "isotropic = {}", " = 0.5")).is_none());
+}
+
+#[test]
+fn every_rule_passes_in_every_shipped_case() {
+    let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium"];
+    let cases = Case::read_all(&folders).unwrap_or_else(|errors| {
+        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
+    });
+    let draws = std::env::var("TRUEFLIGHT_DRAWS").ok().and_then(|n| n.parse().ok());
+    let plan = Plan::new(&cases, &options(1, draws.unwrap_or(30_000)));
+    let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let (mut wrong, mut squares) = (Vec::new(), Vec::new());
+    for case in &record.results.cases {
+        for row in &case.rows {
+            if row.verdict == Some(Verdict::Fail) {
+                wrong.push(format!(
+                    "{} {} {}: {}",
+                    case.name, row.estimator, row.channel, row.reason
+                ));
+            }
+            // By their own standard error: most of these variances theory does not know.
+            let (Some(mean), Some(error), Some(truth)) = (row.mean, row.standard_error, row.truth)
+            else {
+                continue;
+            };
+            if error > 1e-9 * truth {
+                squares.push(((mean - truth) / error).powi(2));
+            }
+        }
+    }
+    none(&wrong);
+    let n = squares.len() as f64;
+    let mean = squares.iter().sum::<f64>() / n;
+    println!("{n} channels, mean z² {mean:.3}");
+    // χ² of n degrees by Wilson and Hilferty, 99.9 %; channels of one experiment are correlated, so
+    // that the band is that of half as many.
+    let end = |z: f64| {
+        let k = 0.5 * n;
+        (1.0 - 2.0 / (9.0 * k) + z * (2.0 / (9.0 * k)).sqrt()).powi(3)
+    };
+    assert!(n > 100.0 && mean > end(-3.29) && mean < end(3.29), "mean z² of {n} is {mean}");
+}

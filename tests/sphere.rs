@@ -1,0 +1,344 @@
+//! Balls against reference values that were computed by other means: escape probabilities, radiances
+//! under an environment, a black light sphere and a point source, and draws of all of them.
+
+mod common;
+
+use serde::Deserialize;
+
+use common::{case, judged, mistakes, none, options, predicted, rows};
+use trueflight::harness::Plan;
+use trueflight::harness::record::Verdict;
+use trueflight::theory::sphere::ball::Ball;
+use trueflight::theory::sphere::shells::{Centre, Resolution};
+use trueflight::theory::sphere::{Asked, Lights, answers, point};
+
+#[derive(Deserialize)]
+struct Reference {
+    ball: String,
+    a: f64,
+    light: String,
+    at: Vec<f64>,
+    value: Vec<f64>,
+}
+
+const RADIUS: f64 = 1.5;
+/// Half a unit of the last of thirteen decimals, and the rounding of the program that made them.
+const PRINTED: f64 = 6e-13;
+
+fn references(light: &str) -> Vec<Reference> {
+    let all: Vec<Reference> =
+        serde_json::from_str(include_str!("data/spheres.json")).expect("the reference values");
+    let found: Vec<Reference> = all.into_iter().filter(|r| r.light == light).collect();
+    assert!(found.len() >= 2);
+    found
+}
+
+/// σ_t as a function of r².
+fn extinction(reference: &Reference) -> fn(f64) -> f64 {
+    match reference.ball.as_str() {
+        "S1" => |_| 1.0,
+        _ => |r2| 2.0 * (1.0 - r2 / (RADIUS * RADIUS)),
+    }
+}
+
+fn compare(light: &str, centre: Centre, lights: Lights, asked: fn(f64) -> Asked) {
+    for reference in references(light) {
+        let extinction = extinction(&reference);
+        let ball = Ball { radius: RADIUS, centre, extinction: &extinction };
+        let asked: Vec<Asked> = reference.at.iter().map(|&at| asked(at)).collect();
+        let precise = |resolution, allowed: f64| {
+            let found = answers(&ball, reference.a, lights, resolution, &asked).expect("a medium");
+            for (known, exact) in found.iter().zip(&reference.value) {
+                let off = (known.value - exact).abs();
+                assert!(off <= known.error + PRINTED, "{light} {}: {off:e}", reference.ball);
+                assert!(known.error <= allowed, "{light} {}: {known:?}", reference.ball);
+            }
+            found
+        };
+        let fine = precise(Resolution::FINE, 1e-10);
+        for (known, exact) in fine.iter().zip(&reference.value) {
+            let off = (known.value - exact).abs();
+            assert!(off < 3e-12, "{light} {}: off by {off:e}", reference.ball);
+        }
+        precise(Resolution::COARSE, 1e-5);
+    }
+}
+
+const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
+
+fn from_afar(offset: f64) -> Asked {
+    Asked::Radiance { offset, from: f64::NEG_INFINITY }
+}
+
+#[test]
+fn escape_probabilities_are_those_of_the_references() {
+    compare("escape", Centre::Medium, SKY, Asked::Mean);
+}
+
+#[test]
+fn radiances_in_an_environment_are_those_of_the_references() {
+    compare("environment", Centre::Medium, SKY, from_afar);
+}
+
+#[test]
+fn radiances_of_a_black_light_sphere_are_those_of_the_references() {
+    let lamp = Lights { environment: 0.0, core: 1.0 };
+    compare("black", Centre::Black(0.3), lamp, from_afar);
+}
+
+#[test]
+fn a_point_source_is_that_of_the_references_order_by_order() {
+    for ball in ["S1", "S2"] {
+        let mut references = references("point");
+        references.retain(|reference| reference.ball == ball);
+        assert_eq!(references.len(), 3);
+        let offsets: Vec<f64> = references.iter().map(|reference| reference.at[0]).collect();
+        let extinction = extinction(&references[0]);
+        let space = Ball { radius: RADIUS, centre: Centre::Medium, extinction: &extinction };
+        let found = point::orders(&space, references[0].a, &offsets, 3, Resolution::FINE);
+        for (found, reference) in found.expect("a medium").iter().zip(&references) {
+            assert_eq!(found.len(), 4);
+            for (known, exact) in found.iter().zip(&reference.value) {
+                let off = (known.value - exact).abs();
+                assert!(off < 3e-12 && off <= known.error + PRINTED, "{ball}: off by {off:e}");
+                assert!(known.error <= 1e-10);
+            }
+        }
+    }
+}
+
+const BALLS: [(&str, &str, f64); 2] = [
+    (
+        "S1",
+        "volume.constant = { extinction = 1, bounds.sphere = { centre = [1, -1, 2], radius = 1.5 } }",
+        1.0,
+    ),
+    ("S2", "volume.radial = { centre = [1, -1, 2], radius = 1.5, coefficients = [2, -2] }", 2.0),
+];
+
+/// A case for one of the reference values: the eye looks along a slanted ray.
+fn text_of(reference: &Reference, at: f64, estimators: &str) -> String {
+    let (_, volume, sampling) = BALLS[usize::from(reference.ball == "S2")];
+    // Two directions at a right angle: along the ray, and from the centre to its foot.
+    let (along, aside) = ([0.6, 0.0, 0.8], [0.8, 0.0, -0.6]);
+    let is_point = reference.light == "escape";
+    let back = if is_point { 0.0 } else { 4.0 };
+    let origin: Vec<String> = (0..3)
+        .map(|i| format!("{}", [1.0, -1.0, 2.0][i] + at * aside[i] - back * along[i]))
+        .collect();
+    let origin = origin.join(", ");
+    let sought = if is_point { "mean-intensity" } else { "radiance" };
+    let light = match reference.light.as_str() {
+        "black" => "light.black-sphere = { radius = 0.3 }",
+        _ => "light.environment = {}",
+    };
+    format!(
+        "title = \"sphere\"\n[problem.sphere]\n{volume}\n\
+         ray = {{ origin = [{origin}], direction = [0.6, 0, 0.8], length = 9 }}\n\
+         sought = \"{sought}\"\nalbedo = {}\nphase.isotropic = {{}}\n{light}\n\
+         sampling.constant.value = {sampling}\nestimators = [{estimators}]",
+        reference.a
+    )
+}
+
+/// Every rule by itself and with shadow rays of every kind.
+const ALL: &str = "
+    { particle.rule = \"terminating\" }, { particle.rule = \"non-terminating\" },
+    { particle.rule = \"adaptive\" }, { particle.rule = \"analog\" }, { particle.rule = \"weighted\" },
+    { particle = { rule = \"weighted\", roulette = 0.4 } },
+    { next-event.rule = \"terminating\" },
+    { next-event = { rule = \"analog\", shadow.delta = { sampling = 2 } } },
+    { next-event = { rule = \"non-terminating\", shadow.ratio = { sampling = 2.5 } } },
+    { next-event = { rule = \"adaptive\", shadow.ratio = { sampling = 1.5, control = 0.5 } } },
+    { next-event = { rule = \"weighted\", roulette = 0.4, shadow.ratio = { sampling = 2 } } }";
+
+#[test]
+fn problems_know_the_reference_values() {
+    for light in ["escape", "environment", "black"] {
+        for reference in references(light) {
+            for (&at, &exact) in reference.at.iter().zip(&reference.value) {
+                for row in predicted(&text_of(&reference, at, ALL)) {
+                    let (truth, error) =
+                        (row.truth.expect("known"), row.truth_error.expect("known"));
+                    let off = (truth - exact).abs();
+                    assert!(
+                        off <= error + PRINTED && error < 1e-5,
+                        "{light} {at}: {truth} {exact}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Means by the gate; variances and whole laws of the walks that theory knows all about.
+#[test]
+fn draws_meet_the_reference_values() {
+    let (mut wrong, mut passed) = (Vec::new(), 0);
+    for light in ["escape", "environment", "black"] {
+        for reference in references(light) {
+            for &at in &reference.at {
+                for row in rows(&text_of(&reference, at, ALL), 60_000) {
+                    let estimator = &row.estimator;
+                    match row.verdict {
+                        Some(Verdict::Fail | Verdict::Refused) | None => {
+                            wrong.push(format!("{light} {at}, {estimator}: {}", row.reason));
+                        }
+                        Some(Verdict::Pass) => passed += 1,
+                        Some(_) => {}
+                    }
+                    // A z-score from the sample's own spread, where theory has no more than a bound.
+                    let error = row.standard_error.expect("drawn");
+                    let z = (row.mean.expect("drawn") - row.truth.expect("known")) / error;
+                    if z.abs() > 5.0 {
+                        wrong.push(format!("{light} {at}, {estimator}: z = {z:.2}"));
+                    }
+                }
+            }
+        }
+    }
+    none(&wrong);
+    assert!(passed > 120, "only {passed} passed");
+}
+
+/// The bound on the variance of next-event estimation holds, and is met where theory says so.
+#[test]
+fn bounds_on_variances_hold_and_are_sharp_for_walks_of_weight_one() {
+    let shadows = "
+        { next-event = { rule = \"analog\", shadow.delta = { sampling = 2 } } },
+        { next-event = { rule = \"weighted\", shadow.ratio = { sampling = 2 } } },
+        { next-event = { rule = \"analog\", shadow.ratio = { sampling = 1.2, control = 0.6 } } }";
+    for light in ["escape", "environment", "black"] {
+        for reference in references(light) {
+            let text = text_of(&reference, reference.at[1], shadows);
+            let case = [case("bounds", &text)];
+            let plan = Plan::new(&case, &options(1, 400_000));
+            let bounds: Vec<f64> = plan
+                .experiments()
+                .map(|(_, planned)| {
+                    let ready = planned.outcome.as_ref().unwrap_or_else(|r| panic!("{r}"));
+                    ready.prediction.channels[0].most_variance.expect("a bound")
+                })
+                .collect();
+            let record = judged(&case, &options(1, 400_000));
+            for (row, bound) in record.results.cases[0].rows.iter().zip(&bounds) {
+                let ratio = row.variance.expect("drawn") / bound;
+                let name = format!("{light} {}, {}: {ratio}", reference.ball, row.estimator);
+                assert!(ratio < 1.03, "{name}");
+                if row.estimator.contains("delta") {
+                    assert!(ratio > 0.97, "{name}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn what_has_no_answer_is_refused() {
+    let text = |volume: &str, ray: &str, rest: &str, light: &str| {
+        format!(
+            "title = \"s\"\n[problem.sphere]\nvolume.{volume}\nray = {ray}\n{rest}\nlight.{light}\n\
+             sampling.constant.value = 3\nestimators = [{{ particle.rule = \"analog\" }}]"
+        )
+    };
+    let ball = "constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }";
+    let ray = "{ origin = [0.5, 0, -2], direction = [0, 0, 1], length = 4 }";
+    let white = "albedo = 0.9\nphase.isotropic = {}";
+    let sky = "environment = {}";
+    let inside = "{ origin = [0.5, 0, 0], direction = [0, 0, 1], length = 4 }";
+    let mean = "albedo = 0.9\nphase.isotropic = {}\nsought = \"mean-intensity\"";
+    let cases = [
+        (text("eq21 = {}", ray, white, sky), "depends on the distance"),
+        (text("constant.extinction = 1", ray, white, sky), "without bounds"),
+        (
+            text(
+                "gaussian = { peak = 1, centre = [0, 0, 1], width = 1, \
+                  bounds.sphere = { centre = [0, 0, 0], radius = 1 } }",
+                ray,
+                white,
+                sky,
+            ),
+            "depends on the distance",
+        ),
+        (text(ball, ray, "albedo = 0.9\nphase.rayleigh = {}", sky), "no answer for `rayleigh`"),
+        (
+            text(
+                ball,
+                ray,
+                "albedo.gaussian = { peak = 1, centre = [0, 0, 0], width = 1 }\n\
+                             phase.isotropic = {}",
+                sky,
+            ),
+            "the albedo varies",
+        ),
+        (
+            text(ball, "{ origin = [2, 0, -2], direction = [0, 0, 1], length = 4 }", white, sky),
+            "misses",
+        ),
+        (text(ball, ray, mean, sky), "begins"),
+        (text(ball, ray, white, "black-sphere.radius = 1"), "its radius is 1"),
+        (text(ball, inside, white, "black-sphere.radius = 0.6"), "in the black sphere"),
+        (text(ball, inside, mean, "distant.direction = [0, 0, 1]"), "not radially symmetric"),
+        (text(ball, ray, white, "distant.direction = [0, 0, 1]"), "not radially symmetric"),
+        (text(ball, ray, white, "distant.direction = [0, 0, 0]"), "zero vector"),
+        (text(ball, ray, white, "point.position = [0, 0, 0]"), "infinite variance"),
+    ];
+    for (text, words) in cases {
+        let message = mistakes(&text).expect(words).render(false);
+        assert!(message.contains(words), "{words}: {message}");
+    }
+    let refused = |text: String, words: &str| {
+        let row = &predicted(&text)[0];
+        assert_eq!(row.verdict, Some(Verdict::Refused), "{words}");
+        assert!(row.reason.contains(words), "{words}: {}", row.reason);
+    };
+    let with = |estimator: &str| {
+        let text = text(ball, ray, white, sky);
+        text.replace("{ particle.rule = \"analog\" }", estimator)
+    };
+    let dense = ball.replace("extinction = 1", "extinction = 40");
+    refused(text(&dense, ray, white, sky).replace("value = 3", "value = 50"), "σ_t R ≤ 30");
+    refused(
+        with("{ particle = { rule = \"weighted\", sampling.constant.value = 0.9 } }"),
+        "σ̂ ≥ σ_t",
+    );
+    let origin = "{ origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }";
+    refused(text(ball, origin, mean, "distant.direction = [0, 0, 1]"), "met with chance 0");
+    let delta = "{ next-event = { rule = \"analog\", shadow.delta = { sampling = 0.9 } } }";
+    refused(with(delta), "σ̄ ≥ σ_t on every shadow ray");
+    let wild = "{ next-event = { rule = \"analog\", shadow.ratio = { sampling = 0.1 } } }";
+    refused(with(wild), "E[T̂²]");
+    let endless = "{ next-event = { rule = \"analog\", shadow.ratio = { sampling = 1e5 } } }";
+    refused(with(endless), "across the ball");
+}
+
+/// Error bounds of the resolution that draws are judged by cover what a finer one finds, in balls
+/// that the references do not have.
+#[test]
+fn coarse_answers_are_within_their_errors() {
+    let fields: [(&str, fn(f64) -> f64); 4] = [
+        ("dense", |_| 12.0),
+        ("hollow", |r2| 0.2 + 4.0 * r2 * r2),
+        ("blob", |r2| 6.0 * (-8.0 * r2).exp()),
+        ("thin", |_| 0.01),
+    ];
+    for (name, extinction) in fields {
+        for (centre, lights) in
+            [(Centre::Medium, SKY), (Centre::Black(0.4), Lights { environment: 0.0, core: 1.0 })]
+        {
+            let ball = Ball { radius: 1.0, centre, extinction: &extinction };
+            let asked = [Asked::Mean(0.5), Asked::Mean(0.99), from_afar(0.45), from_afar(0.97)];
+            let solve = |resolution| answers(&ball, 0.95, lights, resolution, &asked);
+            let coarse = solve(Resolution::COARSE).expect("a medium");
+            // No finer than needed: these are whole matrices.
+            let middle =
+                Resolution { nodes: 11, directions: 11, surface: 13, core: 19, ..Resolution::FINE };
+            let fine = solve(middle).expect("a medium");
+            for ((coarse, fine), asked) in coarse.iter().zip(&fine).zip(&asked) {
+                let off = (coarse.value - fine.value).abs();
+                assert!(off <= coarse.error + fine.error, "{name} {asked:?}: {off:e} {coarse:?}");
+                assert!(coarse.error <= 1e-4 * coarse.value, "{name} {asked:?}: {coarse:?}");
+            }
+        }
+    }
+}
