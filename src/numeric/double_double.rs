@@ -123,7 +123,7 @@ impl Wide {
         let mut sum = small;
         for n in 2..=12 {
             term = term * small / Self::from(f64::from(n));
-            sum = sum + term;
+            sum += term;
         }
         for _ in 0..HALVINGS {
             sum = sum.scaled(1) + sum * sum;
@@ -141,7 +141,7 @@ impl Wide {
         let (mut term, mut sum) = (self, self);
         for n in 2..=28 {
             term = term * self / Self::from(f64::from(n));
-            sum = sum + term;
+            sum += term;
         }
         sum
     }
@@ -174,7 +174,7 @@ impl Wide {
         let mut n = 3.0;
         while power.high.abs() > 1e-34 * sum.high.abs() && n < 120.0 {
             power = power * square;
-            sum = sum + power / Self::from(n);
+            sum += power / Self::from(n);
             n += 2.0;
         }
         sum.scaled(1)
@@ -196,7 +196,7 @@ impl Wide {
             even = -(even * square) / Self::from((2.0 * n - 1.0) * (2.0 * n));
             versed = versed - even;
             term = -(term * square) / Self::from((2.0 * n) * (2.0 * n + 1.0));
-            sine = sine + term;
+            sine += term;
         }
         for _ in 0..HALVINGS {
             let cosine = Self::ONE - versed;

@@ -141,7 +141,9 @@ fn whole_numbers(name: &str, seed: u64, parts: u64, law: &Law) -> Vec<Row> {
     let found: Vec<Part> =
         (0..parts).into_par_iter().map(|part| Part::of(law, name, seed, part)).collect();
     let mut exact = Exact::default();
-    found.iter().for_each(|part| exact.merge(&part.exact));
+    for part in &found {
+        exact.merge(&part.exact);
+    }
     let draws = parts * BUFFERS * BUFFER as u64;
     let range = format!("{:.1e} draws, {}", draws as f64, law.range);
     let [mean, variance, kurtosis] = exact.moments(draws);

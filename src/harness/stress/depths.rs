@@ -168,7 +168,7 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
             let [_, cosine] = (Wide::product(frequency, s) + Wide::from(phase)).sin_cos();
             cosine
         };
-        exact = exact + (cosine(from) - cosine(to)) * Wide::from(amplitude) / Wide::from(frequency);
+        exact += (cosine(from) - cosine(to)) * Wide::from(amplitude) / Wide::from(frequency);
     }
     let field = format!(
         "sines = {{ base = {base:e}, amplitudes = {amplitudes:?}, frequencies = {frequencies:?}, phases = {phases:?} }}"

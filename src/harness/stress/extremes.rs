@@ -56,7 +56,7 @@ fn trouble(planned: &Planned) -> Option<String> {
         }
     }
     let lookups = prediction.lookups.as_ref().map_or(0.0, |law| law.mean.min(law.variance));
-    (!(lookups >= 0.0)).then(|| format!("{name}: lookups {lookups:e}"))
+    (lookups.is_nan() || lookups < 0.0).then(|| format!("{name}: lookups {lookups:e}"))
 }
 
 fn see(text: &str, what: &str, seed: u64, is_drawn: bool, rows: &mut [Row; 2]) {

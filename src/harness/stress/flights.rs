@@ -87,7 +87,7 @@ fn pieces(dice: &mut Dice, trials: u32) -> Row {
                 if end > ends[0] {
                     let width = reach - from;
                     let slope = (b - a) / (to - from);
-                    sum = sum + width * (a + (slope * width).scaled(-1));
+                    sum += width * (a + (slope * width).scaled(-1));
                 }
             }
             sum

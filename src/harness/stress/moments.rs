@@ -59,18 +59,14 @@ impl Outcome {
     fn new(rule: Single, ratio: Wide) -> Self {
         let left = Wide::ONE - ratio;
         let is_below = left.high >= 0.0;
-        match rule {
-            Single::NonTerminating { albedo } => {
-                let scattered = ratio.abs() * Wide::from(albedo);
-                let sum = scattered + left.abs();
-                let loss = if is_below { Wide::ONE - sum } else { Wide::ONE + sum };
-                Self { death: scattered / sum, loss }
-            }
-            _ => {
-                let loss = if is_below { Wide::default() } else { Wide::from(2.0) };
-                Self { death: Wide::ONE - left.abs(), loss }
-            }
+        if let Single::NonTerminating { albedo } = rule {
+            let scattered = ratio.abs() * Wide::from(albedo);
+            let sum = scattered + left.abs();
+            let loss = if is_below { Wide::ONE - sum } else { Wide::ONE + sum };
+            return Self { death: scattered / sum, loss };
         }
+        let loss = if is_below { Wide::default() } else { Wide::from(2.0) };
+        Self { death: Wide::ONE - left.abs(), loss }
     }
 
     /// `E[(1 − W)^k]`.

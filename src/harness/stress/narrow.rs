@@ -105,8 +105,11 @@ impl Extinction for Scene {
     }
 }
 
+/// Compares both precisions on a scene, with a control, from a seed, over so many walks.
+type Comparison = fn(Scene, f64, u64, u64) -> Sums;
+
 /// The rules of all product estimators.
-const ESTIMATORS: [(&str, fn(Scene, f64, u64, u64) -> Sums); 8] = [
+const ESTIMATORS: [(&str, Comparison); 8] = [
     ("ratio", |scene, _, seed, walks| compare(scene, 0.0, &Weight, seed, walks)),
     ("residual-ratio", |scene, control, seed, walks| compare(scene, control, &Weight, seed, walks)),
     ("woodcock", |scene, _, seed, walks| compare(scene, 0.0, &Null, seed, walks)),

@@ -35,7 +35,7 @@ pub(super) fn normal_tail(z: Wide) -> Wide {
         let (mut term, mut sum) = (z, z);
         for n in 1..140 {
             term = term * z * z / Wide::from(f64::from(2 * n + 1));
-            sum = sum + term;
+            sum += term;
         }
         return Wide::from(0.5) - density * sum;
     }
@@ -76,7 +76,7 @@ fn even_degrees(dice: &mut Dice, trials: u32) -> Row {
         let (mut term, mut sum) = (Wide::ONE, Wide::ONE);
         for j in 1..pairs {
             term = term * half / Wide::from(j as f64);
-            sum = sum + term;
+            sum += term;
         }
         let exact = (-half).exp() * sum;
         if exact.high > 1e-200 {
@@ -206,7 +206,7 @@ fn catoni(dice: &mut Dice, trials: u32) -> Row {
             let t = Wide::from(y.abs());
             let psi = (t * (Wide::ONE + t.scaled(-1))).ln_1p();
             size += psi.value();
-            exact = exact + if y < 0.0 { -psi } else { psi };
+            exact += if y < 0.0 { -psi } else { psi };
         }
         let mut sums = PsiSums::<1>::default();
         y.chunks(1000).for_each(|y| sums.absorb(y, &[argument]));
