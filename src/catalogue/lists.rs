@@ -2,8 +2,11 @@
 
 use std::ops::RangeInclusive;
 
-use super::words::whole;
+use super::words::{number, whole};
 use super::{Domain, Entry, Settings, Value};
+
+/// So many mistakes of one list are told one by one.
+const TOLD: usize = 5;
 
 impl Settings<'_> {
     /// A list of numbers, at least `least` of them, that must be there.
@@ -79,18 +82,26 @@ impl Settings<'_> {
             return None;
         };
         let mut list = Vec::with_capacity(items.len());
-        for item in items {
-            match item.value {
-                Value::Number(x) if domain.contains(x) => list.push(x),
-                _ => {
-                    let what = match item.value {
-                        Value::Number(x) => format!("{x} stands in `{}`", entry.key),
-                        ref other => format!("{} stands in `{}`", other.kind(), entry.key),
-                    };
-                    let help = format!("each entry is {}", domain.words());
-                    self.fault_at(item.span.clone(), &entry.key, what, help);
-                }
+        let mut wrong = items.iter().filter(|item| match item.value {
+            Value::Number(x) if domain.contains(x) => {
+                list.push(x);
+                false
             }
+            _ => true,
+        });
+        for item in wrong.by_ref().take(TOLD) {
+            let what = match item.value {
+                Value::Number(x) => format!("{} stands in `{}`", number(x), entry.key),
+                ref other => format!("{} stands in `{}`", other.kind(), entry.key),
+            };
+            let help = format!("each entry is {}", domain.words());
+            self.fault_at(item.span.clone(), &entry.key, what, help);
+        }
+        if let Some(next) = wrong.next() {
+            let more = 1 + wrong.count();
+            let what = format!("{more} more entries of `{}` are wrong", entry.key);
+            let help = format!("each entry is {}", domain.words());
+            self.fault_at(next.span.clone(), &entry.key, what, help);
         }
         (list.len() == items.len()).then_some(list)
     }

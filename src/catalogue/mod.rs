@@ -13,3 +13,4 @@ mod words;
 pub use page::{Catalogue, Page};
 pub use settings::Settings;
 pub use tree::{Domain, Entry, Fault, Node, Value};
+pub use words::{number, rounded};

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-use super::words::{quoted, suggestion, whole};
+use super::words::{number, quoted, suggestion, whole};
 use super::{Domain, Entry, Fault, Value};
 
 /// A table that is being read.
@@ -82,7 +82,7 @@ impl<'a> Settings<'a> {
 
     pub(super) fn wrong(&self, entry: &Entry, wanted: &str) {
         let message = match &entry.node.value {
-            Value::Number(x) => format!("`{}` is {x}", entry.key),
+            Value::Number(x) => format!("`{}` is {}", entry.key, number(*x)),
             other => format!("`{}` is {}", entry.key, other.kind()),
         };
         let help = format!("it takes {wanted}");

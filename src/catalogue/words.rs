@@ -7,6 +7,23 @@ pub fn whole(range: &RangeInclusive<u64>) -> String {
     format!("a whole number from {} to {}", range.start(), range.end())
 }
 
+/// A number as a message shows it: the shortest digits that read back the same, with an exponent where
+/// plain ones would fill the line.
+#[must_use]
+pub fn number(x: f64) -> String {
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if scientific.len() < plain.len() { scientific } else { plain }
+}
+
+/// The same to six places, for numbers that were computed; six digits and an exponent for those that
+/// six places would hide or pad.
+#[must_use]
+pub fn rounded(x: f64) -> String {
+    let size = x.abs();
+    let is_plain = x == 0.0 || (1e-3..1e9).contains(&size) || !x.is_finite();
+    if is_plain { format!("{x:.6}") } else { format!("{x:.5e}") }
+}
+
 /// Words in back ticks, with commas between them.
 pub fn quoted<S: AsRef<str>>(words: &[S]) -> String {
     let words: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
@@ -38,4 +55,26 @@ fn distance(a: &str, b: &str) -> usize {
         }
     }
     row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_number_fills_a_line() {
+        for (x, text) in [(1e308, "1e308"), (0.25, "0.25"), (-1.0, "-1"), (5e-324, "5e-324")] {
+            assert_eq!(number(x), text);
+        }
+        for (x, text) in [
+            (1.2, "1.200000"),
+            (0.0, "0.000000"),
+            (-0.1, "-0.100000"),
+            (1e308, "1.00000e308"),
+            (2.5e-12, "2.50000e-12"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(rounded(x), text);
+        }
+    }
 }

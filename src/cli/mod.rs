@@ -22,6 +22,7 @@ mod render;
 mod run;
 mod selection;
 mod self_test;
+mod stress;
 mod verdict;
 
 use std::process::ExitCode;
@@ -69,6 +70,8 @@ enum Command {
     Render(render::Arguments),
     /// Does the gate keep its promises, and does it catch known bugs?
     SelfTest(self_test::Arguments),
+    /// Numerical stability: every quantity where it is hardest, against 32 digits
+    Stress(stress::Arguments),
     /// The catalogue: media, estimators, problems, checks, cases and more
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
@@ -91,6 +94,7 @@ pub fn main() -> ExitCode {
         Command::Plan(arguments) => plan::main(arguments, console),
         Command::Render(arguments) => render::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
+        Command::Stress(arguments) => stress::main(arguments, console),
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
         Command::Judge(arguments) => judge::main(arguments, console),

@@ -1,6 +1,7 @@
 //! Where an estimator exists and is unbiased.
 
 use super::Setup;
+use crate::catalogue::{number, rounded};
 use crate::media::Placement;
 use crate::numeric::Span;
 use crate::problems::Problem;
@@ -14,7 +15,7 @@ const SLACK: f64 = 1e-12;
 #[non_exhaustive]
 pub enum Refusal {
     /// An inequality that the estimator needs does not hold.
-    #[error("needs {needs}, but {found} at t = {at:.6}")]
+    #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
     Inequality {
         /// What must hold everywhere.
         needs: &'static str,
@@ -89,7 +90,7 @@ impl<P: Problem> Setup<P> {
             None => Ok(()),
             Some((at, size)) => Err(Refusal::Inequality {
                 needs: "σ̂ > 0 wherever the residual is not zero",
-                found: format!("σ̂ = 0 while |{}| = {size:.6}", self.residual_name()),
+                found: format!("σ̂ = 0 while |{}| = {}", self.residual_name(), rounded(size)),
                 at,
             }),
         }
@@ -138,7 +139,7 @@ impl<P: Problem> Setup<P> {
         match worst {
             Some((at, deficit)) if deficit > SLACK * scale => Err(Refusal::Inequality {
                 needs,
-                found: format!("{} = {:.6}", self.residual_name(), -deficit),
+                found: format!("{} = {}", self.residual_name(), rounded(-deficit)),
                 at,
             }),
             _ => Ok(()),
@@ -180,10 +181,8 @@ impl<P: Problem> Setup<P> {
                 let sampling = self.sampling.value(at);
                 let name = self.residual_name();
                 let ratio = excess * limit(at);
-                let found = format!(
-                    "σ̂ = {sampling:.6} and {name} = {:.6}, r = {ratio:.6},",
-                    ratio * sampling
-                );
+                let [flown, residual, shown] = [sampling, ratio * sampling, ratio].map(rounded);
+                let found = format!("σ̂ = {flown} and {name} = {residual}, r = {shown},");
                 Err(Refusal::Inequality { needs, found, at })
             }
             _ => Ok(()),
@@ -199,7 +198,7 @@ impl<P: Problem> Setup<P> {
         if self.log_unit == 0.0 {
             return Ok(());
         }
-        Err(Refusal::mismatch(needs, format!("τ = {:.6}", self.log_unit)))
+        Err(Refusal::mismatch(needs, format!("τ = {}", rounded(self.log_unit))))
     }
 
     /// One constant `σ̂ > 0` on the whole support.
@@ -211,7 +210,7 @@ impl<P: Problem> Setup<P> {
         let needs = "a constant σ̂ > 0";
         match self.sampling.single_value() {
             Some(value) if value > 0.0 || self.mesh.support().is_empty() => Ok(value),
-            Some(value) => Err(Refusal::mismatch(needs, format!("σ̂ = {value}"))),
+            Some(value) => Err(Refusal::mismatch(needs, format!("σ̂ = {}", number(value)))),
             None => Err(Refusal::mismatch(needs, "σ̂ varies along the ray")),
         }
     }

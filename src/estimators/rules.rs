@@ -41,7 +41,7 @@ impl Collision for Weight {
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let one = ratio.each(1.0);
-        Outcome { survival: one, weight: one - ratio, loss: ratio }
+        Outcome { survival: one, death: ratio.each(0.0), weight: one - ratio, loss: ratio }
     }
 
     #[inline(always)]
@@ -77,7 +77,8 @@ impl Collision for Null {
         let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
         // What is no number stays none.
         let survival = zero.or_more(one.or_less(one - ratio));
-        Outcome { survival, weight: one, loss: zero }
+        let death = zero.or_more(one.or_less(ratio));
+        Outcome { survival, death, weight: one, loss: zero }
     }
 
     /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
@@ -124,6 +125,7 @@ pub enum Single {
 fn select<L: Lane>(mask: L::Mask, yes: Outcome<L>, no: Outcome<L>) -> Outcome<L> {
     Outcome {
         survival: L::select(mask, yes.survival, no.survival),
+        death: L::select(mask, yes.death, no.death),
         weight: L::select(mask, yes.weight, no.weight),
         loss: L::select(mask, yes.loss, no.loss),
     }
@@ -137,6 +139,7 @@ impl Single {
         Outcome {
             // |1 − r| > 1 is no probability: such a case is refused, and a forced run shows the bias.
             survival: (one - ratio).size().or_less(one),
+            death: zero.or_more(L::select(below, ratio, two - ratio)),
             weight: L::select(below, one, -one),
             loss: L::select(below, zero, two),
         }
@@ -152,6 +155,7 @@ impl Single {
         Outcome {
             // At r = 1 and a = 0 nothing is left of the particle, whatever q.
             survival: L::select(sum.at_most(zero), zero, transmitted / sum),
+            death: L::select(sum.at_most(zero), one, scattered / sum),
             weight: L::select(below, sum, -sum),
             loss: L::select(below, ratio - scattered, one + sum),
         }
@@ -216,6 +220,7 @@ mod tests {
                 assert!((0.0..=1.0).contains(&o.survival), "{rule:?} at {r}");
                 assert!((o.survival * o.weight - (1.0 - r)).abs() < 1e-14, "{rule:?} at {r}");
                 assert!((o.loss - (1.0 - o.weight)).abs() < 1e-14, "{rule:?} at {r}");
+                assert!((o.death - (1.0 - o.survival)).abs() < 1e-14, "{rule:?} at {r}");
                 let due = (1.0 - r) / o.survival;
                 assert!(o.survival == 0.0 || (rule.due(r, o.survival) - due).abs() < 1e-14);
             }
@@ -230,6 +235,17 @@ mod tests {
             assert!((Null.due(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14);
             assert_eq!(Weight.due(r, weight.survival), (1.0 - r) / weight.survival);
         }
+    }
+
+    #[test]
+    fn rare_deaths_keep_their_digits() {
+        for r in [1e-9, -1e-9, 1e-15] {
+            let outcome = Single::NonTerminating { albedo: 0.7 }.outcome(r);
+            assert!((outcome.death / (0.7 * r.abs()) - 1.0).abs() < 1e-8, "{r}");
+            let death = Single::Terminating.outcome(r).death;
+            assert_eq!((death, Null.outcome(r).death), (r.max(0.0), r.max(0.0)));
+        }
+        assert_eq!(Single::Terminating.outcome(2.0 - 1e-12).death, 2.0 - (2.0 - 1e-12));
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! The bodies that bound a medium, and where a ray is inside them.
 
 use super::{Point, Ray};
-use crate::numeric::Span;
+use crate::numeric::double_double::{Wide, two_prod, two_sum};
+use crate::numeric::{Known, Span};
 
 /// A box with its faces along the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,6 +66,23 @@ impl Bounds {
         }
     }
 
+    /// Its ends with bounds on their errors, which are nothing where the ray itself begins or ends.
+    #[must_use]
+    pub fn ends(&self, ray: &Ray) -> [Known; 2] {
+        let inside = self.clip(ray);
+        let roundings = match self {
+            Self::Sphere { centre, radius } => {
+                let [_, offset] = passage(*centre, ray);
+                if is_plain(*centre, *radius, ray, offset) { 64.0 * radius } else { 0.0 }
+            }
+            _ => 0.0,
+        };
+        [(inside.from, 0.0), (inside.to, ray.length)].map(|(end, own)| {
+            let error = f64::EPSILON * (roundings + 2.0 * end.abs());
+            Known::new(end, if end == own { 0.0 } else { error })
+        })
+    }
+
     /// Whether the point is inside or on the boundary.
     #[must_use]
     pub fn contains(&self, p: Point) -> bool {
@@ -112,17 +130,64 @@ impl Bounds {
     }
 }
 
+/// Where the ray's line is nearest to a point, from the ray's origin, and how near that is.
+fn passage(centre: Point, ray: &Ray) -> [f64; 2] {
+    let to_centre = centre - ray.origin;
+    let foot = to_centre.dot(ray.direction);
+    [foot, (to_centre - ray.direction * foot).norm()]
+}
+
+/// Whether plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
+/// and the ray does not graze.
+fn is_plain(centre: Point, radius: f64, ray: &Ray, offset: f64) -> bool {
+    offset < 0.9 * radius && (centre - ray.origin).norm() < 4.0 * radius && radius > 1e-100
+}
+
 /// `|o + td − c| ≤ R`. The squared distance of the ray's line from the centre is taken from the
 /// residual vector, not from `|o−c|² − ((o−c)·d)²`, which cancels for far origins.
 fn clip_sphere(centre: Point, radius: f64, ray: &Ray) -> Span {
-    let to_centre = centre - ray.origin;
-    let foot = to_centre.dot(ray.direction);
-    let offset = (to_centre - ray.direction * foot).norm();
-    if offset >= radius {
-        return Span::empty(foot.clamp(0.0, ray.length));
+    let [foot, offset] = passage(centre, ray);
+    if !is_plain(centre, radius, ray, offset) {
+        return clip_sphere_exactly(centre, radius, ray);
     }
     let half = ((radius - offset) * (radius + offset)).sqrt();
     Span::new(foot - half, foot + half).intersect(ray.span())
+}
+
+/// The same for far origins and grazing rays, of which doubles lose the chord: in 32 digits, and
+/// rounded once.
+fn clip_sphere_exactly(centre: Point, radius: f64, ray: &Ray) -> Span {
+    let distances = (0..3).map(|i| (centre.0[i] - ray.origin.0[i]).abs());
+    let largest = distances.fold(radius, f64::max);
+    // A power of two, so that squares neither overflow nor underflow and nothing is rounded.
+    let power = -largest.log2().floor();
+    if !power.is_finite() {
+        return Span::empty(0.0);
+    }
+    #[allow(clippy::cast_possible_truncation)] // an exponent
+    let power = power as i32;
+    let axis = |i: usize| {
+        let to_centre = two_sum(centre.0[i], -ray.origin.0[i]).scaled(power);
+        (to_centre, ray.direction.0[i])
+    };
+    let axes = [axis(0), axis(1), axis(2)];
+    // The direction has length 1 but for rounding; distances are in units of its true length.
+    let square: Wide = axes.iter().map(|&(_, d)| two_prod(d, d)).sum();
+    let foot = axes.iter().map(|&(to, d)| to * Wide::from(d)).sum::<Wide>() / square;
+    let offset: Wide = axes
+        .iter()
+        .map(|&(to, d)| {
+            let residual = to - foot * Wide::from(d);
+            residual * residual
+        })
+        .sum();
+    let radius = Wide::from(radius).scaled(power);
+    let half = ((radius * radius - offset) / square).sqrt();
+    let end = |at: Wide| at.scaled(-power).value();
+    if half.high <= 0.0 {
+        return Span::empty(end(foot).clamp(0.0, ray.length));
+    }
+    Span::new(end(foot - half), end(foot + half)).intersect(ray.span())
 }
 
 fn clip_box(bounds: &Aabb, ray: &Ray) -> Span {
@@ -163,6 +228,44 @@ mod tests {
         let inside = sphere.clip(&ray([0.0, 0.0, 10.0], [1.0, 0.0, 0.0], 30.0));
         assert_eq!(inside, Span::new(0.0, 10.0));
         assert!(sphere.clip(&ray([0.0, 0.0, 10.0], [1.0, 0.0, 0.0], 0.0)).is_empty());
+    }
+
+    #[test]
+    fn a_ray_that_grazes_from_afar_keeps_its_chord() {
+        // |y| = 1 − 2⁻⁴⁰ at 2²⁰ radii: half a chord of √(2⁻³⁹ − 2⁻⁸⁰).
+        let sphere = Bounds::Sphere { centre: Point([0.0; 3]), radius: 1.0 };
+        let far = 2f64.powi(20);
+        let grazing = ray([-far, 1.0 - 2f64.powi(-40), 0.0], [1.0, 0.0, 0.0], 4e6);
+        let inside = sphere.clip(&grazing);
+        let half = (2f64.powi(-39) - 2f64.powi(-80)).sqrt();
+        assert!((0.5 * inside.length() / half - 1.0).abs() < far * f64::EPSILON / half);
+        let [from, to] = sphere.ends(&grazing);
+        assert!((from.value - (far - half)).abs() <= from.error && from.error < 1e-9);
+        assert!((to.value - (far + half)).abs() <= to.error);
+        // Numbers whose squares are none.
+        let large = Bounds::Sphere { centre: Point([0.0; 3]), radius: 1e200 };
+        assert!(
+            (large.clip(&ray([-1e201, 0.0, 0.0], [1.0, 0.0, 0.0], 1e202)).length() / 2e200 - 1.0)
+                .abs()
+                < 1e-14
+        );
+        let small = Bounds::Sphere { centre: Point([0.0; 3]), radius: 1e-200 };
+        assert!(
+            (small.clip(&ray([-1e-199, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0)).length() / 2e-200 - 1.0)
+                .abs()
+                < 1e-14
+        );
+        let nowhere = ray([f64::MAX, 0.0, 0.0], [1.0, 0.0, 0.0], 1.0);
+        let away = Bounds::Sphere { centre: Point([-f64::MAX; 3]), radius: 1.0 };
+        assert!(away.clip(&nowhere).is_empty());
+    }
+
+    #[test]
+    fn the_ends_of_the_ray_itself_are_exact() {
+        let sphere = Bounds::Sphere { centre: Point([0.0; 3]), radius: 1.0 };
+        let [from, to] = sphere.ends(&ray([0.0; 3], [0.0, 0.0, 1.0], 3.0));
+        assert_eq!((from.value, from.error), (0.0, 0.0));
+        assert!((to.value - 1.0).abs() < 1e-15 && to.error > 0.0 && to.error < 1e-13);
     }
 
     #[test]

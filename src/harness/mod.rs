@@ -28,6 +28,7 @@ pub mod scenario;
 pub mod self_test;
 mod shown;
 pub mod source;
+pub mod stress;
 pub mod suite;
 pub mod summary;
 pub mod sweep;

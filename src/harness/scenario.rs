@@ -7,7 +7,7 @@ use super::mutation::Walk;
 use super::sweep::What;
 pub use super::written::Names;
 use super::written::{Usual, Written, predict, read_if, refuse_idle_controls};
-use crate::catalogue::Settings;
+use crate::catalogue::{Settings, rounded};
 use crate::estimators::trial::Entry;
 use crate::estimators::{Experiment, Order, Portrait, Refusal, Setup, Site, controls, sampling};
 use crate::media::{Body, Piecewise};
@@ -235,7 +235,8 @@ impl<P: Mutable> Scenario<P> {
         }
         let needs = "draws between 1e-300 and 1e300 times T";
         let control = setup.control.optical_depth(setup.mesh.support()).value;
-        let found = format!("τ = {:.6}, of which the control takes {control:.6}", setup.log_unit);
+        let [whole, control] = [setup.log_unit, control].map(rounded);
+        let found = format!("τ = {whole}, of which the control takes {control}");
         Err(Refusal::mismatch(needs, found))
     }
 

@@ -8,6 +8,9 @@ use toml::de::{DeTable, DeValue};
 
 use crate::catalogue::{Entry, Fault, Node, Value};
 
+/// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
+const TOLD: usize = 50;
+
 /// The text of a case file and where it came from.
 #[derive(Debug, Clone)]
 pub struct Source {
@@ -66,9 +69,10 @@ impl CaseError {
         let Self::Faulty { source_text, faults } = self else {
             return format!("error: {self}");
         };
+        let (told, rest) = faults.split_at(faults.len().min(TOLD));
         let renderer = if colour { Renderer::styled() } else { Renderer::plain() };
         let path = source_text.path.display().to_string();
-        let shown = faults.iter().map(|fault| {
+        let shown = told.iter().map(|fault| {
             let title = if fault.path.is_empty() {
                 fault.message.clone()
             } else {
@@ -82,7 +86,11 @@ impl CaseError {
                 .annotation(annotation);
             renderer.render(&[Level::ERROR.primary_title(title).element(snippet)])
         });
-        shown.collect::<Vec<_>>().join("\n\n")
+        let mut shown: Vec<String> = shown.collect();
+        if !rest.is_empty() {
+            shown.push(format!("error: {} more mistakes in {path}", rest.len()));
+        }
+        shown.join("\n\n")
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{CATALOGUE, FreeFlight, Medium, Profile, Visitor, Volume};
-use crate::catalogue::{Domain, Settings};
+use crate::catalogue::{Domain, Settings, number};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
 
@@ -46,8 +46,7 @@ impl Body {
                 let field = read_volume(settings);
                 let ray = settings.table("ray").and_then(|ray| read_ray(&ray));
                 let ((name, volume), ray) = (field?, ray?);
-                let pieces = volume.pieces(volume.bounds().clip(&ray).length());
-                not_too_many(settings, "volume", pieces)?;
+                fits(settings, &volume, &ray)?;
                 Some(Self::Volume { name, volume: Arc::new(volume), ray })
             }
             (both, _) => {
@@ -65,10 +64,12 @@ impl Body {
         match self {
             Self::Line { span, .. } => {
                 let (name, profile) = read_line(settings)?;
+                not_too_many(settings, "medium", profile.visit(Pieces(*span)))?;
                 Some(Self::Line { name, profile: Arc::new(profile), span: *span })
             }
             Self::Volume { ray, .. } => {
                 let (name, volume) = read_volume(settings)?;
+                fits(settings, &volume, ray)?;
                 Some(Self::Volume { name, volume: Arc::new(volume), ray: *ray })
             }
         }
@@ -99,9 +100,10 @@ impl Body {
         match self {
             Self::Line { profile, span, .. } => Medium::new(profile.clone(), *span, *span),
             Self::Volume { volume, ray, .. } => {
-                let support = volume.bounds().clip(ray);
+                let ends = volume.bounds().ends(ray);
+                let support = Span::new(ends[0].value, ends[1].value);
                 let profile = Arc::new(volume.along(ray, support));
-                Medium::new(profile, ray.span(), support)
+                Medium::clipped(profile, ray.span(), ends)
             }
         }
     }
@@ -109,6 +111,22 @@ impl Body {
 
 /// More pieces than this along one ray are a mistake in the case: they would fill the memory.
 const MOST_PIECES: f64 = 1e7;
+
+/// Lattices are addressed by integers of 32 bits.
+const FARTHEST: f64 = 2_147_483_648.0;
+
+/// A ray sees no more pieces than fit, and none of them farther away than a lattice has addresses.
+fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
+    let inside = volume.bounds().clip(ray);
+    let farthest = volume.farthest(ray, inside);
+    if farthest < FARTHEST {
+        return not_too_many(settings, "volume", volume.pieces(inside.length()));
+    }
+    let found =
+        format!("the ray reaches {farthest:.1e} cells from the field's origin, and 2^31 is most");
+    settings.fault("volume", found, "bring the ray's origin nearer, or make the cells larger");
+    None
+}
 
 struct Pieces(Span);
 impl Visitor for Pieces {
@@ -160,7 +178,7 @@ fn read_span(settings: &Settings) -> Option<Span> {
     if from > to {
         settings.fault(
             "span",
-            format!("`span` ends at {to}, before it begins at {from}"),
+            format!("`span` ends at {}, before it begins at {}", number(to), number(from)),
             "it takes [from, to] with from ≤ to",
         );
         return None;

@@ -160,6 +160,12 @@ impl Field for Grid {
         self.0.highest(within) * (1.0 + 64.0 * f64::EPSILON)
     }
 
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        let start = self.0.lattice(ray.origin);
+        let slope = self.0.lattice_direction(ray.direction);
+        lattice::farthest(start, slope, inside)
+    }
+
     fn along(&self, ray: &Ray, inside: Span) -> GridRay {
         GridRay::new(self.0.clone(), ray, inside)
     }

@@ -14,6 +14,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use crate::catalogue::number;
 use crate::geometry::{Aabb, Point};
 
 /// The samples of a grid, x fastest.
@@ -67,7 +68,7 @@ pub fn read(path: &Path) -> Result<Samples, Unreadable> {
         Some(index) => {
             let [nx, ny, _] = samples.size;
             let (x, y, z) = (index % nx, index / nx % ny, index / nx / ny);
-            let message = format!("sample ({x}, {y}, {z}) is {}", samples.values[index]);
+            let message = format!("sample ({x}, {y}, {z}) is {}", number(samples.values[index]));
             wrong(message, "an extinction is finite and not negative")
         }
     }

@@ -16,8 +16,8 @@
 //! Sources: K. Perlin, *Improving Noise*, SIGGRAPH 2002 (quintic fade, edge gradients and their
 //! order); K. Perlin, *An Image Synthesizer*, SIGGRAPH 1985 (cubic fade).
 
-use crate::numeric::Lane;
 use crate::numeric::words::{self, Words32};
+use crate::numeric::{Lane, Span};
 
 /// The multipliers of the three lattice coordinates in the hash.
 const STRIDES: [u32; 3] = [0x8da6_b343, 0xd816_3841, 0xcb1a_b31f];
@@ -167,6 +167,14 @@ impl Cell {
 fn gradient(hashes: u64, end: u32) -> [f64; 3] {
     let along = |j: usize| std::array::from_fn(|n| f64::from(u8::from(n == j)));
     std::array::from_fn(|j| slope(hashes, end, along(j)))
+}
+
+/// The largest `|start| + |slope·t|` of any axis on a stretch; not a number where one is none.
+#[must_use]
+pub fn farthest(start: [f64; 3], slope: [f64; 3], inside: Span) -> f64 {
+    let t = inside.from.abs().max(inside.to.abs());
+    let reach = start.iter().zip(slope).map(|(a, b)| a.abs() + b.abs() * t);
+    reach.fold(0.0, |most, x| if x.is_nan() || x > most { x } else { most })
 }
 
 #[cfg(test)]

@@ -17,6 +17,8 @@ pub struct Medium {
     profile: Arc<Profile>,
     span: Span,
     support: Span,
+    /// What the rounding of the support's ends adds to the error of an optical depth.
+    blurs: [f64; 2],
 }
 
 impl Medium {
@@ -24,7 +26,20 @@ impl Medium {
     #[must_use]
     pub fn new(profile: Arc<Profile>, span: Span, support: Span) -> Self {
         let support = support.intersect(span);
-        Self { profile, span, support }
+        Self { profile, span, support, blurs: [0.0; 2] }
+    }
+
+    /// The same with a support whose ends are known to some error only.
+    #[must_use]
+    pub fn clipped(profile: Arc<Profile>, span: Span, ends: [Known; 2]) -> Self {
+        let medium = Self::new(profile, span, Span::new(ends[0].value, ends[1].value));
+        let blurs =
+            ends.map(
+                |end| {
+                    if end.error == 0.0 { 0.0 } else { end.error * medium.extinction(end.value) }
+                },
+            );
+        Self { blurs, ..medium }
     }
 
     /// The whole ray.
@@ -70,7 +85,14 @@ impl Medium {
     #[must_use]
     pub fn optical_depth(&self, span: Span) -> Known {
         let inside = span.intersect(self.support);
-        if inside.is_empty() { Known::new(0.0, 0.0) } else { self.profile.visit(Depth(inside)) }
+        let [first, last] = self.blurs;
+        let begins = if inside.from == self.support.from { first } else { 0.0 };
+        let ends = if inside.to == self.support.to { last } else { 0.0 };
+        if inside.is_empty() {
+            return Known::new(0.0, 0.0);
+        }
+        let depth = self.profile.visit(Depth(inside));
+        Known::new(depth.value, depth.error + (begins + ends))
     }
 
     /// The distance where the optical depth from the beginning of the support reaches `depth`;

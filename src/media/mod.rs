@@ -145,6 +145,13 @@ pub trait Field: Sized + Send + Sync + 'static {
         0.0
     }
 
+    /// The largest coordinate that a stretch of a ray reaches on the field's own lattice; 0 for fields
+    /// that have none.
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        let _ = (ray, inside);
+        0.0
+    }
+
     /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
     fn is_radial(&self) -> bool {
         false
@@ -249,6 +256,12 @@ macro_rules! media {
             #[must_use]
             pub fn pieces(&self, length: f64) -> f64 {
                 match self { $(Self::$Field(field) => field.pieces(length)),* }
+            }
+
+            /// The largest coordinate that a stretch of a ray reaches on the field's own lattice.
+            #[must_use]
+            pub fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+                match self { $(Self::$Field(field) => field.farthest(ray, inside)),* }
             }
 
             /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.

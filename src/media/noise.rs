@@ -243,6 +243,12 @@ impl Field for Noise {
         3f64.sqrt() * length * frequency * f64::from(1u32 << octaves)
     }
 
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        let finest = self.spectrum.frequency * f64::from(1u32 << (self.spectrum.octaves - 1));
+        let [start, slope] = [ray.origin, ray.direction].map(|p| (p * finest).0);
+        lattice::farthest(start, slope, inside)
+    }
+
     #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
         self.spectrum.value((p * self.spectrum.frequency).0, self.unit)

@@ -2,10 +2,12 @@
 //!
 //! Floor 0. Nothing here has heard of light, media or statistics.
 
+pub mod double_double;
 pub mod elementary;
 pub mod known;
 pub mod lane;
 pub mod matrix;
+pub mod narrow;
 pub mod pack;
 pub mod quadrature;
 pub mod roots;
@@ -13,6 +15,8 @@ pub mod single;
 pub mod sum;
 pub mod words;
 
+pub use double_double::Wide;
 pub use known::{Known, Span};
 pub use lane::{Lane, Row};
+pub use narrow::Narrow;
 pub use words::Words32;

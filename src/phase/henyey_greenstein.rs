@@ -25,7 +25,7 @@
 use std::f64::consts::PI;
 
 use super::{PhaseFunction, unit};
-use crate::catalogue::{Domain, Settings};
+use crate::catalogue::{Domain, Settings, number};
 use crate::numeric::Lane;
 
 /// The Henyey–Greenstein phase function.
@@ -54,7 +54,7 @@ impl PhaseFunction for HenyeyGreenstein {
         let phase = Self::new(g);
         if phase.is_none() {
             let help = "the mean cosine lies between -1 and 1, both excluded";
-            settings.fault("g", format!("`g` is {g}"), help);
+            settings.fault("g", format!("`g` is {}", number(g)), help);
         }
         phase
     }

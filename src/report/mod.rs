@@ -11,6 +11,7 @@ pub mod number;
 pub mod plots;
 pub mod rows;
 pub mod self_test;
+pub mod stress;
 pub mod totals;
 pub mod troubles;
 

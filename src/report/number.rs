@@ -3,8 +3,7 @@
 /// The shortest text that reads back as the same number, plain or with an exponent.
 #[must_use]
 pub fn exact(x: f64) -> String {
-    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
-    if scientific.len() < plain.len() { scientific } else { plain }
+    crate::catalogue::number(x)
 }
 
 /// At most `digits` significant digits, with an exponent where plain notation would hide or pad

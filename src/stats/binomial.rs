@@ -112,7 +112,7 @@ fn remainder(n: f64) -> f64 {
 }
 
 /// `x ln(x/m) + m − x`, by its series in `(x − m)/(x + m)` where `x` is near `m`.
-fn deviance(x: f64, m: f64) -> f64 {
+pub(super) fn deviance(x: f64, m: f64) -> f64 {
     if (x - m).abs() >= 0.1 * (x + m) {
         return x * (x / m).ln() + m - x;
     }

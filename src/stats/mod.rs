@@ -9,9 +9,11 @@ pub mod correlation;
 pub mod gate;
 pub mod multiplicity;
 pub mod normal;
+pub mod powers;
 pub mod reflection;
 pub mod tally;
 pub mod ties;
 
 pub use census::Census;
+pub use powers::Powers;
 pub use tally::{Moments2, Tally};

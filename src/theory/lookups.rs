@@ -76,7 +76,7 @@ impl Walk {
             }
             return;
         }
-        let absorbed: Vec<f64> = pairs().map(|(s, o)| s * (1.0 - o.survival)).collect();
+        let absorbed: Vec<f64> = pairs().map(|(s, o)| s * o.death).collect();
         let deaths: Vec<f64> = absorbed.iter().map(|rate| rate + product.killing).collect();
         let lost = mesh.integral(panel, &deaths);
         let alive = mesh.running(panel, &deaths).into_iter().map(|k| (-k).exp());

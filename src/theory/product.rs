@@ -107,8 +107,7 @@ impl<'a> Product<'a> {
         cut.refined(&kinks, &|mesh, panel| {
             let nodes = self.nodes(panel);
             let pairs = || nodes.sampling.iter().zip(&nodes.outcome);
-            let deaths: Vec<f64> =
-                pairs().map(|(s, o)| self.killing + s * (1.0 - o.survival)).collect();
+            let deaths: Vec<f64> = pairs().map(|(s, o)| self.killing + s * o.death).collect();
             let decay = mesh.running(panel, &deaths).iter().map(|k| (-k).exp()).collect();
             // A control that fits to the last digits leaves a residual of rounding noise, which no
             // halving makes smooth.
@@ -218,8 +217,7 @@ impl Totals {
             sum.add(mesh.integral(panel, &over(&|o| growth(o, k))));
             sum.add(f64::from(k - 1) * killing * panel.span.length());
         }
-        let deaths: Vec<f64> =
-            over(&|o| 1.0 - o.survival).iter().map(|rate| rate + killing).collect();
+        let deaths: Vec<f64> = over(&|o| o.death).iter().map(|rate| rate + killing).collect();
         let survivals = over(&|o| o.survival);
         let (k0, a0) = (self.deaths.value(), self.survivals.value());
         let alive: Vec<f64> =

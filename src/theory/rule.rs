@@ -8,6 +8,8 @@
 pub struct Outcome<L = f64> {
     /// `q_tran`, in `[0, 1]`.
     pub survival: L,
+    /// `1 − q_tran`, formed without cancellation.
+    pub death: L,
     /// The factor of a survivor, `(1 − r)/q_tran`.
     pub weight: L,
     /// `1 − weight`, formed without cancellation.
@@ -18,7 +20,7 @@ impl Outcome {
     /// `E[(1 − W)^k]`.
     #[must_use]
     pub fn mean_loss(&self, k: i32) -> f64 {
-        (1.0 - self.survival) + self.survival * self.loss.powi(k)
+        self.death + self.survival * self.loss.powi(k)
     }
 }
 

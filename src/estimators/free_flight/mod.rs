@@ -1,5 +1,6 @@
 //! Samplers of the free flight along a ray.
 
+use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::FreeFlight;
 
@@ -12,7 +13,7 @@ fn resolved(setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
     if depth <= DEEPEST {
         return Ok(());
     }
-    Err(Refusal::mismatch("an optical depth of at most 700", format!("τ = {depth:.6}")))
+    Err(Refusal::mismatch("an optical depth of at most 700", format!("τ = {}", rounded(depth))))
 }
 
 estimators! {

@@ -12,7 +12,7 @@
 //! σ_t = 0 there is nothing to light, and where it misses the bounds nothing in the way: neither
 //! costs a lookup.
 
-use crate::catalogue::{Domain, Settings};
+use crate::catalogue::{Domain, Settings, number, rounded};
 use crate::estimators::{Inputs, Refusal, Setup};
 use crate::geometry::Ray;
 use crate::media::{Extinction, Volume};
@@ -85,7 +85,10 @@ pub fn require_shadow(setup: &Setup<SingleScattering>, shadow: Tracking) -> Resu
         return Ok(());
     }
     let needs = "σ̄ ≥ σ_t on every shadow ray";
-    Err(Refusal::mismatch(needs, format!("σ̄ = {sampling} and σ_t is bounded by {bound:.6} only")))
+    Err(Refusal::mismatch(
+        needs,
+        format!("σ̄ = {} and σ_t is bounded by {} only", number(sampling), rounded(bound)),
+    ))
 }
 
 impl Connection {

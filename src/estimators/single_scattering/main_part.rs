@@ -7,6 +7,7 @@
 //! The inverse is closed because the pieces are straight. It needs `σ_m > 0` wherever `σ_t > 0`, or
 //! some of the light is never found.
 
+use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup};
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Lane, Span};
@@ -74,7 +75,10 @@ pub fn require_straight(setup: &Setup<SingleScattering>) -> Result<(), Refusal> 
         .fold((f64::INFINITY, 0.0f64), |(low, high), value| (low.min(value), high.max(value)));
     // The end of a line that falls to 0 is rounded.
     if lowest < -ROUNDING * highest {
-        return Err(Refusal::mismatch("a control σ_m ≥ 0", format!("it falls to {lowest:.6}")));
+        return Err(Refusal::mismatch(
+            "a control σ_m ≥ 0",
+            format!("it falls to {}", rounded(lowest)),
+        ));
     }
     let absorbed = 1.0 - setup.control_transmittance;
     if setup.control.optical_depth(setup.mesh.support()).value == 0.0 {

@@ -2,6 +2,7 @@
 
 pub mod walk;
 
+use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::{Problem, Slab};
 use crate::theory::slab::{self, Answer, Pieces, Walk};
@@ -51,7 +52,7 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
         let slab = &setup.problem;
         let depth = slab.medium().optical_depth(setup.mesh.support()).value;
         let (albedo, phase) = (slab.albedo(), slab.incidence().phase.label());
-        let found = format!("a = {albedo}, τ = {depth:.6}, phase {phase}");
+        let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
         return Err(Refusal::mismatch(needs, found));
     }
     if walk_of(setup, rule).diverges() {

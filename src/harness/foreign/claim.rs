@@ -35,7 +35,7 @@ pub struct Claim {
 #[non_exhaustive]
 pub enum ClaimError {
     /// Not a finite number, or negative where it must not be.
-    #[error("{what} = {value} is not {wanted}; give {what} as {wanted}")]
+    #[error("{what} = {} is not {wanted}; give {what} as {wanted}", crate::catalogue::number(*value))]
     Number {
         /// Which number.
         what: &'static str,

@@ -22,12 +22,12 @@
 
 use super::claim::{Claim, ClaimError};
 use super::judgement::Judgement;
-use super::powers::Powers;
 use super::scalar::{Ask, Levels, Scalar};
 use super::{Draws, ForeignError};
 use crate::harness::checks::mean::FURTHEST;
 use crate::harness::plan::{BLOCK, MISS};
 use crate::harness::record::Verdict;
+use crate::stats::Powers;
 use crate::stats::gate;
 
 /// The widest ε of a mean that is chosen without being asked for.

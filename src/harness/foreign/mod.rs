@@ -14,7 +14,6 @@ mod csv;
 pub mod judge;
 pub mod judgement;
 mod npy;
-mod powers;
 mod raw;
 mod scalar;
 

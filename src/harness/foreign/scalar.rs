@@ -13,10 +13,10 @@
 //! its error rates only asymptotically, and the verdict says so.
 
 use super::judgement::ScalarFinding;
-use super::powers::Powers;
 use crate::harness::plan::BLOCK;
 use crate::harness::record::{GateFinding, Verdict};
 use crate::numeric::sum::Sum;
+use crate::stats::Powers;
 use crate::stats::gate::{self, Decision, Design, Evidence, Gains, GateSums};
 
 /// The largest relative standard error of an estimated variance with which draws are judged.

@@ -15,6 +15,9 @@ const SVG_UNITS: u32 = 10;
 /// A PNG is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
 const PNG_UNITS: u32 = 3;
 
+/// No coordinate is farther from the sheet's corner, in units.
+const FARTHEST: f64 = 1e6;
+
 /// The sheet as an SVG document.
 ///
 /// # Errors
@@ -192,9 +195,10 @@ fn pixels(sheet: &Sheet, units: u32) -> (u32, u32) {
 }
 
 fn whole(at: Spot, units: f64) -> (i32, i32) {
-    // Saturates far outside of any sheet; figures clip to their panels long before.
+    // Stops far outside of any sheet, figures clip to their panels long before, and where the
+    // backend's differences of coordinates still fit its integers.
     #[expect(clippy::cast_possible_truncation)]
-    let round = |x: f64| (x * units).round() as i32;
+    let round = |x: f64| (x * units).round().clamp(-FARTHEST, FARTHEST) as i32;
     (round(at[0]), round(at[1]))
 }
 
@@ -207,4 +211,20 @@ fn natural(x: f64) -> u32 {
 
 fn in_words(error: impl std::fmt::Display) -> String {
     error.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::plots::style::DARK;
+
+    #[test]
+    fn what_lies_beyond_all_integers_is_painted() {
+        let mut sheet = Sheet::new(40.0, 30.0);
+        let far = [f64::MAX, f64::MIN, f64::INFINITY, f64::NAN, 1e300, -1e300];
+        sheet.path(far.iter().zip(far.iter().rev()).map(|(&x, &y)| [x, y]).collect(), 2.0, DARK);
+        sheet.area(vec![[-1e300, 0.0], [1e300, 0.0], [0.0, 1e300]], DARK);
+        sheet.text([1e300, -1e300], "far", 12.0, DARK, Align::Start);
+        assert!(svg(&sheet).is_ok() && png(&sheet).is_ok());
+    }
 }

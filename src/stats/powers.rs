@@ -9,14 +9,14 @@ const RESOLUTION: f64 = 1e-13;
 
 /// Sums of y, y², y³ and y⁴; the blocks of the first are summed in lanes, in a fixed order.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Powers {
+pub struct Powers {
     draws: u64,
     sums: [Sum; 4],
 }
 
 impl Powers {
     /// Adds a block.
-    pub(super) fn absorb(&mut self, y: &[f64]) {
+    pub fn absorb(&mut self, y: &[f64]) {
         let mut lanes = [[0.0; LANES]; 4];
         let (rows, rest) = y.as_chunks::<LANES>();
         for row in rows {
@@ -33,8 +33,15 @@ impl Powers {
         self.draws += y.len() as u64;
     }
 
+    /// Adds the sums of later draws.
+    pub fn merge(&mut self, later: &Self) {
+        self.draws += later.draws;
+        self.sums.iter_mut().zip(&later.sums).for_each(|(sum, later)| sum.merge(later));
+    }
+
     /// How many draws.
-    pub(super) fn draws(&self) -> u64 {
+    #[must_use]
+    pub fn draws(&self) -> u64 {
         self.draws
     }
 
@@ -44,18 +51,21 @@ impl Powers {
     }
 
     /// The mean of y.
-    pub(super) fn mean(&self) -> f64 {
+    #[must_use]
+    pub fn mean(&self) -> f64 {
         self.raw(1)
     }
 
     /// s², with `n − 1` in the denominator.
-    pub(super) fn variance(&self) -> f64 {
+    #[must_use]
+    pub fn variance(&self) -> f64 {
         let n = self.draws as f64;
         (self.raw(2) - self.raw(1) * self.raw(1)).max(0.0) * n / (n - 1.0).max(1.0)
     }
 
     /// The sample kurtosis; infinite for draws without spread.
-    pub(super) fn kurtosis(&self) -> f64 {
+    #[must_use]
+    pub fn kurtosis(&self) -> f64 {
         let [m, m2, m3, m4] = [1, 2, 3, 4].map(|k| self.raw(k));
         let variance = m2 - m * m;
         let fourth = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m * m * m * m;
@@ -64,7 +74,8 @@ impl Powers {
     }
 
     /// The relative standard error of the mean of y²; infinite where all y are 0.
-    pub(super) fn square_error(&self) -> f64 {
+    #[must_use]
+    pub fn square_error(&self) -> f64 {
         let (square, fourth) = (self.raw(2), self.raw(4));
         if square > 0.0 {
             ((fourth / (square * square) - 1.0).max(0.0) / self.draws as f64).sqrt()
@@ -74,7 +85,8 @@ impl Powers {
     }
 
     /// An upper estimate of `E[y²]`: the mean of y² and three of its standard errors.
-    pub(super) fn upper_square(&self) -> f64 {
+    #[must_use]
+    pub fn upper_square(&self) -> f64 {
         let (square, fourth) = (self.raw(2), self.raw(4));
         square + 3.0 * ((fourth - square * square).max(0.0) / self.draws as f64).sqrt()
     }
@@ -97,7 +109,11 @@ mod tests {
     fn the_numbers_to_a_thousand() {
         let mut powers = Powers::default();
         let values: Vec<f64> = (0..1000).map(|i| f64::from(i) - 499.5).collect();
-        values.chunks(77).for_each(|block| powers.absorb(block));
+        for halves in values.chunks(154) {
+            let mut both = Powers::default();
+            halves.chunks(77).for_each(|block| both.absorb(block));
+            powers.merge(&both);
+        }
         assert_eq!(powers.draws(), 1000);
         assert!(powers.mean().abs() < 1e-12);
         assert!((powers.variance() / (1000.0 * 1001.0 / 12.0) - 1.0).abs() < 1e-14);
@@ -106,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn draws_without_spread_have_no_tails() {
+    pub fn draws_without_spread_have_no_tails() {
         let mut powers = Powers::default();
         powers.absorb(&[0.1; 1000]);
         assert!(powers.kurtosis().is_infinite());

@@ -1,0 +1,47 @@
+//! `trueflight stress`: where doubles run out of digits, and by how much.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use trueflight::harness::stress::{self, Effort, PAGES};
+use trueflight::report::{self, stress as page};
+
+use super::Console;
+use super::output;
+
+/// Arguments of `stress`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A short form of every part: seconds instead of minutes
+    #[arg(long)]
+    quick: bool,
+    /// Seed of the random parameters
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    seed: u64,
+    /// Threads [default: one per processor]; results do not depend on it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
+    /// Folder of results; tables and plot go to `stress` below it
+    #[arg(long, short, default_value = "results", value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Stresses all quantities, prints and writes the table, and answers 1 if any bound is broken.
+pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+    output::writable(&arguments.out)?;
+    let threads = arguments.threads.map_or(0, usize::from);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let effort = if arguments.quick { Effort::Quick } else { Effort::Full };
+    // Single precision comes after the pages.
+    let bar = output::progress("stressing", "parts", PAGES.len() as u64 + 1, console);
+    let found = pool.install(|| stress::all(effort, arguments.seed, &|_| bar.inc(1)));
+    bar.finish_and_clear();
+    let written = report::write(&page::artifacts(&found)?, &arguments.out);
+    if !console.quiet {
+        output::print(&page::table(&found, output::pen(console)))?;
+    }
+    if let Some(error) = written.into_iter().next() {
+        return Err(error.into());
+    }
+    Ok(u8::from(!found.holds()))
+}

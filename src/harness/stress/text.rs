@@ -1,0 +1,25 @@
+//! Media and cases written as text, as users write them.
+
+use std::cell::RefCell;
+use std::path::{Path, PathBuf};
+
+use crate::catalogue::Settings;
+use crate::harness::{Case, Source};
+use crate::media::{Body, Medium};
+
+fn source(text: &str) -> Source {
+    Source { name: "stress".into(), path: PathBuf::from("stress.toml"), text: text.to_owned() }
+}
+
+/// The field along a line or ray; `None` where the text is refused.
+pub(super) fn medium(text: &str) -> Option<Medium> {
+    let faults = RefCell::default();
+    let root = source(text).parse(&faults);
+    let body = Body::read(&Settings::new(&root, Path::new("."), &faults));
+    body.filter(|_| faults.borrow().is_empty()).map(|body| body.medium())
+}
+
+/// A case; `None` where it is refused.
+pub(super) fn case(text: &str) -> Option<Case> {
+    Case::read(&source(text)).ok()
+}

@@ -1,0 +1,61 @@
+//! `trueflight stress`: the short form holds, finds the same numbers on any threads, and says no when a
+//! bound is broken.
+
+use std::fs;
+use std::path::Path;
+
+use assert_cmd::Command;
+use trueflight::harness::stress::{Effort, Measure, PAGES, Row, Stress, all, narrow};
+use trueflight::report::console::layout::Pen;
+use trueflight::report::stress as page;
+
+fn stress(out: &Path, threads: &str) -> (Option<i32>, String) {
+    let mut command = Command::cargo_bin("trueflight").expect("built");
+    let arguments = ["stress", "--quick", "--threads", threads, "--out"];
+    let output = command.env("COLUMNS", "160").args(arguments).arg(out).output().expect("runs");
+    (output.status.code(), String::from_utf8(output.stdout).expect("text"))
+}
+
+#[test]
+fn every_bound_holds_in_the_short_form_whatever_the_threads() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let outs = ["1", "3"].map(|threads| folder.path().join(threads));
+    let mut tables = Vec::new();
+    for (out, threads) in outs.iter().zip(["1", "3"]) {
+        let (code, text) = stress(out, threads);
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.contains("bounds hold"), "{text}");
+        tables.push(text);
+    }
+    for name in ["stress.csv", "stress.json", "single-precision.csv", "single-precision.svg"] {
+        let [one, three] = outs.each_ref().map(|out| {
+            fs::read(out.join("stress").join(name))
+                .unwrap_or_else(|error| panic!("{name}: {error}"))
+        });
+        assert!(!one.is_empty());
+        assert!(one == three, "{name} depends on the threads");
+    }
+    let csv = fs::read_to_string(outs[0].join("stress/stress.csv")).expect("read");
+    assert!(csv.lines().count() > 3 * PAGES.len(), "{csv}");
+    let json = fs::read(outs[0].join("stress/stress.json")).expect("read");
+    let json: serde_json::Value = serde_json::from_slice(&json).expect("JSON");
+    assert_eq!(json["holds"], true);
+}
+
+#[test]
+fn a_broken_bound_is_told_with_its_place() {
+    let mut row = Row::new("ln", "1 … 2", Measure::Relative, 1e-16);
+    row.see(3e-16, || "x = 1.25".into());
+    let narrow = narrow::Narrow { curves: Vec::new() };
+    let broken = Stress { rows: vec![row], narrow, seconds: 0.0 };
+    assert!(!broken.holds());
+    let text = page::table(&broken, Pen { width: 100, colour: false });
+    assert!(text.contains("NO") && text.contains("x = 1.25") && text.contains("1 of 1"), "{text}");
+}
+
+#[test]
+fn another_seed_holds_too() {
+    let found = all(Effort::Quick, 2, &|_| {});
+    let broken: Vec<&Row> = found.rows.iter().filter(|row| !row.holds()).collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+}
