@@ -10,7 +10,7 @@
 //! Power series lose their digits there: the lower tail at a level of 2e-7 was 30 % off at 1e8 degrees.
 //!
 //! Source: N. M. Temme, *The asymptotic expansion of the incomplete gamma functions*, SIAM Journal on
-//! Mathematical Analysis 10 (1979); coefficients by A. R. DiDonato, A. H. Morris, *Computation of the
+//! Mathematical Analysis 10 (1979); coefficients by A. R. Di Donato, A. H. Morris, *Computation of the
 //! incomplete gamma function ratios and their inverse*, ACM Transactions on Mathematical Software 12
 //! (1986).
 
