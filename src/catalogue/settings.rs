@@ -9,7 +9,7 @@ use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
-use super::words::{number, quoted, suggestion, whole};
+use super::words::{brief, number, quoted, suggestion, whole};
 use super::{Domain, Entry, Fault, Value};
 
 /// A table that is being read.
@@ -183,7 +183,7 @@ impl<'a> Settings<'a> {
         };
         let word = words.iter().find(|word| *word == text).copied();
         if word.is_none() {
-            let message = format!("`{}` is \"{text}\"", entry.key);
+            let message = format!("`{}` is \"{}\"", entry.key, brief(text));
             let help = suggestion(text, words, wanted);
             self.fault_at(entry.node.span.clone(), &entry.key, message, help);
         }

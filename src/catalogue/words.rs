@@ -57,6 +57,14 @@ fn distance(a: &str, b: &str) -> usize {
     row[b.len()]
 }
 
+/// The beginning of a text that is too long for a message.
+pub fn brief(text: &str) -> String {
+    const MOST: usize = 60;
+    let mut letters = text.chars();
+    let beginning: String = letters.by_ref().take(MOST).collect();
+    if letters.next().is_some() { beginning + "…" } else { beginning }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -16,15 +16,22 @@ const MOST_LOOKUPS: f64 = 1e6;
 pub fn refuse_what_cannot_be_computed(ready: Ready) -> Result<Ready, Refusal> {
     for channel in &ready.prediction.channels {
         let truth = channel.truth.value;
-        if !(truth.is_finite() && truth >= FAINTEST) {
+        let is_known = channel.truth.error.is_finite();
+        if !(truth.is_finite() && truth >= FAINTEST && is_known) {
             let needs = "an answer between 1e-300 and infinity";
             let channel = &channel.name;
-            let found = if truth.is_nan() {
+            let found = if truth.is_nan() || !is_known {
                 format!("theory does not know {channel}")
             } else {
                 format!("{channel} is {truth:e}")
             };
             return Err(Refusal::mismatch(needs, found));
+        }
+        // What is biased may have another mean than the truth, in units of which all is counted.
+        let mean = channel.mean.value;
+        if !mean.is_finite() {
+            let needs = "draws whose mean is below 1e300 truths";
+            return Err(Refusal::mismatch(needs, format!("theory expects {mean:e}")));
         }
     }
     match &ready.prediction.lookups {

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 
 use super::addresses;
 use super::case::Case;
-use super::checks::{self, Kind, Question, Scalar, Subject};
+use super::checks::{self, Kind, Pilot, Question, Scalar, Subject};
 use super::options::Options;
 use super::scenario::{Names, Prepared, Ready, Variation};
 use crate::estimators::{DrawBuffer, Order, Refusal};
@@ -27,7 +27,7 @@ const LAW_SHARE: f64 = 0.2;
 /// β, the chance that a check passes although the bias is as large as its tolerance.
 pub const MISS: f64 = 0.01;
 /// Draws that estimate a variance where theory has none.
-const PILOT_DRAWS: usize = 4096;
+const PILOT_DRAWS: usize = 1 << 16;
 
 /// The levels that the run's questions share, fixed before the first draw.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -297,8 +297,8 @@ impl Planned {
         let most = self.draws;
         let channels = || ready.prediction.channels.iter();
         let forced = self.expect_biased && channels().any(|channel| channel.moments.is_none());
-        let pilots = (forced || channels().any(|channel| channel.by_pilots))
-            .then(|| self.pilot_variances(ready));
+        let pilots =
+            (forced || channels().any(|channel| channel.by_pilots)).then(|| self.pilots(ready));
         let mut subject = Subject {
             prediction: &ready.prediction,
             draws: most,
@@ -308,7 +308,7 @@ impl Planned {
             expect_biased: self.expect_biased,
             keeps_books: ready.experiment.keeps_books(),
             is_in_turn: ready.experiment.order() == Order::Along,
-            pilot_variances: pilots.as_deref(),
+            pilots: pilots.as_deref(),
         };
         if case.tolerance.says_something() {
             let needed = needed(&checks::questions(&subject), most);
@@ -337,8 +337,8 @@ impl Planned {
         self.questions = questions;
     }
 
-    /// The variances of a few draws from streams of their own, channel by channel.
-    fn pilot_variances(&self, ready: &Ready) -> Vec<f64> {
+    /// What a few draws from streams of their own say of spreads, channel by channel.
+    fn pilots(&self, ready: &Ready) -> Vec<Pilot> {
         let mut streams = Address { block: PILOT, ..self.address }.streams();
         let channels = ready.prediction.channels.len();
         let mut buffer = DrawBuffer::new(channels);
@@ -347,12 +347,7 @@ impl Planned {
             ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
             values.iter_mut().zip(&buffer.values).for_each(|(all, new)| all.extend(new));
         }
-        let variance = |values: &Vec<f64>| {
-            let n = values.len() as f64;
-            let mean = values.iter().sum::<f64>() / n;
-            values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / n
-        };
-        values.iter().map(variance).collect()
+        values.iter().map(|values| Pilot::of(values)).collect()
     }
 }
 

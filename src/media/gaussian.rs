@@ -128,9 +128,13 @@ impl Field for Gaussian {
     }
 
     fn is_radial(&self) -> bool {
-        matches!(self.bounds, Bounds::Sphere { centre, .. } if centre == self.centre)
+        matches!(self.bounds, Bounds::Sphere { centre, radius }
+            if centre == self.centre && self.width >= NARROWEST * radius)
     }
 }
+
+/// A blob so much narrower than its ball is not resolved by what solves for light in balls.
+const NARROWEST: f64 = 0.15;
 
 #[cfg(test)]
 mod tests {

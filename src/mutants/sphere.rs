@@ -24,7 +24,7 @@ pub fn mutants() -> Vec<Mutant<Sphere>> {
     vec![
         sphere("sphere-shadow-not-clipped", "the shadow ray goes on through the light to the far side", SPHERE_LAMP_EXACT, Tracking::Exact, Through),
         sphere("sphere-light-twice", "light that the walk meets counts beside the shadow rays", SPHERE_SKY, ratio, Twice),
-        sphere("sphere-pdf-per-area", "the light's points are uniform per area and the integrand is per solid angle", SPHERE_LAMP, ratio, PerArea),
+        sphere("sphere-pdf-per-area", "the visible area of the light stands for its solid angle", SPHERE_LAMP, ratio, PerArea),
         sphere("sphere-albedo-missing", "a shadow ray has the weight from before the scattering", SPHERE_LAMP, ratio, WithoutAlbedo),
     ]
 }

@@ -252,7 +252,8 @@ impl Problem for Sphere {
 }
 
 fn not_radial<T>(settings: &Settings) -> Option<T> {
-    let help = "take `radial`, or `constant` or `gaussian` with `bounds.sphere` about its centre";
+    let help = "take `radial`, or `constant` or `gaussian` with `bounds.sphere` about its centre, \
+                the blob no narrower than 0.15 radii";
     settings.fault(
         "volume",
         "theory takes a ball whose σ_t depends on the distance from its centre",

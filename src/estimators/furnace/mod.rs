@@ -37,7 +37,8 @@ pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction
     let misses = setup.problem.entry().is_none();
     let bound = if misses { Some(0.0) } else { walks.and_then(|walks| walks.energy_variance()) };
     // Without a bound the walk is refused, or forced: then only the truth is kept.
-    let channel = space::energy_channel(bound.unwrap_or(f64::INFINITY));
+    let depth = walks.map_or(0.0, |walks| walks.depth);
+    let channel = space::energy_channel(bound.unwrap_or(f64::INFINITY), depth);
     let prediction = Prediction::single(channel, CountLaw::always(0.0));
     if misses { prediction } else { Prediction { lookups: None, ..prediction } }
 }

@@ -31,7 +31,7 @@ impl Seen {
         let walks = space::walks(scene, majorants, particle);
         // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
         let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
-            && scene.albedo.even() != Some(0.0);
+            && scene.albedo.range()[0] > 0.0;
         Self {
             energy: walks.is_tame(),
             white: scene.albedo.even() == Some(1.0) && walks.never_grows(),
@@ -118,7 +118,10 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
     if let Some(majorants) = setup.space.as_deref() {
         let walks = space::walks(problem.scene(), majorants, particle);
         let bound = walks.energy_variance().filter(|_| seen.energy);
-        let named = |bound| Channel { name: "energy".to_owned(), ..space::energy_channel(bound) };
+        let named = |bound| Channel {
+            name: "energy".to_owned(),
+            ..space::energy_channel(bound, walks.depth)
+        };
         channels.extend(bound.map(named));
         let over = problem.four_over_surface();
         let times = |known: Known| {
@@ -136,7 +139,7 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
             channels.push(piloted("tentative collisions", times(Known::exact(content))));
         }
     }
-    let empty = space::energy_channel(f64::INFINITY);
+    let empty = space::energy_channel(f64::INFINITY, 0.0);
     let prediction = Prediction::single(empty.clone(), CountLaw::always(0.0));
     if channels.is_empty() {
         // Refused, or forced without an answer to be wrong about.

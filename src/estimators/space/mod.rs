@@ -84,13 +84,15 @@ pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
             format!("σ_t may reach {:.6} times σ̂; raise σ̂, or take local majorants", walks.ratio());
         return Err(Refusal::mismatch(needs, found));
     };
-    Ok(energy_channel(bound))
+    Ok(energy_channel(bound, walks.depth))
 }
 
-/// The same given the bound.
+/// The same given the bound, and `∫σ̂` straight through.
 #[must_use]
-pub fn energy_channel(bound: f64) -> Channel {
-    let certain = Channel::unbiased(Known::new(1.0, ROUNDING), Moments::certain(1.0), Tails::LIGHT);
+pub fn energy_channel(bound: f64, depth: f64) -> Channel {
+    // A walk that nothing ends wanders for about depth² collisions, and each rounds.
+    let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;
+    let certain = Channel::unbiased(Known::new(1.0, rounding), Moments::certain(1.0), Tails::LIGHT);
     if bound == 0.0 {
         return certain;
     }

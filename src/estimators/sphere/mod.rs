@@ -2,6 +2,7 @@
 
 pub mod connect;
 
+use crate::catalogue::rounded;
 use crate::estimators::space::{self, Particle, Start, Steps};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
@@ -64,8 +65,16 @@ fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal>
         return Err(Refusal::mismatch(needs, found));
     }
     if truth(sphere).is_none() {
-        let needs = "a ball that Peierls' equation is solved for: σ_t R ≤ 30";
-        let found = format!("σ_t R may reach {:.6}", sphere.majorant() * sphere.radius());
+        let needs =
+            "an answer of Peierls' equation known to 1e-4: σ_t R ≤ 30, a lamp not too small";
+        let depth = sphere.majorant() * sphere.radius();
+        let lamp = match sphere.light() {
+            Light::BlackSphere(core) => {
+                format!(", a lamp of {} R", rounded(core / sphere.radius()))
+            }
+            _ => String::new(),
+        };
+        let found = format!("σ_t R of up to {}{lamp}", rounded(depth));
         return Err(Refusal::mismatch(needs, found));
     }
     Ok(())
@@ -146,7 +155,7 @@ fn prediction(value: Known, square: f64) -> Prediction {
 fn predict(setup: &Setup<Sphere>, particle: &Particle) -> Prediction {
     let sphere = &setup.problem;
     if sphere.light() == Light::Environment && sphere.scene().albedo.even() == Some(1.0) {
-        let prediction = Prediction::single(space::energy_channel(0.0), CountLaw::always(0.0));
+        let prediction = Prediction::single(space::energy_channel(0.0, 0.0), CountLaw::always(0.0));
         return Prediction { lookups: None, ..prediction };
     }
     let value = truth(sphere).unwrap_or(UNKNOWN).value;

@@ -52,6 +52,9 @@ impl Check for Mean {
     }
 }
 
+/// Fewer draws than this that make the variance of all pilot draws leave it unknown.
+const SETTLED: f64 = 40.0;
+
 fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
     let floor = floor(subject, channel);
@@ -70,8 +73,12 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
         return Kind::Always(Always { largest: Box::new(largest), bound: floor + furthest });
     }
     let may_be_piloted = subject.expect_biased || channel.by_pilots;
-    let pilot = subject.pilot_variances.map(|pilots| pilots[index]).filter(|_| may_be_piloted);
-    let known = match (channel.moments, channel.most_variance.or(pilot.map(|pilot| 2.0 * pilot))) {
+    let pilot = subject.pilots.map(|pilots| pilots[index]).filter(|_| may_be_piloted);
+    if channel.by_pilots && pilot.is_some_and(|pilot| pilot.size < SETTLED) {
+        return Kind::Untestable("a few of the pilot draws make all of their variance".into());
+    }
+    let doubled = pilot.map(|pilot| 2.0 * pilot.variance);
+    let known = match (channel.moments, channel.most_variance.or(doubled)) {
         (Some(moments), _) => {
             let unit = moments.scale * scale;
             Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }

@@ -33,8 +33,30 @@ pub struct Subject<'a> {
     pub keeps_books: bool,
     /// Whether draws come one like the other; order-free ones come sorted by their lookups.
     pub is_in_turn: bool,
-    /// The variance of one draw by pilot draws, channel by channel, where theory has none.
-    pub pilot_variances: Option<&'a [f64]>,
+    /// What pilot draws say of spreads, channel by channel, where theory has none.
+    pub pilots: Option<&'a [Pilot]>,
+}
+
+/// What pilot draws say of the spread of a draw.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pilot {
+    /// `Σy²/n`, y the distance from their mean.
+    pub variance: f64,
+    /// `(Σy²)²/Σy⁴`: how many draws made the variance; its own relative deviation is about one over the
+    /// root of it.
+    pub size: f64,
+}
+
+impl Pilot {
+    /// Of some draws.
+    #[must_use]
+    pub fn of(values: &[f64]) -> Self {
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares = values.iter().map(|x| (x - mean) * (x - mean));
+        let sums = squares.fold([0.0; 2], |[two, four], y2| [two + y2, four + y2 * y2]);
+        Self { variance: sums[0] / n, size: sums[0] * (sums[0] / sums[1]) }
+    }
 }
 
 /// One question.

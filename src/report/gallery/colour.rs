@@ -50,8 +50,8 @@ mod tests {
     #[test]
     fn black_white_and_the_middle() {
         assert_eq!([grey(-1.0)[0], grey(0.0)[0], grey(1.0)[0], grey(9.0)[0]], [0, 0, 255, 255]);
-        // sRGB shows 0.214 as half of the bytes.
-        assert_eq!(grey(0.214_041), [128; 3]);
+        // ((128/255 + 0.055)/1.055)^2.4
+        assert_eq!(grey(0.215_861), [128; 3]);
     }
 
     #[test]

@@ -7,7 +7,7 @@
 //!
 //! Chords run along z. For fields without kinks the first converges faster than any power of the number of
 //! chords, and the second is exact where panels are cells of the field. Resolutions are doubled until two
-//! agree or the chords become too many; the difference of the last two is the error.
+//! agree twice or the chords become too many; their last differences are the error.
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -37,14 +37,28 @@ pub fn content(volume: &Volume) -> Option<Known> {
     // A resolution of n takes 32n² or 16n² chords.
     let mut n = 2;
     let mut before = at(1);
+    let mut steps = Vec::new();
     loop {
         let here = at(n);
-        let error = (here - before).abs();
-        if error <= AGREED * here || 128.0 * (n * n) as f64 > chords {
+        steps.push((here - before).abs());
+        // Twice, since one may be chance.
+        let agree = |step: &f64| here > 0.0 && *step <= AGREED * here;
+        let is_there = steps.len() >= 2 && steps.iter().rev().take(2).all(agree);
+        if is_there || 128.0 * (n * n) as f64 > chords {
+            let error = if is_there { steps[steps.len() - 1] } else { settled(&steps) };
             return Some(Known::new(here, error + 4.0 * f64::EPSILON * here));
         }
         (n, before) = (2 * n, here);
     }
+}
+
+/// What a sequence of resolutions is still off, by its last steps: the last one where it settles fast.
+/// Elsewhere, as in fields that jump across chords, two resolutions may be alike by chance.
+fn settled(steps: &[f64]) -> f64 {
+    let last = &steps[steps.len().saturating_sub(3)..];
+    let is_fast = last.len() == 3 && last.windows(2).all(|two| 16.0 * two[1] <= two[0]);
+    let largest = last.iter().copied().fold(0.0, f64::max);
+    if is_fast { last[2] } else { 4.0 * largest }
 }
 
 fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> f64 {

@@ -80,7 +80,7 @@ impl Walks {
     pub fn is_tame(&self) -> bool {
         let limit = 2.0 / (1.0 + self.albedo[1]);
         let settles = self.rule != ParticleRule::Weighted && self.roulette.is_none();
-        self.never_grows() || (settles && self.ratio() < limit)
+        self.never_grows() || (settles && self.ratio() < limit * (1.0 - SLACK))
     }
 
     /// A bound on the variance of the energy that a particle brings; `None` where none is known.
@@ -88,11 +88,19 @@ impl Walks {
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {
-            let bound = if extremes.spread <= NOTHING { below * below } else { 1.0 };
+            // Of one particle of weight w, at most w w₀ or w; the parts that splits leave share the
+            // weight of 1, and each adds its own and what roulette adds to it.
+            let bound = match (extremes.spread <= NOTHING, self.splits) {
+                (true, false) => below * below,
+                (true, true) => 2.0 * below,
+                (false, false) => 1.0,
+                (false, true) => 2.0,
+            };
             return self.never_grows().then_some(bound);
         }
         if extremes.spread <= NOTHING {
-            return Some(0.0);
+            // Weights that grow lose the digits of a sum that is 1.
+            return (extremes.kept <= 1.0 + SLACK).then_some(0.0);
         }
         let chance = -(-self.depth).exp_m1();
         let thin = if chance * extremes.kept < 1.0 {

@@ -26,7 +26,9 @@ const FARTHEST: f64 = 22.0;
 const WIDTH: f64 = 0.25;
 /// Below the first width each panel is so many times wider than the one before, from the smallest on.
 const GROWTH: f64 = 1.25;
-const SMALLEST: f64 = 1e-6;
+const SMALLEST: f64 = 1e-12;
+/// The least optical distance that they resolve.
+const NEAREST: f64 = 1e-8;
 /// The relative error of a sum of so many terms, and of `c − (1 − κ²)` in units of `1/(1 − c)`.
 const ROUNDING: f64 = 1e-14;
 /// Below this albedo the pole is at κ = 1 to all digits, with nothing left of it.
@@ -82,7 +84,9 @@ pub fn collisions_within(albedo: f64, distance: f64) -> Known {
         2.0 * rest / (albedo * (albedo - rest)) * share(kappa * distance)
     };
     let value = scattered + settled;
-    Known::new(value, ROUNDING * value / (1.0 - albedo))
+    // Nearer still, the panels of ν are too wide for what comes to life where ν is the distance.
+    let error = if distance < NEAREST { 1.0 } else { ROUNDING / (1.0 - albedo) };
+    Known::new(value, error * value)
 }
 
 /// The fluence at an optical distance from a source of power 1, in units of `σ_t²`; for an albedo in
@@ -97,7 +101,8 @@ pub fn fluence(albedo: f64, distance: f64) -> Known {
         2.0 * kappa * kappa * rest / (albedo * (albedo - rest)) * (-kappa * distance).exp()
     };
     let value = (scattered + settled) / (4.0 * PI * distance);
-    Known::new(value, ROUNDING * value / (1.0 - albedo))
+    let error = if distance < NEAREST { 1.0 } else { ROUNDING / (1.0 - albedo) };
+    Known::new(value, error * value)
 }
 
 /// `E[r²]` at absorption, in units of `1/σ_t²`, for any phase function of mean cosine g.
