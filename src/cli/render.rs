@@ -44,6 +44,9 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let begin = Instant::now();
         let render = || Ok(picture.render(arguments.seed, &|| bar.inc(1)));
         let record = selection::on_threads(threads, render)?;
+        if let Some(reason) = record.refusal() {
+            bail!("{}: {reason}", picture.name);
+        }
         write(&gallery::artifacts(&record)?, &out)?;
         if !console.quiet {
             let text = table(&record, begin.elapsed().as_secs_f64());

@@ -33,7 +33,8 @@ use crate::media::{Body, Medium, Volume};
 /// The radiance along a ray into a furnace.
 pub struct Furnace {
     scene: Scene,
-    ray: Ray,
+    entry: Point,
+    direction: Point,
     medium: Medium,
 }
 
@@ -44,18 +45,16 @@ impl Furnace {
         &self.scene
     }
 
-    /// Where the ray enters the bounds, or begins within them; `None` where it misses them.
+    /// Where the ray enters the bounds, or begins within them.
     #[must_use]
-    pub fn entry(&self) -> Option<Point> {
-        let ray = Ray { length: f64::INFINITY, ..self.ray };
-        let inside = self.scene.volume.bounds().clip(&ray);
-        (!inside.is_empty()).then(|| ray.at(inside.from))
+    pub fn entry(&self) -> Point {
+        self.entry
     }
 
     /// The direction of the ray.
     #[must_use]
     pub fn direction(&self) -> Point {
-        self.ray.direction
+        self.direction
     }
 }
 
@@ -65,7 +64,15 @@ impl Problem for Furnace {
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::bounded(body, settings)?;
         let Body::Volume { ray, .. } = body? else { return None };
-        Some(Self { scene, ray: *ray, medium: body?.medium() })
+        let onward = Ray { length: f64::INFINITY, ..*ray };
+        let inside = scene.volume.bounds().clip(&onward);
+        if inside.is_empty() {
+            let help = "turn it, or move its origin: what misses the volume tests nothing";
+            settings.fault("ray", "the ray misses the volume", help);
+            return None;
+        }
+        let entry = ray.at(inside.from);
+        Some(Self { scene, entry, direction: ray.direction, medium: body?.medium() })
     }
 
     fn medium(&self) -> &Medium {
@@ -78,6 +85,11 @@ impl Problem for Furnace {
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
         let scene = self.scene.with_albedo(albedo);
-        Some(Self { scene, ray: self.ray, medium: self.medium.clone() })
+        Some(Self {
+            scene,
+            medium: self.medium.clone(),
+            entry: self.entry,
+            direction: self.direction,
+        })
     }
 }

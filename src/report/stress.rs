@@ -81,8 +81,10 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
     let of = |along: Along| -> Vec<Field> {
         let curves = curves.iter().filter(|curve| curve.along == along);
         let words = curves.map(|curve| {
-            let last = curve.points.last().map_or(0.0, |point| point.x);
-            let nowhere = || format!("> {}", short(last, 3));
+            let nowhere = || match curve.holds_to() {
+                Some(x) => format!("> {}", short(x, 3)),
+                None => "not resolved".to_owned(),
+            };
             curve.fails_from().map_or_else(nowhere, |x| short(x, 3))
         });
         words.map(Field::plain).collect()

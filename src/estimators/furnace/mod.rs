@@ -34,13 +34,12 @@ pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction
         .space
         .as_ref()
         .map(|majorants| space::walks(setup.problem.scene(), majorants, particle));
-    let misses = setup.problem.entry().is_none();
-    let bound = if misses { Some(0.0) } else { walks.and_then(|walks| walks.energy_variance()) };
+    let bound = walks.and_then(|walks| walks.energy_variance());
     // Without a bound the walk is refused, or forced: then only the truth is kept.
     let depth = walks.map_or(0.0, |walks| walks.depth);
     let channel = space::energy_channel(bound.unwrap_or(f64::INFINITY), depth);
     let prediction = Prediction::single(channel, CountLaw::always(0.0));
-    if misses { prediction } else { Prediction { lookups: None, ..prediction } }
+    Prediction { lookups: None, ..prediction }
 }
 
 /// Makes a draw by the honest walk.
@@ -66,11 +65,11 @@ fn draw_by(
     walk: impl FnOnce(&crate::problems::Scene, &crate::media::Majorants, Start, &mut Energy) -> u32,
 ) -> Draw<[f64; 1]> {
     let furnace = &*setup.problem;
-    let (Some(place), Some(majorants)) = (furnace.entry(), setup.space.as_deref()) else {
-        // What misses the medium sees the wall.
-        return Draw::free([1.0], 0);
+    let Some(majorants) = setup.space.as_deref() else {
+        // Without σ̂ there is nothing to draw; such an experiment is refused.
+        return Draw::free([f64::NAN], 0);
     };
-    let start = Start { place, direction: furnace.direction(), weight: 1.0 };
+    let start = Start { place: furnace.entry(), direction: furnace.direction(), weight: 1.0 };
     let mut energy = Energy::default();
     let lookups = walk(furnace.scene(), majorants, start, &mut energy);
     Draw::free([energy.0], lookups)

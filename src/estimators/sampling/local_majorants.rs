@@ -23,6 +23,9 @@ use crate::numeric::Span;
 /// A segment's bound is raised by this factor over the largest value that the search found.
 const MARGIN: f64 = 1.0 + 1e-9;
 
+/// More cells than this are a mistake in the case.
+const MOST_CELLS: usize = 10_000_000;
+
 /// Local majorants.
 #[derive(Debug, Clone, Copy)]
 pub enum LocalMajorants {
@@ -42,6 +45,12 @@ impl LocalMajorants {
             }
             (false, true) => {
                 let cells = settings.counts("grid", 1..=4096)?;
+                if cells.iter().product::<usize>() > MOST_CELLS {
+                    let found =
+                        format!("{} × {} × {} cells are too many", cells[0], cells[1], cells[2]);
+                    settings.fault("grid", found, "take 1e7 at most");
+                    return None;
+                }
                 let bounded = match body {
                     Some(Body::Volume { volume, .. }) => volume.bounds().enclosing_box().is_some(),
                     Some(Body::Line { .. }) => false,

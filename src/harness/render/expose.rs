@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::scene::{Called, Scene};
 use super::subject::Subject;
 use super::view::View;
+use crate::catalogue::{number, rounded};
 use crate::estimators::{DrawBuffer, Kernel, Order, Refusal, Setup, Site};
 use crate::geometry::Ray;
 use crate::harness::written::Written;
@@ -17,6 +18,8 @@ const PANELS: usize = 16;
 /// A pixel of every so many columns and rows makes a pilot draw.
 const PILOTS_EVERY: usize = 2;
 
+/// More draws at a pixel than this are a mistake in the picture.
+const MOST_DRAWS: f64 = 1e7;
 /// Fewer draws than this are made one by one.
 const FEW: u64 = 32;
 
@@ -112,7 +115,7 @@ pub struct Plan {
 pub struct Exposed {
     /// The pixels' values.
     pub values: Vec<f64>,
-    /// Their squared standard errors, measured; 0 where there is one draw only.
+    /// Their squared standard errors, measured; not a number where there is one draw only.
     pub square_errors: Vec<f64>,
     /// Their expected squared errors by theory; empty where it is not asked.
     pub predicted: Vec<f64>,
@@ -263,14 +266,20 @@ impl Plan {
             return Err("no pixel is covered, or none by a pilot".into());
         }
         let expected = lookups / counted;
-        if expected <= 0.0 {
+        if expected.is_nan() || expected <= 0.0 {
             return Err("it looks nothing up: there is nothing to compare at".into());
         }
         let control = fitted.iter().sum::<u64>() as f64 / fitted.len() as f64;
         let draws = (budget as f64 - control) / expected;
-        if draws < 1.0 {
-            let least = (expected + control).ceil();
+        if draws.is_nan() || draws < 1.0 {
+            let least = number((expected + control).ceil());
             return Err(format!("a draw takes {least} lookups at a pixel, and there are {budget}"));
+        }
+        if draws > MOST_DRAWS {
+            let (expected, draws) = (rounded(expected), rounded(draws));
+            return Err(format!(
+                "a draw takes {expected} lookups: {draws} draws a pixel are too many"
+            ));
         }
         Ok(Self { draws, points: fitted, pilots, variances, biases })
     }
@@ -289,7 +298,7 @@ impl Plan {
         let spread = |pixel: &Pixel| {
             let n = pixel.draws as f64;
             let mean = pixel.sum / n;
-            if n < 2.0 { 0.0 } else { (pixel.squares / n - mean * mean).max(0.0) / (n - 1.0) }
+            if n < 2.0 { f64::NAN } else { (pixel.squares / n - mean * mean).max(0.0) / (n - 1.0) }
         };
         let predicted = self.variances.iter().zip(&self.biases).zip(pixels);
         let lookups = pixels.iter().zip(&self.points);

@@ -41,7 +41,8 @@ pub struct PictureRecord {
 pub struct ReferenceRecord {
     /// How it was found, in words.
     pub how: String,
-    /// The root of its mean squared error over covered pixels: measured where it was drawn.
+    /// The root of its mean squared error over covered pixels: measured where it was drawn; not a number
+    /// where it is not known.
     pub error: f64,
     /// Its lookups per covered pixel.
     pub lookups: f64,
@@ -94,7 +95,11 @@ impl PictureRecord {
                 sampling: names.sampling,
                 control: names.control,
                 outcome: outcome
-                    .map(|exposed| Exposure::new(view, &covered, &reference.1, &exposed)),
+                    .map(|exposed| Exposure::new(view, &covered, &reference.1, &exposed))
+                    .and_then(|exposure| {
+                        let is_finite = exposure.rmse.is_finite();
+                        is_finite.then_some(exposure).ok_or("its image is not finite".into())
+                    }),
             })
             .collect();
         let (how, exposed) = reference;
@@ -105,7 +110,9 @@ impl PictureRecord {
         errors.sort_by(f64::total_cmp);
         let middle = errors.get(errors.len() / 2).copied().unwrap_or_default();
         let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
+        let is_whole = exposed.values.len() == covered.len();
         let error = over(&mut exposed.square_errors.iter().copied()).sqrt();
+        let error = if is_whole { error } else { f64::NAN };
         let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
         let image = image(view, &covered, &exposed.values);
         Self {
@@ -122,6 +129,27 @@ impl PictureRecord {
             reference: ReferenceRecord { how, error, lookups, image },
             exposures,
         }
+    }
+}
+
+impl PictureRecord {
+    /// Why there is nothing to show, and what would help; `None` where there is.
+    #[must_use]
+    pub fn refusal(&self) -> Option<String> {
+        if self.covered == 0 {
+            return Some("the volume covers no pixel: turn the camera, or move it".into());
+        }
+        let ReferenceRecord { how, error, image, .. } = &self.reference;
+        if !(error.is_finite() && image.iter().all(|x| x.is_finite())) {
+            let help = "it needs finite values, and two draws for each pixel where it is drawn";
+            return Some(format!("the reference is of no use ({how}): {help}"));
+        }
+        let mut reasons = self.exposures.iter().map(|exposure| exposure.outcome.as_ref().err());
+        if reasons.clone().any(|reason| reason.is_none()) {
+            return None;
+        }
+        let first = reasons.next().flatten().map_or("none is listed", String::as_str);
+        Some(format!("every estimator is refused; the first: {first}"))
     }
 }
 

@@ -2,7 +2,7 @@
 //! and those of 3-D fields without one against quadrature of their lookups.
 
 use super::tails::normal_tail;
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
 use crate::media::Medium;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
@@ -53,7 +53,7 @@ fn closed(dice: &mut Dice, trials: u32, &(name, range, draw): &Field) -> [Row; 2
         // The nearest double to the truth is half a unit off at best.
         let rounding = 0.5 * f64::EPSILON * exact.high;
         let off = (Wide::from(depth.value) - exact).abs().value();
-        stated.see((off - rounding).max(0.0) / depth.error, || one_line(&text));
+        stated.see(beyond(off, rounding) / depth.error, || one_line(&text));
         relative.see(exact.relative_error(depth.value), || one_line(&text));
     }
     [stated, relative]

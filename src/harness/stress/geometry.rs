@@ -1,6 +1,6 @@
 //! Chords of spheres and boxes: rays that graze, that start far away, that are very long or short.
 
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::double_double::{two_prod, two_sum};
 use crate::numeric::{Span, Wide};
@@ -137,7 +137,7 @@ fn depths(dice: &mut Dice, trials: u32) -> Row {
         let found = medium.optical_depth(medium.span());
         let off = (Wide::from(found.value) - (to - from)).abs().value();
         let rounding = 0.5 * f64::EPSILON * found.value;
-        row.see((off - rounding).max(0.0) / found.error, || format!("depth {depth:e} of R"));
+        row.see(beyond(off, rounding) / found.error, || format!("depth {depth:e} of R"));
     }
     row
 }

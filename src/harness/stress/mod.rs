@@ -257,6 +257,11 @@ pub fn all(effort: Effort, seed: u64, done: &(dyn Fn(&str) + Sync)) -> Stress {
     Stress { rows, narrow, seconds: begin.elapsed().as_secs_f64() }
 }
 
+/// By how much an error is beyond what the reference itself is off; what is no number stays none.
+fn beyond(off: f64, slack: f64) -> f64 {
+    if off <= slack { 0.0 } else { off - slack }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

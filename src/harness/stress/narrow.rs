@@ -228,6 +228,12 @@ impl Point {
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
     }
+
+    /// Whether the bias is certainly smaller than the noise; with neither, the walks were too few.
+    #[must_use]
+    pub fn holds(&self) -> bool {
+        self.error > 0.0 && self.bias.abs() + 3.0 * self.error <= self.noise
+    }
 }
 
 /// One estimator along one quantity.
@@ -247,6 +253,12 @@ impl Curve {
     #[must_use]
     pub fn fails_from(&self) -> Option<f64> {
         self.points.iter().find(|point| point.exceeds()).map(|point| point.x)
+    }
+
+    /// The last value up to which the bias is certainly below the noise.
+    #[must_use]
+    pub fn holds_to(&self) -> Option<f64> {
+        self.points.iter().take_while(|point| point.holds()).last().map(|point| point.x)
     }
 }
 

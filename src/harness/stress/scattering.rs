@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
 use crate::media::Piecewise;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Wide};
@@ -181,7 +181,7 @@ fn single(dice: &mut Dice, trials: u32) -> Row {
             (4e-14 + 8.0 * f64::EPSILON * (sigma * length + length / distance)) * exact.high;
         let off = (Wide::from(found.value) - exact).abs().value();
         let place = || format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
-        row.see((off - reference).max(0.0) / found.error, place);
+        row.see(beyond(off, reference) / found.error, place);
     }
     row
 }
