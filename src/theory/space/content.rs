@@ -52,13 +52,20 @@ pub fn content(volume: &Volume) -> Option<Known> {
     }
 }
 
-/// What a sequence of resolutions is still off, by its last steps: the last one where it settles fast.
-/// Elsewhere, as in fields that jump across chords, two resolutions may be alike by chance.
+/// What a sequence of resolutions is still off, by its last steps: the last one where it settles fast,
+/// four times that where it settles slowly. Elsewhere, as in fields that jump across chords, two
+/// resolutions may be alike by chance, and the largest of three steps says more.
 fn settled(steps: &[f64]) -> f64 {
     let last = &steps[steps.len().saturating_sub(3)..];
-    let is_fast = last.len() == 3 && last.windows(2).all(|two| 16.0 * two[1] <= two[0]);
-    let largest = last.iter().copied().fold(0.0, f64::max);
-    if is_fast { last[2] } else { 4.0 * largest }
+    let shrinks =
+        |factor: f64| last.len() == 3 && last.windows(2).all(|two| factor * two[1] <= two[0]);
+    if shrinks(16.0) {
+        last[2]
+    } else if shrinks(4.0) {
+        4.0 * last[2]
+    } else {
+        4.0 * last.iter().copied().fold(0.0, f64::max)
+    }
 }
 
 fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> f64 {
