@@ -11,6 +11,9 @@ use crate::theory;
 
 /// A draw this near to a value, relative to the value's size, is that value.
 const SAME: f64 = 1e-9;
+/// So is one this near to it in units of the largest value: 1 − r is rounded, and 0 where r = 1 may be
+/// drawn as 1e-16.
+const ROUNDING: f64 = 1e-15;
 
 /// The check of the atoms.
 pub struct Atoms;
@@ -31,9 +34,11 @@ impl Values {
     /// The nearest atom, if it is near enough.
     fn find(&self, x: f64) -> Option<usize> {
         let after = self.value.partition_point(|&value| value < x);
+        let ends = [self.value.first(), self.value.last()];
+        let largest = ends.into_iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         let near = |i: &usize| {
             let value = self.value[*i];
-            (x - value).abs() <= SAME * value.abs()
+            (x - value).abs() <= SAME * value.abs() + ROUNDING * largest
         };
         let sides = [after, after.wrapping_sub(1)].into_iter().filter(|&i| i < self.value.len());
         let distance = |i: &usize| (x - self.value[*i]).abs();
@@ -87,5 +92,24 @@ impl Check for Atoms {
     /// Two values have their exact binomial law, whose p-values are discrete: never too often small.
     fn is_uniform(&self) -> bool {
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rounded_zero_is_zero_and_a_strange_value_is_none() {
+        let values = Values::of(vec![(1.0, 0.4), (0.0, 0.6)]);
+        assert_eq!(
+            [values.find(0.0), values.find(-1.1e-16), values.find(1.0)],
+            [Some(0), Some(0), Some(1)]
+        );
+        assert_eq!([values.find(1e-9), values.find(0.5), values.find(1.1)], [None; 3]);
+        // Powers of a small ratio are apart from each other, however small.
+        let powers = Values::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect());
+        assert_eq!(powers.find(0.01f64.powi(3) * (1.0 + 1e-12)), Some(16));
+        assert_eq!(powers.find(0.5 * 0.01f64.powi(3)), None);
     }
 }

@@ -237,7 +237,9 @@ fn lookups(dice: &mut Dice, trials: u32) -> Row {
         // Lookups far from the origin are at places that are rounded.
         let grain = 4.0 * f64::EPSILON * back * medium.support().length();
         let allowed = depth.error + 1e-13 * depth.value + grain;
-        row.see((found - depth.value).abs() / allowed, || one_line(&text));
+        // A ray that misses the field has no depth, and no error to measure it by.
+        let off = (found - depth.value).abs();
+        row.see(if off == 0.0 { 0.0 } else { off / allowed }, || one_line(&text));
     }
     row
 }
