@@ -4,6 +4,7 @@ mod common;
 
 use common::{case, mistakes, options, row, rows};
 use serde::Deserialize;
+use serde_json::Value;
 use trueflight::harness::Plan;
 use trueflight::harness::record::Verdict;
 
@@ -127,6 +128,43 @@ fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
     let thin = 1e-9 * 0.4 * 3.0 / (16.0 * std::f64::consts::PI.powi(2) * 0.5) * angle;
     let truth = found.truth.expect("a truth");
     assert!((truth / thin - 1.0).abs() < 1e-8, "{truth:e} for {thin:e}");
+}
+
+/// What a lamp at the centre of a ball sends to a pixel by its first scattering: the values of the
+/// integral equation's first order, see `tests/data/README.md`.
+#[test]
+fn a_lamp_in_a_ball_shines_as_the_integral_equation_says() {
+    let balls: Vec<Value> =
+        serde_json::from_str(include_str!("data/spheres.json")).expect("values");
+    let mut seen = 0;
+    for ball in balls.iter().filter(|ball| ball["light"] == "point") {
+        let (volume, albedo) = match ball["ball"].as_str() {
+            Some("S1") => (
+                "constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1.5 } }",
+                0.8,
+            ),
+            Some("S2") => {
+                ("radial = { centre = [0, 0, 0], radius = 1.5, coefficients = [2, -2] }", 0.9)
+            }
+            other => panic!("{other:?}"),
+        };
+        let text = format!(
+            "title = \"lamp\"
+            [problem.single-scattering]
+            volume.{volume}
+            ray = {{ origin = [{beside}, 0, -3], direction = [0, 0, 1], length = 6 }}
+            light.position = [0, 0, 0]
+            albedo = {albedo}
+            phase.isotropic = {{}}
+            estimators = [{{ source-driven = {{}} }}]",
+            beside = ball["at"][0],
+        );
+        let expected = ball["value"][0].as_f64().expect("a number");
+        let truth = row(&rows(&text, 1000), "source-driven").truth.expect("a truth");
+        assert!((truth / expected - 1.0).abs() < 1e-11, "{ball}: {truth:e}");
+        seen += 1;
+    }
+    assert_eq!(seen, 6);
 }
 
 /// Forward light comes from behind the scattering point as the ray's origin sees it: with the light

@@ -241,7 +241,7 @@ impl Grid {
     /// exist. `None` where it exists.
     ///
     /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
-    /// where ρr reaches 1. The grid finds the critical length to within [`NEAR`] at best; so near to
+    /// where ρr reaches 1. The grid finds the critical length to within a thousandth at best; so near to
     /// it a moment is nothing that draws could be compared with, and counts as divergent.
     #[must_use]
     pub fn critical(&self, k: i32) -> Option<f64> {
