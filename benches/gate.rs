@@ -4,7 +4,7 @@
 //! cargo bench --bench gate
 //! ```
 //!
-//! Every round draws the same blocks of every experiment of the suite in each of these ways, on one
+//! or with `-- WORD` only the cases of the suite whose name has the word. Every round draws the same blocks of every experiment of the suite in each of these ways, on one
 //! thread, and takes the processor time; the table shows the medians over the rounds of a round's
 //! differences and ratios.
 //!
@@ -44,20 +44,23 @@ fn main() {
         .collect();
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     one.install(|| {
-        report("the built-in suite", &cases, |_, _| true);
+        if let Some(word) = std::env::args().skip(1).find(|argument| !argument.starts_with('-')) {
+            return report(&format!("cases with `{word}`"), &cases, &|name| name.contains(&word));
+        }
+        report("the built-in suite", &cases, &|_| true);
         // Walks so short that the gate can be told from them.
         let short: Vec<Case> = suite::calibration()
             .iter()
             .map(|source| Case::read(source).expect("the built-in cases have no mistakes"))
             .collect();
-        report("short walks", &short, |_, _| true);
+        report("short walks", &short, &|_| true);
     });
 }
 
-/// Times all ways over the experiments that are wanted.
-fn report(title: &str, cases: &[Case], wanted: fn(&str, &str) -> bool) {
+/// Times all ways over the cases that are wanted.
+fn report(title: &str, cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
     let options = Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() };
-    let plans = WAYS.map(|way| plan(cases, &options, way, wanted));
+    let plans = WAYS.map(|way| plan(cases, &options, way, is_wanted));
     let draws: u64 = plans[0].experiments().map(|(_, planned)| planned.draws).sum();
     let mut rounds: Vec<[f64; 4]> = Vec::new();
     for _ in 0..ROUNDS {
@@ -95,16 +98,14 @@ fn plan<'a>(
     cases: &'a [Case],
     options: &Options,
     way: Way,
-    wanted: fn(&str, &str) -> bool,
+    is_wanted: &dyn Fn(&str) -> bool,
 ) -> Plan<'a> {
     let mut plan = Plan::new(cases, options);
     for case in &mut plan.cases {
-        let name = &case.case.name;
-        case.experiments.retain(|planned| {
-            // Without chance nothing is drawn but one block.
-            let is_drawn = planned.outcome.is_ok() && planned.draws == DRAWS;
-            is_drawn && wanted(name, &planned.names.estimator)
-        });
+        let is_wanted = is_wanted(&case.case.name);
+        // Without chance nothing is drawn but one block.
+        case.experiments
+            .retain(|planned| is_wanted && planned.outcome.is_ok() && planned.draws == DRAWS);
         for planned in &mut case.experiments {
             planned.questions.retain(|question| match way {
                 Way::Kernels | Way::Statistics => false,

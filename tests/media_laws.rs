@@ -199,12 +199,16 @@ fn free_flight_inverts_optical_depth() {
         let medium = body.medium();
         let whole = medium.optical_depth(medium.span());
         assert_eq!(medium.free_flight(1.001 * whole.value + 1e-9), None, "{text}");
+        let (support, inverse) = (medium.support(), medium.inverse());
         for fraction in fractions(30).filter(|_| whole.value > 0.0) {
             let depth = fraction * whole.value;
-            let s = medium.free_flight(depth).unwrap_or_else(|| panic!("{text}: {fraction}"));
-            let back = medium.optical_depth(Span::new(medium.support().from, s));
-            let allowed = 1e-12 * whole.value + back.error;
-            assert!((back.value - depth).abs() <= allowed, "{text}: {depth} became {back:?}");
+            for s in [medium.free_flight(depth), inverse.free_flight(depth)] {
+                let s = s.unwrap_or_else(|| panic!("{text}: {fraction}"));
+                let back = medium.optical_depth(Span::new(support.from, s));
+                let allowed = 1e-12 * whole.value + back.error;
+                let off = (back.value - depth).abs();
+                assert!(off <= allowed, "{text}: {depth} became {back:?}");
+            }
         }
     }
 }

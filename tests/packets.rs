@@ -104,6 +104,8 @@ fn cases() -> Vec<Case> {
         let transmittance = format!(
             "title = \"{name}\"\n[problem.transmittance]\n{medium}\nsampling.constant.value = 1.5
             estimators = [{ESTIMATORS}
+                {{ ray-marching = {{ steps = 10, jitter = true, expect = \"biased\" }} }},
+                {{ ray-marching = {{ steps = 3, expect = \"biased\" }} }},
                 {{ ratio.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [0.5, 2, 1] }} }}]"
         );
         let flight = format!(
@@ -111,7 +113,41 @@ fn cases() -> Vec<Case> {
             sampling.constant.value = 1.5
             estimators = [{{ woodcock = {{}} }}, {{ woodcock.sampling.local-majorants.segments = 5 }}]"
         );
+        let curve = format!(
+            "title = \"{name}, curve\"\n[problem.transmittance-curve]\n{medium}\ndistances = 5
+            sampling.constant.value = 1.5
+            estimators = [{{ double = {{}} }}, {{ double.control.explorers.points = 40 }},
+                {{ double = {{ control.mean = {{}}, sampling.local-majorants.segments = 5 }} }},
+                {{ double.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [0.5, 2, 1] }} }}]"
+        );
+        let rod = format!(
+            "title = \"{name}, rod\"\n[problem.rod]\n{medium}\nforward = 0.7\nabsorbed = true
+            albedo.piecewise-linear = {{ knots = [0, 4], values = [0.9, 0.6] }}\norders = 2\nflux = 3
+            sampling.constant.value = 1.6
+            estimators = [{{ terminating = {{}} }}, {{ non-terminating = {{}} }}, {{ adaptive = {{}} }},
+                {{ adaptive.sampling.constant.value = 0.7 }}, {{ analog = {{}} }}, {{ weighted = {{}} }},
+                {{ weighted.sampling.local-majorants.segments = 5 }}]"
+        );
         cases.push(case(name, &transmittance));
+        cases.push(case(&format!("{name}-curve"), &curve));
+        if matches!(name, "constant" | "lines" | "sines" | "eq21" | "gaps") {
+            cases.push(case(&format!("{name}-rod"), &rod));
+            for (light, phase) in [
+                ("collimated.cosine = 0.8", "isotropic = {}"),
+                ("diffuse = {}", "isotropic = {}"),
+                ("diffuse = {}", "rayleigh = {}"),
+                ("collimated.cosine = 1", "henyey-greenstein = { g = 0.6 }"),
+            ] {
+                let slab = format!(
+                    "title = \"{name}, slab\"\n[problem.slab]\n{medium}\nalbedo = 0.8
+                    incidence.{light}\nphase.{phase}\nsampling.constant.value = 1.6
+                    estimators = [{{ terminating = {{}} }}, {{ non-terminating = {{}} }},
+                        {{ adaptive = {{}} }}, {{ analog = {{}} }}, {{ weighted = {{}} }},
+                        {{ weighted.sampling.local-majorants.segments = 5 }}]"
+                );
+                cases.push(case(&format!("{name}-slab"), &slab));
+            }
+        }
         cases.push(case(&format!("{name}-flight"), &flight));
     }
     cases

@@ -181,13 +181,22 @@ fn free_flight_inverts_optical_depth() {
             return Err(TestCaseError::fail(format!("{depth:e} of {whole:?} is not reached")));
         };
         let support = medium.support();
-        check((support.from..=support.to).contains(&s), || format!("{s:e} outside {support:?}"))?;
-        let back = medium.optical_depth(Span::new(support.from, s));
-        // A distance is rounded where it stands.
-        let grain = f64::EPSILON * s.abs().max(support.from.abs()) * medium.extinction(s);
-        let off = (back.value - depth).abs();
-        let allowed = 1e-12 * whole.value + back.error + 2.0 * grain;
-        check(off <= allowed, || format!("{depth:e} became {back:?}, off by {off:e} at {s:e}"))
+        let inverse = medium.inverse();
+        check(inverse.free_flight(beyond).is_none(), || format!("{beyond:e} of {whole:?}"))?;
+        for s in [Some(s), inverse.free_flight(depth)] {
+            let Some(s) = s.filter(|s| (support.from..=support.to).contains(s)) else {
+                return Err(TestCaseError::fail(format!("{s:?} outside {support:?}")));
+            };
+            let back = medium.optical_depth(Span::new(support.from, s));
+            // A distance is rounded where it stands.
+            let grain = f64::EPSILON * s.abs().max(support.from.abs()) * medium.extinction(s);
+            let off = (back.value - depth).abs();
+            let allowed = 1e-12 * whole.value + back.error + 2.0 * grain;
+            check(off <= allowed, || {
+                format!("{depth:e} became {back:?}, off by {off:e} at {s:e}")
+            })?;
+        }
+        Ok(())
     });
 }
 

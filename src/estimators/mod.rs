@@ -14,6 +14,7 @@ pub mod layers;
 pub mod ledger;
 pub mod multiple_scattering;
 pub mod packet;
+pub mod places;
 pub mod rod;
 pub mod rules;
 pub mod sampling;

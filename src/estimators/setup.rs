@@ -39,6 +39,8 @@ pub struct Setup<P> {
     pub log_unit: f64,
     /// `T_c = exp(−∫σ_c)` over the support, in units of `exp(−log_unit)`.
     pub control_transmittance: f64,
+    /// The same from the beginning of the support to each of the problem's distances.
+    pub control_curve: Vec<f64>,
     /// `T` over the support, in units of `exp(−log_unit)`.
     pub transmittance: f64,
     /// The share of the support on which σ̂ is 0 because the residual is, see [`Setup::skipping`]; in
@@ -62,8 +64,11 @@ impl<P: Problem> Setup<P> {
         // Both enter draws: this crate's exponential, the same on every machine.
         let depth = mesh.optical_depth().value;
         let log_unit = problem.log_unit(depth);
-        let control_depth = control.optical_depth(support).value;
-        let control_transmittance = Lane::exp(log_unit - control_depth);
+        let control_over =
+            |span: Span| Lane::exp(log_unit - control.optical_depth(span.intersect(support)).value);
+        let control_transmittance = control_over(support);
+        let upto = |&distance: &f64| control_over(Span::new(support.from, distance));
+        let control_curve = problem.distances().iter().map(upto).collect();
         let transmittance = Lane::exp(log_unit - depth);
         Self {
             problem,
@@ -73,6 +78,7 @@ impl<P: Problem> Setup<P> {
             control,
             log_unit,
             control_transmittance,
+            control_curve,
             transmittance,
             skipped: 0.0,
             laws: true,

@@ -60,11 +60,16 @@ impl DrawBuffer {
     /// Makes room for exactly so many draws of one channel, and hands out values, lookups and
     /// defects to be written anew; `None` where a draw has no channel.
     pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {
+        self.make_room(count);
         let values = self.values.first_mut()?;
-        values.resize(count, 0.0);
+        Some((values, &mut self.lookups, &mut self.defects))
+    }
+
+    /// Makes room for exactly so many draws, to be written anew.
+    pub fn make_room(&mut self, count: usize) {
+        self.values.iter_mut().for_each(|channel| channel.resize(count, 0.0));
         self.lookups.resize(count, 0);
         self.defects.resize(count, 0.0);
-        Some((values, &mut self.lookups, &mut self.defects))
     }
 }
 

@@ -50,6 +50,8 @@ impl OpticalDepth for Homogeneous {
 }
 
 impl FreeFlight for Homogeneous {
+    const IS_DIRECT: bool = true;
+
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         let s = span.from + depth / self.extinction;
         (s < span.to).then_some(s)

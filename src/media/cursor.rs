@@ -22,6 +22,11 @@ impl Piecewise {
         Cursor { t, way: t, piece: 0 }
     }
 
+    /// A walk over the pieces from any distance between the first and the last knot.
+    pub(super) fn begin_at(&self, t: f64) -> Cursor {
+        Cursor { t, way: t, piece: self.piece_at(t).1 }
+    }
+
     /// Flies on through an optical depth and answers the field at the new distance; `None` beyond
     /// the last knot. Non-negative fields only.
     ///
@@ -40,7 +45,7 @@ impl Piecewise {
 
     /// The same over several pieces.
     #[inline]
-    fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
+    pub(super) fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {
         while cursor.piece < self.left.len() {
             let (end, slope) = (self.knots[cursor.piece + 1], self.slope[cursor.piece]);
             let here = self.line(cursor.piece, cursor.t);

@@ -87,6 +87,8 @@ impl OpticalDepth for Decay {
 }
 
 impl FreeFlight for Decay {
+    const IS_DIRECT: bool = true;
+
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         let first = self.value(span.from);
         let growth = depth * self.slope / first;

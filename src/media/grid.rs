@@ -113,6 +113,8 @@ impl OpticalDepth for GridRay {
 }
 
 impl FreeFlight for GridRay {
+    const IS_DIRECT: bool = true;
+
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         self.cells.invert(span, depth, |index, cell, part| self.part(index, cell, part))
     }

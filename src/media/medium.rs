@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use fearless_simd::Level;
 
-use super::{Extinction, FreeFlight, Profile, Visitor};
+use super::inverse::Table;
+use super::{Extinction, FreeFlight, Inverse, Profile, Visitor};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Known, Lane, Span};
 
@@ -102,6 +103,14 @@ impl Medium {
         self.profile.visit(Flight(self.support, depth))
     }
 
+    /// The same for many depths.
+    #[must_use]
+    pub fn inverse(&self) -> Inverse {
+        let table =
+            if self.support.is_empty() { None } else { self.profile.visit(Tabulate(self.support)) };
+        Inverse::new(self.clone(), table)
+    }
+
     /// The kinks of the field inside the support, in any order.
     #[must_use]
     pub fn breaks(&self) -> Vec<f64> {
@@ -175,6 +184,14 @@ impl Visitor for Flight {
     type Output = Option<f64>;
     fn visit<F: FreeFlight>(self, field: &F) -> Option<f64> {
         if self.0.is_empty() { None } else { field.free_flight(self.0, self.1) }
+    }
+}
+
+struct Tabulate(Span);
+impl Visitor for Tabulate {
+    type Output = Option<Table>;
+    fn visit<F: FreeFlight>(self, field: &F) -> Option<Table> {
+        if F::IS_DIRECT { None } else { Some(Table::of(field, self.0)) }
     }
 }
 

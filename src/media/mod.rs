@@ -15,6 +15,7 @@ pub mod cubics;
 pub mod cursor;
 pub mod even;
 pub mod grid_file;
+pub mod inverse;
 pub mod lattice;
 pub mod majorants;
 pub mod medium;
@@ -34,6 +35,7 @@ pub use body::Body;
 pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
+pub use inverse::Inverse;
 pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
@@ -100,6 +102,9 @@ pub trait OpticalDepth: Extinction {
 
 /// A field whose integral can be inverted.
 pub trait FreeFlight: OpticalDepth {
+    /// Whether the inverse is found at once, without a search for a root of the optical depth.
+    const IS_DIRECT: bool = false;
+
     /// The distance `s` with `τ(span.from, s) = depth`; `None` where the ray leaves the span first.
     ///
     /// The default brackets the root of the exact optical depth; pages with a closed form

@@ -179,7 +179,7 @@ impl Piecewise {
     }
 
     /// The piece that holds `t`, and the value where `t` lies outside the knots.
-    fn piece_at(&self, t: f64) -> (Option<f64>, usize) {
+    pub(super) fn piece_at(&self, t: f64) -> (Option<f64>, usize) {
         let last = self.left.len() - 1;
         if t < self.knots[0] {
             return (Some(self.left[0]), 0);
@@ -232,10 +232,15 @@ impl OpticalDepth for Piecewise {
 }
 
 impl FreeFlight for Piecewise {
+    const IS_DIRECT: bool = true;
+
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
-        let field = self.on(span);
-        let mut cursor = field.begin();
-        field.fly(&mut cursor, depth).map(|_| cursor.t)
+        if span.from < self.knots[0] || span.to > self.knots[self.left.len()] {
+            return self.on(span).free_flight(span, depth);
+        }
+        let mut cursor = self.begin_at(span.from);
+        self.fly_over(&mut cursor, depth)?;
+        (cursor.t < span.to).then_some(cursor.t)
     }
 }
 

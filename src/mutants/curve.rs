@@ -109,9 +109,9 @@ impl Draws<TransmittanceCurve> for Curve {
             let reversed = support.from + (support.to - cursor.t);
             let at = if slip == Slip::Reversed { reversed } else { cursor.t };
             let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
-            let ratio = residual / sampling;
-            books.hand_over(weight, 1.0 - ratio);
-            weight *= 1.0 - ratio;
+            let due = 1.0 - residual * (1.0 / sampling);
+            books.hand_over(weight, due);
+            weight *= due;
             lookups += 1;
             if slip == Slip::TooEarly {
                 pass(cursor.t, last, weight);

@@ -40,13 +40,23 @@ pub fn root(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> f64) -> f64 {
 
 /// The root of a function that rises from below zero at `low` to above zero at `high`, by Newton's
 /// steps kept within the bracket; `f` answers the value and the slope.
-pub fn rising(mut low: f64, mut high: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    let mut x = 0.5 * (low + high);
+pub fn rising(low: f64, high: f64, f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    rising_from(0.5 * (low + high), [low, high], |_, _| false, f)
+}
+
+/// The same from a first guess within the bracket, until a step is lost in rounding, or is one after
+/// which no other is needed: `is_last` is asked with the step and the slope.
+pub fn rising_from(
+    mut x: f64,
+    [mut low, mut high]: [f64; 2],
+    is_last: impl Fn(f64, f64) -> bool,
+    mut f: impl FnMut(f64) -> (f64, f64),
+) -> f64 {
     for _ in 0..200 {
         let (value, slope) = f(x);
         let step = value / slope;
-        if value == 0.0 || step.abs() <= f64::EPSILON * x.abs() {
-            return x - if step.is_finite() { step } else { 0.0 };
+        if value == 0.0 || step.abs() <= f64::EPSILON * x.abs() || is_last(step, slope) {
+            return if step.is_finite() { (x - step).max(low).min(high) } else { x };
         }
         if value < 0.0 {
             low = x;
@@ -101,6 +111,23 @@ mod tests {
     fn finds_a_rising_root_across_a_flat_stretch() {
         let cube = |x: f64| ((x - 1.0).powi(3) - 1e-3, 3.0 * (x - 1.0).powi(2));
         assert!((rising(0.0, 5.0, cube) - 1.1).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_good_guess_takes_one_step() {
+        let mut asked = 0;
+        let root = rising_from(
+            1.414,
+            [1.0, 2.0],
+            |step, _| step.abs() < 1e-3,
+            |x| {
+                asked += 1;
+                (x * x - 2.0, 2.0 * x)
+            },
+        );
+        assert!(asked == 1 && (root - 2f64.sqrt()).abs() < 1e-7);
+        // What the last step would leave the bracket for is its end.
+        assert_eq!(rising_from(1.0, [0.0, 1.0], |_, _| true, |_| (-1.0, 1.0)), 1.0);
     }
 
     #[test]

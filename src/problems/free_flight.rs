@@ -8,20 +8,31 @@
 //! Settings are those of `transmittance`. A draw is the distance from the ray's beginning. The
 //! whole distribution is tested, not only its mean.
 
+use std::sync::OnceLock;
+
 use super::Problem;
 use crate::catalogue::Settings;
-use crate::media::{Body, Medium};
+use crate::media::{Body, Inverse, Medium};
 
 /// The free flight along a ray.
 pub struct FreeFlight {
     medium: Medium,
+    inverse: OnceLock<Inverse>,
+}
+
+impl FreeFlight {
+    /// Where optical depths are reached; prepared when it is first asked for.
+    #[must_use]
+    pub fn inverse(&self) -> &Inverse {
+        self.inverse.get_or_init(|| self.medium.inverse())
+    }
 }
 
 impl Problem for FreeFlight {
     type Value = [f64; 1];
 
     fn read(body: Option<&Body>, _: &Settings) -> Option<Self> {
-        Some(Self { medium: body?.medium() })
+        Some(Self { medium: body?.medium(), inverse: OnceLock::new() })
     }
 
     fn medium(&self) -> &Medium {

@@ -127,12 +127,18 @@ impl Rod {
         self.medium.support().length() / self.parts.max(1) as f64
     }
 
+    /// Where the rod begins.
+    #[must_use]
+    pub fn begin(&self) -> f64 {
+        self.medium.support().from
+    }
+
     /// The part that holds a distance inside the rod.
     #[inline(always)]
     #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the number of parts
     pub fn part(&self, t: f64) -> usize {
-        let part = (t - self.medium.support().from) / self.width();
+        let part = (t - self.begin()) / self.width();
         (part as usize).min(self.parts.saturating_sub(1))
     }
 

@@ -13,7 +13,7 @@
 
 use std::convert::Infallible;
 
-use fearless_simd::{Bytes, ExtractToken, Simd, SimdBase, SimdInt, f64x8, u64x8};
+use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8};
 use rand::TryRng;
 
 use super::mix;
@@ -212,6 +212,17 @@ impl Lanes {
 }
 
 impl<S: Simd> Xoshiro<u64x8<S>> {
+    /// Uniform in `[0, 1)` from the streams that a mask names: the others stay where they are, and
+    /// their numbers mean nothing.
+    #[inline(always)]
+    pub fn uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
+        let [a, b, c, d] = self.state;
+        let number = self.uniform();
+        let [e, f, g, h] = self.state;
+        self.state = [mask.select(e, a), mask.select(f, b), mask.select(g, c), mask.select(h, d)];
+        number
+    }
+
     /// Where the streams stand.
     #[inline(always)]
     #[must_use]

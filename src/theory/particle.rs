@@ -28,20 +28,22 @@
 //! I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM
 //! Transactions on Graphics 38 (2019), section 5.2.
 
+use crate::numeric::Lane;
+
 /// The chances at a tentative collision, and what becomes of the weight.
 ///
 /// Unbiased where `transmit · transmit_weight = 1 − r` and `scatter · scatter_weight = a r`. What is
 /// left of the chances is absorption.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Odds {
+pub struct Odds<L = f64> {
     /// `q_t`, the chance to go straight on: the collision is null.
-    pub transmit: f64,
+    pub transmit: L,
     /// `q_s`, the chance to be scattered.
-    pub scatter: f64,
+    pub scatter: L,
     /// `(1 − r)/q_t`, the factor of a particle that goes straight on.
-    pub transmit_weight: f64,
+    pub transmit_weight: L,
     /// `a r/q_s`, the factor of a particle that is scattered.
-    pub scatter_weight: f64,
+    pub scatter_weight: L,
 }
 
 /// What a number drawn at a collision decides.
@@ -122,19 +124,18 @@ impl ParticleRule {
     /// chances: a forced walk compares a number with them as any renderer would, and is biased.
     #[inline(always)]
     #[must_use]
-    pub fn odds(self, ratio: f64, albedo: f64) -> Odds {
+    pub fn odds<L: Lane>(self, ratio: L, albedo: L) -> Odds<L> {
+        let one = ratio.each(1.0);
         match self {
             Self::Terminating | Self::Analog => terminating(ratio, albedo),
-            Self::NonTerminating => shared(ratio, albedo, 1.0),
+            Self::NonTerminating => shared(ratio, albedo, one),
             Self::Adaptive => {
-                let sum = albedo * ratio + (1.0 - ratio).abs();
-                if ratio >= 1.0 && sum <= 1.0 {
-                    terminating(ratio, albedo)
-                } else {
-                    shared(ratio, albedo, 1.0)
-                }
+                let sum = albedo * ratio + (one - ratio).size();
+                let terminates = one.at_most(ratio) & sum.at_most(one);
+                let (ending, lasting) = (terminating(ratio, albedo), shared(ratio, albedo, one));
+                Odds::select(terminates, ending, lasting)
             }
-            Self::Weighted => shared(ratio, 1.0, albedo),
+            Self::Weighted => shared(ratio, one, albedo),
         }
     }
 
@@ -172,34 +173,53 @@ impl ParticleRule {
     }
 }
 
+impl<L: Lane> Odds<L> {
+    #[inline(always)]
+    fn select(mask: L::Mask, yes: Self, no: Self) -> Self {
+        Self {
+            transmit: L::select(mask, yes.transmit, no.transmit),
+            scatter: L::select(mask, yes.scatter, no.scatter),
+            transmit_weight: L::select(mask, yes.transmit_weight, no.transmit_weight),
+            scatter_weight: L::select(mask, yes.scatter_weight, no.scatter_weight),
+        }
+    }
+}
+
+/// A size with the sign of another number.
 #[inline(always)]
-fn terminating(ratio: f64, albedo: f64) -> Odds {
-    let rest = 1.0 - ratio;
+fn signed<L: Lane>(size: L, like: L) -> L {
+    L::select(like.below(like.each(0.0)), -size, size)
+}
+
+#[inline(always)]
+fn terminating<L: Lane>(ratio: L, albedo: L) -> Odds<L> {
+    let one = ratio.each(1.0);
+    let rest = one - ratio;
     Odds {
-        transmit: rest.abs(),
+        transmit: rest.size(),
         scatter: albedo * ratio,
-        transmit_weight: 1f64.copysign(rest),
-        scatter_weight: 1.0,
+        transmit_weight: signed(one, rest),
+        scatter_weight: one,
     }
 }
 
 /// The chances of an albedo, shared out so that the walk goes on; what they leave is weight.
 #[inline(always)]
-fn shared(ratio: f64, albedo: f64, left: f64) -> Odds {
-    let rest = 1.0 - ratio;
-    let (transmitted, scattered) = (rest.abs(), albedo * ratio.abs());
+fn shared<L: Lane>(ratio: L, albedo: L, left: L) -> Odds<L> {
+    let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
+    let rest = one - ratio;
+    let (transmitted, scattered) = (rest.size(), albedo * ratio.size());
     let sum = scattered + transmitted;
-    if sum <= 0.0 {
-        // r = 1 and a = 0: nothing is left of the particle, whatever the chances.
-        return Odds { transmit: 0.0, scatter: 0.0, transmit_weight: 0.0, scatter_weight: 0.0 };
-    }
     let transmit = transmitted / sum;
+    // r = 1 and a = 0: nothing is left of the particle, whatever the chances. A weight of 0 is no
+    // weight either: the walk ends.
+    let is_nothing = sum.at_most(zero);
+    let is_scattered = zero.below(left) & !is_nothing;
     Odds {
-        transmit,
-        // A weight of 0 is no weight: the walk ends.
-        scatter: if left > 0.0 { 1.0 - transmit } else { 0.0 },
-        transmit_weight: sum.copysign(rest),
-        scatter_weight: left * sum.copysign(ratio),
+        transmit: L::select(is_nothing, zero, transmit),
+        scatter: L::select(is_scattered, one - transmit, zero),
+        transmit_weight: signed(sum, rest),
+        scatter_weight: left * signed(sum, ratio),
     }
 }
 

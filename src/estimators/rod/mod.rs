@@ -1,5 +1,6 @@
 //! Walks of a particle through a rod.
 
+pub mod packet;
 pub mod walk;
 
 use crate::estimators::{Refusal, Setup, estimators};
@@ -39,6 +40,7 @@ fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
 macro_rules! walks {
     ($rule:expr) => {
         const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
 
         fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
             Some(Self)
@@ -67,6 +69,16 @@ macro_rules! walks {
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<$crate::problems::rod::Values> {
             $crate::estimators::rod::walk::draw(&$rule, setup, medium, rng)
+        }
+
+        fn draw_packets<'a, M: $crate::media::Extinction>(
+            &self,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<$crate::problems::Rod>,
+            medium: &M,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::rod::packet::walks(level, setup, $rule, medium, request)
         }
     };
 }

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes a third, and so does
-//! roulette where it is played.
+//! roulette where it is played. Eight at a time: [`super::packet`].
 
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
@@ -119,11 +119,12 @@ pub fn draw<M: Extinction>(
             break;
         };
         lookups += 1;
-        let ratio = medium.extinction(cursor.t) / sampling;
+        let path = 1.0 / sampling;
+        let ratio = medium.extinction(cursor.t) * path;
         let albedo = rod.albedo().value(cursor.t);
         fate.absorbed += fate.weight * ratio * (1.0 - albedo);
         if sees_flux {
-            fate.flux[rod.part(cursor.t)] += fate.weight * (parts_per_length / sampling);
+            fate.flux[rod.part(cursor.t)] += fate.weight * (path * parts_per_length);
         }
         let odds = steps.odds_at(ratio, albedo);
         match odds.decide(number) {

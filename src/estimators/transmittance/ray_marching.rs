@@ -19,13 +19,17 @@
 //! Source: M. Raab, D. Seibert, A. Keller, *Unbiased Global Illumination with Participating Media*,
 //! Monte Carlo and Quasi-Monte Carlo Methods 2006, Springer (2008).
 
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
 use crate::catalogue::Settings;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
+use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Lane};
 use crate::problems::Transmittance;
-use crate::rng::{Stream, unit};
+use crate::rng::{Lanes, Stream};
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
@@ -39,16 +43,28 @@ pub struct RayMarching {
 }
 
 impl RayMarching {
-    fn depth(&self, setup: &Setup<Transmittance>, u: f64, look: impl Fn(f64) -> f64) -> f64 {
+    /// `h Σⱼ σ_t((j + u) h)`.
+    #[inline(always)]
+    fn depth<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
         let support = setup.mesh.support();
         let step = support.length() / f64::from(self.steps);
-        let at = |j: u32| support.from + (f64::from(j) + u) * step;
-        step * (0..self.steps).map(|j| look(at(j))).sum::<f64>()
+        let mut sum = u.each(0.0);
+        for j in 0..self.steps {
+            sum = sum + medium.extinction((u + f64::from(j)) * step + support.from);
+        }
+        sum * step
+    }
+
+    /// The values of draws with the given offsets.
+    #[inline(always)]
+    fn value<M: Extinction, L: Lane>(&self, setup: &Setup<Transmittance>, medium: &M, u: L) -> L {
+        (u.each(setup.log_unit) - self.depth(setup, medium, u)).exp()
     }
 }
 
 impl Estimator<Transmittance> for RayMarching {
     const INPUTS: Inputs = Inputs::NONE;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let steps = settings.count("steps", 1..=1_000_000);
@@ -67,8 +83,7 @@ impl Estimator<Transmittance> for RayMarching {
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
         let medium = setup.mesh.medium();
-        let value =
-            |u: f64| (setup.log_unit - self.depth(setup, u, |t| medium.extinction(t))).exp();
+        let value = |u: f64| (setup.log_unit - self.depth(setup, medium, u)).exp();
         let (mean, moments) = if self.jitter {
             let rule = GaussLegendre::new(4);
             let width = 1.0 / PANELS as f64;
@@ -100,14 +115,59 @@ impl Estimator<Transmittance> for RayMarching {
         Prediction { random_numbers, ..Prediction::single(channel, lookups) }
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
         medium: &M,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let u = if self.jitter { unit(rng) } else { 0.5 };
-        let depth = self.depth(setup, u, |t| medium.extinction(t));
-        Draw::free([Lane::exp(setup.log_unit - depth)], self.steps)
+        let u = if self.jitter { rng.uniform() } else { 0.5 };
+        Draw::free([self.value(setup, medium, u)], self.steps)
+    }
+
+    fn draw_packets<'a, M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let task = Marches { estimator: self, setup, medium, request };
+        pack::on_wide(level, task).err().map(|task| task.request)
+    }
+}
+
+/// Eight marches side by side: each lane makes the draws of its stream.
+struct Marches<'a, 'r, M> {
+    estimator: &'a RayMarching,
+    setup: &'a Setup<Transmittance>,
+    medium: &'a M,
+    request: Request<'r>,
+}
+
+impl<M: Extinction> Task for Marches<'_, '_, M> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { estimator, setup, medium, request } = self;
+        let Request { streams, count, buffer } = request;
+        let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
+        lookups.fill(estimator.steps);
+        defects.fill(0.0);
+        let mut numbers = Lanes::of(&streams.lanes).awake(simd);
+        let (rows, rest) = values.as_chunks_mut::<WIDTH>();
+        for row in rows {
+            let half = f64x8::splat(simd, 0.5);
+            let u = if estimator.jitter { numbers.uniform() } else { half };
+            estimator.value(setup, medium, u).store_slice(row);
+            // The first draw is that of the lane whose turn it is.
+            row.rotate_left(streams.turn);
+        }
+        streams.lanes = numbers.at_rest().apart();
+        for value in rest {
+            [*value] = estimator.draw(setup, medium, streams.of_next_draw()).value;
+        }
     }
 }

@@ -17,13 +17,16 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 4.2–4.3, Figures 5 and 8.
 
+use fearless_simd::Level;
+
+use super::packet;
 use super::portrait::{self, Portrait};
 use crate::catalogue::Settings;
+use crate::estimators::packet::Request;
 use crate::estimators::rules::Weight;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Medium};
-use crate::numeric::{Lane, Span};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Address, Stream, exponential};
@@ -51,6 +54,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
     const INPUTS: Inputs = Inputs::BOTH;
     const SKIPS: bool = true;
     const KEEPS_BOOKS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -68,21 +72,19 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         Some(portrait::portrait(setup, address))
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<TransmittanceCurve>,
         medium: &M,
         rng: &mut Stream,
     ) -> Draw<Values> {
-        let support = setup.mesh.support();
         let distances = setup.problem.ascending();
         let mut values = Values { at: [0.0; MOST], count: distances.len() };
         let mut next = 0;
         let mut pass = |until: f64, weight: f64| {
             while next < distances.len() && distances[next] <= until {
-                let upto = Span::new(support.from, distances[next]).intersect(support);
-                let depth = setup.control.optical_depth(upto).value;
-                values.at[next] = weight * Lane::exp(-depth);
+                values.at[next] = weight * setup.control_curve[next];
                 next += 1;
             }
         };
@@ -90,15 +92,25 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         let mut weight = 1.0;
         let mut books = Books::open(weight);
         let mut lookups = 0;
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
             pass(cursor.t, weight);
             let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
-            let ratio = residual / sampling;
-            books.hand_over(weight, 1.0 - ratio);
-            weight *= 1.0 - ratio;
+            let due = 1.0 - residual * (1.0 / sampling);
+            books.hand_over(weight, due);
+            weight *= due;
             lookups += 1;
         }
         pass(f64::INFINITY, weight);
         Draw { value: values, lookups, defect: books.defect(weight) }
+    }
+
+    fn draw_packets<'a, M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<TransmittanceCurve>,
+        medium: &M,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::curve(level, setup, medium, request)
     }
 }

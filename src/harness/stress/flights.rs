@@ -16,7 +16,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     })
 }
 
-/// Any 1-D field: the depth of the distance is the depth that was asked for.
+/// Any 1-D field, with and without a table: the depth of the distance is the depth that was asked for.
 fn inverse(dice: &mut Dice, trials: u32) -> Row {
     let range = "all 1-D fields, 1e-12 of the whole and the grain of s";
     let mut row = Row::new("inverse of optical depth", range, Measure::OfStated, 1.0);
@@ -53,16 +53,18 @@ fn inverse(dice: &mut Dice, trials: u32) -> Row {
             continue;
         }
         let depth = whole.value * dice.sized(-12.0, 0.0);
-        let Some(s) = medium.free_flight(depth) else {
-            let is_last = depth >= whole.value - whole.error;
-            row.see(if is_last { 0.0 } else { f64::NAN }, || text.replace('\n', ", "));
-            continue;
-        };
-        let back = medium.optical_depth(Span::new(from, s));
-        let grain = 2.0 * f64::EPSILON * s.abs().max(from.abs()) * medium.extinction(s);
-        let off = (back.value - depth).abs();
-        let allowed = 1e-12 * whole.value + back.error + grain;
-        row.see(off / allowed, || format!("depth {depth:e}, {}", text.replace('\n', ", ")));
+        for s in [medium.free_flight(depth), medium.inverse().free_flight(depth)] {
+            let Some(s) = s else {
+                let is_last = depth >= whole.value - whole.error;
+                row.see(if is_last { 0.0 } else { f64::NAN }, || text.replace('\n', ", "));
+                continue;
+            };
+            let back = medium.optical_depth(Span::new(from, s));
+            let grain = 2.0 * f64::EPSILON * s.abs().max(from.abs()) * medium.extinction(s);
+            let off = (back.value - depth).abs();
+            let allowed = 1e-12 * whole.value + back.error + grain;
+            row.see(off / allowed, || format!("depth {depth:e}, {}", text.replace('\n', ", ")));
+        }
     }
     row
 }
