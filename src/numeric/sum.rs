@@ -65,9 +65,34 @@ pub fn sum_in_lanes(values: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     lanes.iter().sum::<f64>() + rest.iter().map(|&x| f(x)).sum::<f64>()
 }
 
+/// `Σ f(x, y)` over two lists of the same length, likewise.
+#[inline]
+#[must_use]
+pub fn sum_of_pairs(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+    let ((x, last_x), (y, last_y)) = (x.as_chunks::<8>(), y.as_chunks::<8>());
+    let mut lanes = [0.0; 8];
+    for (x, y) in x.iter().zip(y) {
+        for (lane, (&x, &y)) in lanes.iter_mut().zip(x.iter().zip(y)) {
+            *lane += f(x, y);
+        }
+    }
+    let rest = last_x.iter().zip(last_y).map(|(&x, &y)| f(x, y));
+    lanes.iter().sum::<f64>() + rest.sum::<f64>()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn sums_in_lanes_leave_nothing_out() {
+        for count in [0, 7, 8, 21] {
+            let x: Vec<f64> = (0..count).map(f64::from).collect();
+            let whole: f64 = x.iter().sum();
+            assert_eq!(sum_in_lanes(&x, |x| 2.0 * x), 2.0 * whole);
+            assert_eq!(sum_of_pairs(&x, &x, |x, y| x + y), 2.0 * whole);
+        }
+    }
 
     #[test]
     fn small_terms_survive_a_large_one() {

@@ -1,5 +1,6 @@
 //! Walks of the single particle model through a slab.
 
+pub mod packet;
 pub mod walk;
 
 use crate::catalogue::rounded;
@@ -72,6 +73,7 @@ fn predict(setup: &Setup<Slab>, rule: ParticleRule) -> Prediction {
 macro_rules! walks {
     ($rule:expr) => {
         const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
 
         fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
             Some(Self)
@@ -99,6 +101,16 @@ macro_rules! walks {
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<[f64; 2]> {
             $crate::estimators::slab::walk::draw(&$rule, setup, medium, rng)
+        }
+
+        fn draw_packets<'a, M: $crate::media::Extinction>(
+            &self,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
+            medium: &M,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::slab::packet::walks(level, setup, $rule, medium, request)
         }
     };
 }

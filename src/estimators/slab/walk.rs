@@ -8,7 +8,8 @@
 //! ```
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes one for θ and one
-//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`.
+//! for φ, of which an isotropic one needs the first only. Diffuse light takes one for `μ₀ = √u`. Eight at a
+//! time: [`super::packet`].
 
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
@@ -54,11 +55,12 @@ impl Steps for ParticleRule {
 /// The cosine with the normal after a deflection about the direction of travel.
 #[inline(always)]
 #[must_use]
-pub fn turned(cosine: f64, deflection: f64, azimuth: f64) -> f64 {
-    let across = (1.0 - cosine * cosine) * (1.0 - deflection * deflection);
+pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
+    let (zero, one) = (cosine.each(0.0), cosine.each(1.0));
+    let across = (one - cosine * cosine) * (one - deflection * deflection);
     // Rounding may carry a sum past 1, and a product below 0.
-    let turned = cosine * deflection + Lane::or_more(across, 0.0).sqrt() * azimuth;
-    Lane::or_more(Lane::or_less(turned, 1.0), -1.0)
+    let turned = cosine * deflection + across.or_more(zero).root() * azimuth;
+    turned.or_less(one).or_more(-one)
 }
 
 /// Makes one draw: reflectance and transmittance.
@@ -92,7 +94,7 @@ pub fn draw<M: Extinction>(
             return Draw::free(value, lookups);
         };
         lookups += 1;
-        let odds = steps.odds_at(medium.extinction(cursor.t) / sampling, slab.albedo());
+        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), slab.albedo());
         match odds.decide(number) {
             Event::Transmitted => weight *= odds.transmit_weight,
             Event::Scattered => {

@@ -15,6 +15,7 @@
 use super::{Ask, Check, Kind, Known, Law, Observe, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::harness::counted::Counted;
+use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::stats::{chi_square, reflection};
 use crate::theory::Increment;
 
@@ -61,13 +62,16 @@ impl Law for Increments {
     }
 
     fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
-        for i in 0..draws.draws.lookups.len() {
-            let mut before = 1.0;
-            for ((&j, scale), sum) in self.at.iter().zip(&self.scale).zip(&mut *sums) {
-                let now = draws.draws.values[j][i] * scale;
-                *sum += now - before;
-                before = now;
-            }
+        let mut last: Option<(&[f64], f64)> = None;
+        for ((&j, &scale), sum) in self.at.iter().zip(&self.scale).zip(sums) {
+            let now = &draws.draws.values[j];
+            *sum += match last {
+                None => sum_in_lanes(now, |x| x * scale - 1.0),
+                Some((before, unit)) => {
+                    sum_of_pairs(now, before, |now, before| now * scale - before * unit)
+                }
+            };
+            last = Some((now, scale));
         }
     }
 
