@@ -157,6 +157,12 @@ impl Piecewise {
         self.knots.windows(2).zip(&self.left).map(|(ends, &value)| ([ends[0], ends[1]], value))
     }
 
+    /// The ends of every piece that begins above zero, and the mean free path `1/σ̂` there.
+    #[inline(always)]
+    pub fn stretches(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+        self.segments().filter(|&(_, value)| value > 0.0).map(|(ends, value)| (ends, 1.0 / value))
+    }
+
     /// Both one-sided values at every knot, for a search of extremes.
     pub fn corner_values(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.left.len()).flat_map(|i| [self.left[i], self.line(i, self.knots[i + 1])])

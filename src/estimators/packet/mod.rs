@@ -9,7 +9,9 @@
 //! has made its draws walks on until the others have; its stream is then set back to where its last
 //! draw left it.
 
+pub mod decomposition;
 pub mod flight;
+pub mod majorants;
 pub mod product;
 pub mod score;
 
@@ -21,7 +23,9 @@ use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::pack::WIDTH;
 use crate::rng::{LANES, Lanes, Streams, Xoshiro};
 
+pub use decomposition::decomposition;
 pub use flight::flight;
+pub use majorants::majorants;
 pub use product::product;
 pub use score::score;
 

@@ -39,6 +39,7 @@ pub struct RayMarching {
 }
 
 impl RayMarching {
+    #[inline(always)]
     fn depth(&self, setup: &Setup<Transmittance>, u: f64, look: impl Fn(f64) -> f64) -> f64 {
         let support = setup.mesh.support();
         let step = support.length() / f64::from(self.steps);
@@ -100,6 +101,7 @@ impl Estimator<Transmittance> for RayMarching {
         Prediction { random_numbers, ..Prediction::single(channel, lookups) }
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,

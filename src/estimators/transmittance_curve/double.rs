@@ -68,6 +68,7 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         Some(portrait::portrait(setup, address))
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<TransmittanceCurve>,
