@@ -38,6 +38,7 @@ impl Estimator<FreeFlight> for Inversion {
         flight::predict(&setup.mesh, CountLaw::always(0.0))
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<FreeFlight>,

@@ -36,7 +36,7 @@ const MOST_PIECES: usize = 12;
 const MOST_CONTROL_PIECES: usize = 8;
 
 /// Whether packets are faster than one draw after the other.
-fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
+pub(super) fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
     let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
     M::IS_COSTLY || sampling.even().is_some() || few

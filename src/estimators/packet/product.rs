@@ -52,9 +52,7 @@ impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
         let weight = f64x8::splat(simd, begin);
         let from = f64x8::splat(simd, sampling.begin().t);
         let books = Books::open(weight);
-        // What does not change is found here, not in every step.
-        let constant = control.single_value().map(|value| f64x8::splat(simd, value));
-        let control = Subtracted { control, constant };
+        let control = Subtracted::new(simd, control);
         if let Some(even) = sampling.even() {
             let course = Even::new(simd, even);
             let walks = Products { rule, medium, control, begin, from, course, weight, books };
@@ -68,15 +66,22 @@ impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
 }
 
 /// σ_c as the walks ask for it.
-struct Subtracted<'a, S: Simd> {
+pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
     control: &'a Control,
     /// Its value, where there is only one.
     constant: Option<f64x8<S>>,
 }
 
-impl<S: Simd> Subtracted<'_, S> {
+impl<'a, S: Simd> Subtracted<'a, S> {
+    /// What does not change is found here, not in every step.
     #[inline(always)]
-    fn at(&self, t: f64x8<S>) -> f64x8<S> {
+    pub(in crate::estimators) fn new(simd: S, control: &'a Control) -> Self {
+        let constant = control.single_value().map(|value| f64x8::splat(simd, value));
+        Self { control, constant }
+    }
+
+    #[inline(always)]
+    pub(in crate::estimators) fn at(&self, t: f64x8<S>) -> f64x8<S> {
         match self.constant {
             Some(constant) => constant,
             None => self.control.extinction(t),

@@ -39,7 +39,6 @@ pub struct RayMarching {
 }
 
 impl RayMarching {
-    #[inline(always)]
     fn depth(&self, setup: &Setup<Transmittance>, u: f64, look: impl Fn(f64) -> f64) -> f64 {
         let support = setup.mesh.support();
         let step = support.length() / f64::from(self.steps);
