@@ -6,6 +6,7 @@ use std::io::IsTerminal;
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{self, Estimated, controls, sampling};
+use trueflight::harness::render::{Picture, gallery};
 use trueflight::harness::{self, case::Case, checks, suite};
 use trueflight::problems::{self, MultipleScattering};
 use trueflight::{media, phase, report};
@@ -37,6 +38,7 @@ enum What {
     Reports,
     Files,
     Cases,
+    Pictures,
 }
 
 /// One row: a part of the catalogue, a name and one sentence.
@@ -92,6 +94,12 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         for source in suite::suite() {
             let title = Case::read(&source).map(|case| case.title).unwrap_or_default();
             rows.push(Row { part: "cases".into(), name: source.name, summary: title });
+        }
+    }
+    if wanted("pictures") {
+        for source in gallery::gallery() {
+            let title = Picture::read(&source).map(|picture| picture.title).unwrap_or_default();
+            rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
         }
     }
     output::print(&match arguments.format {

@@ -16,7 +16,7 @@ use super::{Console, output, selection};
 /// Arguments of `render`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// Picture files, or names of built-in pictures; without any, the built-in gallery
+    /// Picture files, or names of built-in pictures (`trueflight list pictures`); without any, all of these
     #[arg(value_name = "PICTURES")]
     pictures: Vec<String>,
     /// Folder; the sheets, gallery.csv and a folder of PFM images for each picture go to gallery/ in it

@@ -28,7 +28,7 @@ pub struct Arguments {
 
 /// Stresses all quantities, prints and writes the table, and answers 1 if any bound is broken.
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
-    output::writable(&arguments.out)?;
+    output::writable(&arguments.out.join("stress"))?;
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let effort = if arguments.quick { Effort::Quick } else { Effort::Full };

@@ -8,12 +8,12 @@
 //! ψ grows like a logarithm, so that no single draw decides, and its exponential is bounded by a
 //! parabola, so that sums of it are evidence for any law with a known variance. The sum is kept as
 //! two running products, one over `t > 0` and one over `t < 0`; their exponents are split off every
-//! 64 draws. The lanes are fixed, so that the same draws give the same bits on every machine.
+//! 64 draws. The lanes are fixed, so that the width of a machine's registers changes no bit.
 //!
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
 
-use fearless_simd::{Level, Simd, SimdBase, dispatch, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
@@ -75,11 +75,8 @@ impl<const N: usize> Default for PsiSums<N> {
 impl<const N: usize> PsiSums<N> {
     /// Adds draws.
     pub fn absorb(&mut self, y: &[f64], arguments: &[Argument; N]) {
-        let level = Level::new();
-        dispatch!(level, simd => simd.vectorize(
-            #[inline(always)]
-            || absorb_all(&mut self.products, y, arguments)
-        ));
+        let products = &mut self.products;
+        pack::on(Level::new(), Each { products, y, arguments });
     }
 
     /// Adds draws that come so many times each.
@@ -139,39 +136,60 @@ fn terms<L: Lane>(y: L, argument: &Argument) -> L {
     L::select(is_small, near, t.map(|t| if t.abs() <= LARGE { 0.0 } else { psi(t) }))
 }
 
-#[inline(always)]
-fn absorb_all<const N: usize>(products: &mut [Product; N], y: &[f64], arguments: &[Argument; N]) {
-    for chunk in y.chunks(FLUSH) {
-        for (product, &argument) in products.iter_mut().zip(arguments) {
-            product.absorb(chunk, argument);
+/// Draws one by one, for all sums.
+struct Each<'a, const N: usize> {
+    products: &'a mut [Product; N],
+    y: &'a [f64],
+    arguments: &'a [Argument; N],
+}
+
+impl<const N: usize> Task for Each<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        for chunk in self.y.chunks(FLUSH) {
+            for (product, argument) in self.products.iter_mut().zip(self.arguments) {
+                product.absorb(simd, chunk, argument);
+            }
         }
     }
 }
 
-/// `1 + t + t²/2` for `t ≥ 0`.
+/// Twice what the products above and below take: one of them the factor, the other 1.
+///
+/// ```text
+/// 2(1 + |t| + t²/2) = (|t| + 1)² + 1
+/// ```
+///
+/// Each product is too large by 2 per draw, which cancels between them.
 #[inline(always)]
-fn factor(t: f64) -> f64 {
-    (0.5 * t + 1.0) * t + 1.0
+fn factors<L: Lane>(y: L, argument: &Argument) -> (L, L) {
+    let t = y.times_plus(y.each(argument.slope), y.each(argument.shift));
+    let root = t.size() + 1.0;
+    let factor = root.times_plus(root, y.each(1.0));
+    let (two, is_below) = (y.each(2.0), t.below(y.each(0.0)));
+    (L::select(is_below, two, factor), L::select(is_below, factor, two))
 }
 
 impl Product {
     #[inline(always)]
-    fn absorb(&mut self, chunk: &[f64], argument: Argument) {
-        let (mut above, mut below) = (self.above, self.below);
+    fn absorb<S: Simd>(&mut self, simd: S, chunk: &[f64], argument: &Argument) {
+        let load = |lanes: &[f64; LANES]| f64x8::from_slice(simd, lanes);
+        let (mut ups, mut downs) = (load(&self.above), load(&self.below));
         let (rows, rest) = chunk.as_chunks::<LANES>();
         for row in rows {
-            for lane in 0..LANES {
-                let t = argument.slope * row[lane] + argument.shift;
-                let up = if t > 0.0 { t } else { 0.0 };
-                above[lane] *= factor(up);
-                below[lane] *= factor(up - t);
-            }
+            let (up, down) = factors(load(row), argument);
+            ups *= up;
+            downs *= down;
         }
-        for (lane, y) in rest.iter().enumerate() {
-            let t = argument.slope * y + argument.shift;
-            let up = if t > 0.0 { t } else { 0.0 };
-            above[lane] *= factor(up);
-            below[lane] *= factor(up - t);
+        let (mut above, mut below) = ([0.0; LANES], [0.0; LANES]);
+        ups.store_slice(&mut above);
+        downs.store_slice(&mut below);
+        for (lane, &y) in rest.iter().enumerate() {
+            let (up, down) = factors(y, argument);
+            above[lane] *= up;
+            below[lane] *= down;
         }
         let mut largest = 0;
         let mut exponent = self.exponent;

@@ -42,7 +42,7 @@ impl Census<f64> {
     /// Counts numbers, told apart by their bits; `None` where too many of them differ.
     #[must_use]
     pub fn of(draws: &[f64]) -> Option<Self> {
-        let mut table = Table { bits: [0; PLACES], times: [[0; FOLD]; PLACES], used: 0 };
+        let mut table = Table::EMPTY;
         let (rows, rest) = draws.as_chunks::<FOLD>();
         for row in rows.iter().map(|row| &row[..]).chain([rest]) {
             for (fold, x) in row.iter().enumerate() {
@@ -55,24 +55,31 @@ impl Census<f64> {
     }
 }
 
+/// Values by their bits. Whether a place is taken is asked for every draw and changes rarely: it is
+/// kept apart from the counts, so that it need not wait for them to be stored.
 struct Table {
     bits: [u64; PLACES],
+    taken: [bool; PLACES],
     times: [[u32; FOLD]; PLACES],
     used: usize,
 }
 
 impl Table {
+    const EMPTY: Self =
+        Self { bits: [0; PLACES], taken: [false; PLACES], times: [[0; FOLD]; PLACES], used: 0 };
+
     /// The place of a value, which a new one takes; `None` where there is no room for it.
     #[inline(always)]
     fn find(&mut self, bits: u64) -> Option<usize> {
         // The upper bits of the product depend on all bits of the value.
         let mut place = (bits.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 57) as usize;
         loop {
-            if self.bits[place] == bits && self.times[place] != [0; FOLD] {
+            if self.taken[place] && self.bits[place] == bits {
                 return Some(place);
             }
-            if self.times[place] == [0; FOLD] {
+            if !self.taken[place] {
                 self.used += 1;
+                self.taken[place] = true;
                 self.bits[place] = bits;
                 return (self.used <= MOST).then_some(place);
             }

@@ -16,7 +16,9 @@ use crate::theory;
 const BINS: usize = 20;
 
 /// Cells of the guide per class.
-const CELLS: usize = 16;
+const CELLS: usize = 8;
+/// The share of a cell by which rounding surely moves no distance.
+const SLACK: f64 = 0.0625;
 /// So few ends need no guide.
 const FEW: usize = 32;
 
@@ -25,17 +27,15 @@ pub struct Distances;
 
 /// Equally probable classes of the distances of the rays that collide.
 pub struct Classes {
-    /// The upper ends of all classes but the last.
+    /// The upper ends of all classes, the last of which is the distance of the rays that escape.
     ends: Vec<f64>,
-    /// Equal cells from the first end to the last: how many ends surely lie before each.
-    guide: Vec<usize>,
+    /// Equal cells from the first end to the last but one: how many ends surely lie before each.
+    guide: Vec<u16>,
     /// Where the cells begin.
     first: f64,
     /// How many there are in a length of 1.
     scale: f64,
-    /// The distance of the rays that escape.
-    escape: f64,
-    /// The probability of that.
+    /// The probability that a ray escapes.
     escapes: f64,
 }
 
@@ -51,24 +51,33 @@ impl Classes {
         Some(Self::new(ends, *end, *escape))
     }
 
-    fn new(ends: Vec<f64>, escape: f64, escapes: f64) -> Self {
+    /// Of the ends of all classes but the last.
+    fn new(mut ends: Vec<f64>, escape: f64, escapes: f64) -> Self {
         let first = ends.first().copied().unwrap_or_default();
         let length = ends.last().map_or(0.0, |last| last - first);
         let cells = CELLS * ends.len();
         let width = length / cells.max(1) as f64;
-        // A distance that rounding puts one cell too far still finds its class ahead.
-        let before = |cell: usize| first + width * (cell as f64 - 2.0);
-        let guide = (0..=cells + 1).map(|cell| ends.partition_point(|&end| end < before(cell)));
+        ends.push(escape);
+        // A distance that rounding puts into the next cell still finds its class ahead.
+        let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
+        let passed = |cell| ends.partition_point(|&end| end < before(cell));
+        // Fewer than there are is a guide, too.
+        let guide = (0..=cells + 1).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
-        Self { guide: guide.collect(), first, scale, ends, escape, escapes }
+        Self { guide: guide.collect(), first, scale, ends, escapes }
     }
 
-    /// The class of a distance before the escape: how many ends are not beyond it.
+    /// The class of a distance, that of the rays that escape last: how many ends are not beyond it.
+    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a negative one is cell 0
     fn class(&self, s: f64) -> usize {
         let cell = ((s - self.first) * self.scale + 1.0) as usize;
-        let mut class = self.guide[cell.min(self.guide.len() - 1)];
-        while self.ends.get(class).is_some_and(|&end| end <= s) {
+        let guess = usize::from(self.guide[cell.min(self.guide.len() - 1)]);
+        let reached = |class: usize| self.ends.get(class).is_some_and(|&end| end <= s);
+        // Most cells lie in one class or two, and escape is one more: sums do not hang on chance, as
+        // branches would.
+        let mut class = guess + usize::from(reached(guess)) + usize::from(reached(guess + 1));
+        while reached(class) {
             class += 1;
         }
         class
@@ -76,7 +85,7 @@ impl Classes {
 
     /// How many classes, escape not counted.
     pub(super) fn len(&self) -> usize {
-        self.ends.len() + 1
+        self.ends.len()
     }
 
     /// Counts draws: the classes in order, then the rays that escape.
@@ -85,7 +94,7 @@ impl Classes {
         if self.ends.len() <= FEW {
             // All draws against one end after the other, so that no branch hangs on chance.
             let mut reached = values.len();
-            for (class, &end) in self.ends.iter().chain([&self.escape]).enumerate() {
+            for (class, &end) in self.ends.iter().enumerate() {
                 let beyond = in_fused_code(
                     #[inline(always)]
                     || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
@@ -97,8 +106,7 @@ impl Classes {
             return;
         }
         for &s in values {
-            let class = if s >= self.escape { self.len() } else { self.class(s) };
-            sums[class] += 1.0;
+            sums[self.class(s)] += 1.0;
         }
     }
 }
