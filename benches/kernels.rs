@@ -128,7 +128,7 @@ fn eq21_woodcock(rng: &mut Pcg64) -> f64 {
 }
 
 fn eq21_next_flight(rng: &mut Pcg64) -> f64 {
-    let (majorant, length) = (black_box(1.0), black_box(20.0));
+    let (majorant, length): (f64, f64) = (black_box(1.0), black_box(20.0));
     let (mut t, mut weight, mut score) = (0.0, 1.0, (-majorant * length).exp());
     loop {
         t -= (1.0 - uniform(rng)).ln() / majorant;
