@@ -267,6 +267,13 @@ mod tests {
     }
 
     #[test]
+    fn stretches_are_the_pieces_that_hold_something() {
+        let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 2.0, 0.0, 0.5]);
+        let found: Vec<_> = steps.stretches().collect();
+        assert_eq!(found, [([1.0, 2.0], 0.5), ([3.0, 4.0], 2.0)]);
+    }
+
+    #[test]
     fn flight_inverts_depth_over_pieces() {
         let field = lines();
         for step in 1..40 {

@@ -71,11 +71,11 @@ struct Scores<'a, S: Simd, M, H> {
 
 impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
     const WORDS: usize = 1;
-    type Reader = Totals<H>;
+    type Reader = Totals;
 
     #[inline(always)]
-    fn reader(&self) -> Totals<H> {
-        Totals { unit: self.unit, share: std::marker::PhantomData }
+    fn reader(&self) -> Totals {
+        Totals { unit: self.unit }
     }
 
     #[inline(always)]
@@ -84,8 +84,7 @@ impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
         let t = Lane::select(inside, self.course.reached(), self.from);
         let ratio = self.medium.extinction(t) * self.course.mean_free_path();
         let score = self.score;
-        score.sum.store_slice(&mut row.0[0]);
-        score.last.store_slice(&mut row.0[1]);
+        score.total::<H>().store_slice(&mut row.0[0]);
         let next = score.collided(ratio, self.share.of((self.end - t) * self.rate));
         self.score.weight = Lane::select(inside, next.weight, self.fresh.weight);
         self.score.last = Lane::select(inside, next.last, self.fresh.last);
@@ -96,14 +95,13 @@ impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
 }
 
 /// Reads scores.
-struct Totals<H> {
+struct Totals {
     unit: f64,
-    share: std::marker::PhantomData<H>,
 }
 
-impl<H: Share> Reader for Totals<H> {
+impl Reader for Totals {
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, _: bool) -> (f64, f64) {
-        (Score::total::<H>(row.0[0][lane], row.0[1][lane]) * self.unit, 0.0)
+        (row.0[0][lane] * self.unit, 0.0)
     }
 }

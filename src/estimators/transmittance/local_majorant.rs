@@ -6,7 +6,8 @@
 //!
 //! The exponential law forgets how far a flight has come, so the law of the draws and of the
 //! lookups is that of `woodcock` with the same piecewise-constant σ̂, which inverts the piecewise
-//! optical depth instead. Only the random numbers differ, one more per boundary crossed.
+//! optical depth instead. Only the random numbers differ: a boundary that is crossed takes those of a step
+//! more. Segments without extinction are left out.
 //!
 //! Unbiased for `σ̄ⱼ ≥ σ_t` in every segment j; draws are 0 or 1. Moments and cost are those of
 //! `woodcock`.
@@ -50,7 +51,7 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        // It takes one more at each boundary that it crosses.
+        // It takes more at each boundary that it crosses.
         let prediction = setup.product(&Null).predict();
         zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
