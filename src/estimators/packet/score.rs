@@ -24,9 +24,8 @@ pub fn score<'a, P, M: Extinction, H: Share>(
     medium: &M,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(sampling) = setup.sampling.even().filter(|even| even.gaps.is_empty()) else {
-        return Some(request);
-    };
+    let (even, value) = (setup.sampling.even(), setup.sampling.single_value());
+    let Some(sampling) = even.filter(|_| value.is_some()) else { return Some(request) };
     let unit = setup.control_transmittance;
     let task = Scored { sampling, unit, share, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
