@@ -60,6 +60,14 @@ fn spoilt_case_files_are_read_or_refused() {
     assert!(read > 0 && read < tried);
 }
 
+/// What the fuzzer of `fuzz/` has found.
+#[test]
+fn findings_stay_mended() {
+    // A picture for a case was refused without the key.
+    let picture = "title = \"t\"\n[picture.multiple-scattering]\nsize = [64, 64]\n";
+    assert!(reads_or_names_the_place(picture).is_none());
+}
+
 #[test]
 fn spoilt_grid_files_are_read_or_refused() {
     for (ending, share) in [("vol", 0.2), ("npy", 0.3)] {

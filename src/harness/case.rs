@@ -116,7 +116,12 @@ impl Case {
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {
         if let (Some(picture), false) = (root.entry("picture"), root.has("problem")) {
             let help = "render it with `trueflight render`; a case has `[problem.NAME]`";
-            root.fault_at(picture.key_span.clone(), "", "this is a picture, not a case", help);
+            root.fault_at(
+                picture.key_span.clone(),
+                "picture",
+                "this is a picture, not a case",
+                help,
+            );
             return None;
         }
         let title = root.text("title");
