@@ -320,7 +320,14 @@ fn calls(file: &File, drawing: bool) -> Vec<String> {
 fn what_is_drawn_never_calls_the_platforms_functions() {
     let mut wrong = Vec::new();
     for file in File::all() {
-        let whole = ["estimators/rules.rs", "estimators/walk.rs", "rng.rs"];
+        let whole = [
+            "estimators/rules.rs",
+            "estimators/scoring.rs",
+            "estimators/walk.rs",
+            "transmittance/next_flight.rs",
+            "transmittance/unidirectional_mis.rs",
+            "rng.rs",
+        ];
         let module = file.module();
         let drawing = module == "phase" || whole.iter().any(|path| file.path.ends_with(path));
         if drawing || ["estimators", "mutants"].contains(&module.as_str()) {
@@ -333,6 +340,29 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
         }
     }
     assert!(wrong.is_empty(), "use numeric::elementary instead:\n{}", wrong.join("\n"));
+}
+
+/// The lines before functions named `draw` whose code cannot go into what is compiled for the machine:
+/// there a fused multiplication would be a call of the mathematical library.
+fn left_outside(text: &str) -> Vec<&str> {
+    let lines: Vec<&str> = text.lines().map(str::trim).collect();
+    let pairs = lines.windows(2).filter(|pair| {
+        let begins =
+            pair[1].trim_start_matches("pub ").starts_with("fn draw<") && pair[1].ends_with('(');
+        begins && !pair[0].starts_with("#[inline")
+    });
+    pairs.map(|pair| pair[0]).collect()
+}
+
+#[test]
+fn every_estimators_draw_is_compiled_for_the_machine() {
+    let files = File::all();
+    let of_estimators = files.iter().filter(|file| file.module() == "estimators");
+    let outside = of_estimators.filter(|file| !left_outside(&file.text).is_empty());
+    let wrong: Vec<String> = outside.map(File::name).collect();
+    assert!(wrong.is_empty(), "write #[inline(always)] before draw:\n{}", wrong.join("\n"));
+    assert_eq!(left_outside("/// Draws.\npub fn draw<M: Extinction>(\n"), ["/// Draws."]);
+    assert!(left_outside("#[inline(always)]\nfn draw<M: Extinction>(\n").is_empty());
 }
 
 #[test]

@@ -98,12 +98,22 @@ const ESTIMATORS: &str = "
     { double.control.explorers.points = 5 }, { double.control.explorers.points = 40 }, { double.control.constant.value = 0.9 },
     { double.sampling.constant.value = 0.4 },";
 
+/// The other estimators of transmittance that are drawn in packets.
+const OTHERS: &str = "
+    { next-flight = {} }, { unidirectional-mis = {} }, { next-flight.sampling.constant.value = 0.4 },
+    { unidirectional-mis.sampling.constant.value = 300 },
+    { decomposition = {} }, { decomposition.control.constant.value = 0 },
+    { decomposition.sampling.local-majorants.segments = 5 },
+    { decomposition.sampling.piecewise-linear = { knots = [0, 2, 30], values = [1.5, 2, 1.5] } },
+    { local-majorant = {} }, { local-majorant.sampling.local-majorants.segments = 5 },
+    { local-majorant.sampling.local-majorants.segments = 70 },";
+
 fn cases() -> Vec<Case> {
     let mut cases = shipped();
     for (name, medium) in MEDIA {
         let transmittance = format!(
             "title = \"{name}\"\n[problem.transmittance]\n{medium}\nsampling.constant.value = 1.5
-            estimators = [{ESTIMATORS}
+            estimators = [{ESTIMATORS} {OTHERS}
                 {{ ray-marching = {{ steps = 10, jitter = true, expect = \"biased\" }} }},
                 {{ ray-marching = {{ steps = 3, expect = \"biased\" }} }},
                 {{ ratio.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [0.5, 2, 1] }} }}]"

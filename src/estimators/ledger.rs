@@ -20,6 +20,13 @@ pub struct Row(pub [[f64; WIDTH]; 3]);
 pub trait Reader {
     /// The value and the defect of a walk that ended in the step of a row.
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64);
+
+    /// The lookups that it had made before that step, after so many others.
+    #[inline(always)]
+    fn lookups(&self, row: &Row, lane: usize, steps: u32) -> u32 {
+        let _ = (row, lane);
+        steps
+    }
 }
 
 /// What one lane has to do and has done.
@@ -98,10 +105,12 @@ impl<'a> Ledger<'a> {
                     continue; // This lane has made its draws.
                 };
                 let has_escaped = escaped >> bit & 1 == 1;
-                (*value, *defect) = reader.draw(&rows[step % STEPS], lane, has_escaped);
+                let row = &rows[step % STEPS];
+                (*value, *defect) = reader.draw(row, lane, has_escaped);
                 let now = self.first.wrapping_add(step as u32);
+                let before = reader.lookups(row, lane, now.wrapping_sub(quota.began));
                 // The step that leaves looks at nothing.
-                *lookups = now.wrapping_sub(quota.began) + u32::from(!has_escaped);
+                *lookups = before + u32::from(!has_escaped);
                 quota.began = now.wrapping_add(1);
                 quota.place = place + LANES;
                 if quota.place >= self.values.len() {

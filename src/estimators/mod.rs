@@ -18,6 +18,7 @@ pub mod places;
 pub mod rod;
 pub mod rules;
 pub mod sampling;
+pub mod scoring;
 pub mod setup;
 pub mod single_scattering;
 pub mod slab;
@@ -260,6 +261,35 @@ macro_rules! product_draws {
     };
 }
 use product_draws;
+
+/// The draws of a next-flight estimator, by all kernels: all that differs is the share that it scores, as
+/// in `scored_draws!()`, where the page is the [`scoring::Share`].
+macro_rules! scored_draws {
+    () => {
+        const IN_PACKETS: bool = true;
+
+        #[inline(always)]
+        fn draw<M: $crate::media::Extinction>(
+            &self,
+            setup: &$crate::estimators::Setup<Transmittance>,
+            medium: &M,
+            rng: &mut $crate::rng::Stream,
+        ) -> $crate::estimators::Draw<[f64; 1]> {
+            $crate::estimators::scoring::walk(setup, self, medium, rng)
+        }
+
+        fn draw_packets<'a, M: $crate::media::Extinction>(
+            &self,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<Transmittance>,
+            medium: &M,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::packet::score(level, setup, self, medium, request)
+        }
+    };
+}
+use scored_draws;
 
 /// Lists recipes that prepare a sampling extinction or a control from its settings.
 macro_rules! recipes {

@@ -157,6 +157,12 @@ impl Piecewise {
         self.knots.windows(2).zip(&self.left).map(|(ends, &value)| ([ends[0], ends[1]], value))
     }
 
+    /// The ends of every piece that begins above zero, and the mean free path `1/σ̂` there.
+    #[inline(always)]
+    pub fn stretches(&self) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+        self.segments().filter(|&(_, value)| value > 0.0).map(|(ends, value)| (ends, 1.0 / value))
+    }
+
     /// Both one-sided values at every knot, for a search of extremes.
     pub fn corner_values(&self) -> impl Iterator<Item = f64> + '_ {
         (0..self.left.len()).flat_map(|i| [self.left[i], self.line(i, self.knots[i + 1])])
@@ -263,6 +269,13 @@ mod tests {
         let steps = Piecewise::steps(&[0.0, 1.0, 2.0], &[1.0, 3.0]);
         assert_eq!((steps.value(0.999), steps.value(1.0)), (1.0, 3.0));
         assert_eq!((steps.value(-1.0), steps.value(9.0)), (1.0, 3.0));
+    }
+
+    #[test]
+    fn stretches_are_the_pieces_that_hold_something() {
+        let steps = Piecewise::steps(&[0.0, 1.0, 2.0, 3.0, 4.0], &[0.0, 2.0, 0.0, 0.5]);
+        let found: Vec<_> = steps.stretches().collect();
+        assert_eq!(found, [([1.0, 2.0], 0.5), ([3.0, 4.0], 2.0)]);
     }
 
     #[test]

@@ -53,6 +53,7 @@ impl Estimator<Transmittance> for ClosedForm {
         exact(setup, 0)
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,

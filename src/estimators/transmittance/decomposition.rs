@@ -16,14 +16,17 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for
 //! Rendering Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 4.
 
+use fearless_simd::Level;
+
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
 use crate::media::{Control, Extinction};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential, unit};
+use crate::rng::Stream;
 use crate::theory::Prediction;
 
 /// Decomposition tracking; σ̂ and a constant control are its inputs.
@@ -40,6 +43,7 @@ fn constant_control(setup: &Setup<Transmittance>) -> Option<f64> {
 
 impl Estimator<Transmittance> for Decomposition {
     const INPUTS: Inputs = Inputs::BOTH;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -69,6 +73,7 @@ impl Estimator<Transmittance> for Decomposition {
         zero_or_one(product.predict())
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -77,20 +82,35 @@ impl Estimator<Transmittance> for Decomposition {
     ) -> Draw<[f64; 1]> {
         let support = setup.mesh.support();
         let control = setup.control.extinction(support.from);
-        let flight = if control > 0.0 { exponential(rng) / control } else { f64::INFINITY };
-        let end = (support.from + flight).min(support.to);
+        // A control of 0 stops no flight: it is infinite, or no number for a depth of 0. It takes
+        // two random numbers like every step of the walk.
+        let (depth, _) = (-rng.ln_uniform(), rng.word());
+        let flown = depth.times_plus(1.0 / control, support.from);
         let mut cursor = setup.sampling.begin();
         let mut lookups = 0;
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            if cursor.t >= end {
+        loop {
+            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
+            if flown <= cursor.t {
                 break;
             }
             lookups += 1;
-            if unit(rng) < (medium.extinction(cursor.t) - control) / sampling {
+            if number < (medium.extinction(cursor.t) - control) * (1.0 / sampling) {
                 return Draw::free([0.0], lookups);
             }
         }
-        let passed = support.from + flight >= support.to;
-        Draw::free([if passed { Lane::exp(setup.log_unit) } else { 0.0 }], lookups)
+        let stopped = flown < support.to;
+        Draw::free([if stopped { 0.0 } else { Lane::exp(setup.log_unit) }], lookups)
+    }
+
+    fn draw_packets<'a, M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let control = setup.control.extinction(setup.mesh.support().from);
+        packet::decomposition(level, setup, control, medium, request)
     }
 }

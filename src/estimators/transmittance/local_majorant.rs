@@ -6,7 +6,8 @@
 //!
 //! The exponential law forgets how far a flight has come, so the law of the draws and of the
 //! lookups is that of `woodcock` with the same piecewise-constant σ̂, which inverts the piecewise
-//! optical depth instead. Only the random numbers differ, one more per boundary crossed.
+//! optical depth instead. Only the random numbers differ: a boundary that is crossed takes those of a step
+//! more. Segments without extinction are left out.
 //!
 //! Unbiased for `σ̄ⱼ ≥ σ_t` in every segment j; draws are 0 or 1. Moments and cost are those of
 //! `woodcock`.
@@ -15,13 +16,17 @@
 //! sampling for rendering inhomogeneous participating media*, ACM Transactions on Graphics 29
 //! (2010).
 
+use fearless_simd::Level;
+
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::catalogue::Settings;
+use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential, unit};
+use crate::rng::Stream;
 use crate::theory::Prediction;
 
 /// Local-majorant tracking; a piecewise-constant σ̂ is its only input.
@@ -31,6 +36,7 @@ pub struct LocalMajorant;
 impl Estimator<Transmittance> for LocalMajorant {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const SKIPS: bool = true;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -45,11 +51,12 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        // It takes one more at each boundary that it crosses.
+        // It takes more at each boundary that it crosses.
         let prediction = setup.product(&Null).predict();
         zero_or_one(Prediction { random_numbers: None, ..prediction })
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,
@@ -57,20 +64,31 @@ impl Estimator<Transmittance> for LocalMajorant {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut lookups = 0;
-        for (ends, majorant) in setup.sampling.segments() {
+        // A segment without extinction is left out: there is nothing to collide with.
+        for (ends, path) in setup.sampling.stretches() {
             let mut t = ends[0];
             loop {
-                t += exponential(rng) / majorant;
-                // A segment without extinction has an infinite flight, or 0/0 for a draw of 0.
-                if t.is_nan() || t >= ends[1] {
+                let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+                t = depth.times_plus(path, t);
+                if !t.below(ends[1]) {
                     break;
                 }
                 lookups += 1;
-                if unit(rng) < medium.extinction(t) / majorant {
+                if number < medium.extinction(t) * path {
                     return Draw::free([0.0], lookups);
                 }
             }
         }
         Draw::free([setup.control_transmittance], lookups)
+    }
+
+    fn draw_packets<'a, M: Extinction>(
+        &self,
+        level: Level,
+        setup: &Setup<Transmittance>,
+        medium: &M,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::majorants(level, setup, medium, request)
     }
 }

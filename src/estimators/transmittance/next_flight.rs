@@ -18,11 +18,10 @@
 //! Graphics 38 (2019).
 
 use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::estimators::scoring::Share;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, scored_draws};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
 use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
 
@@ -34,6 +33,15 @@ impl Source for NextFlight {
     fn moment(&self, k: usize, v: f64, lower: &[f64; ORDERS]) -> f64 {
         let mixed = (1..k).map(|j| binomial(k, j) * power(v, k - j) * lower[j - 1]);
         power(v, k) + mixed.sum::<f64>()
+    }
+}
+
+impl Share for NextFlight {
+    const FLIGHT_SCORES: bool = false;
+
+    #[inline(always)]
+    fn of<L: Lane>(&self, left: L) -> L {
+        Lane::exp(-left)
     }
 }
 
@@ -53,22 +61,5 @@ impl Estimator<Transmittance> for NextFlight {
         volterra::predict(&setup.mesh, setup.sampling.single_value().unwrap_or(0.0), self)
     }
 
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let end = setup.mesh.support().to;
-        let mut cursor = setup.sampling.begin();
-        let mut weight = 1.0;
-        let mut lookups = 0;
-        let mut score = Lane::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
-            lookups += 1;
-            score += weight * Lane::exp(-sampling * (end - cursor.t));
-        }
-        Draw::free([score * setup.control_transmittance], lookups)
-    }
+    scored_draws!();
 }

@@ -50,6 +50,7 @@ impl Estimator<Transmittance> for Regular {
         exact(setup, setup.mesh.panels().len())
     }
 
+    #[inline(always)]
     fn draw<M: Extinction>(
         &self,
         setup: &Setup<Transmittance>,

@@ -16,11 +16,10 @@
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
 use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::estimators::scoring::Share;
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, scored_draws};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential};
 use crate::theory::Prediction;
 use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
 
@@ -33,6 +32,16 @@ impl Source for UnidirectionalMis {
         let u = v / (1.0 + v);
         let mixed = (1..k).map(|j| binomial(k, j) * power(u, k - j) * lower[j - 1]);
         v * power(2.0 * u, k) + (1.0 - v) * power(u, k) + mixed.sum::<f64>()
+    }
+}
+
+impl Share for UnidirectionalMis {
+    const FLIGHT_SCORES: bool = true;
+
+    #[inline(always)]
+    fn of<L: Lane>(&self, left: L) -> L {
+        let v = Lane::exp(-left);
+        v / (v + 1.0)
     }
 }
 
@@ -52,28 +61,5 @@ impl Estimator<Transmittance> for UnidirectionalMis {
         volterra::predict(&setup.mesh, setup.sampling.single_value().unwrap_or(0.0), self)
     }
 
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let end = setup.mesh.support().to;
-        let mut cursor = setup.sampling.begin();
-        let mut weight = 1.0;
-        let mut lookups = 0;
-        let mut score = 0.0;
-        let share = |sampling: f64, t: f64| {
-            let v = Lane::exp(-sampling * (end - t));
-            v / (1.0 + v)
-        };
-        let mut here = share(setup.sampling.value(cursor.t), cursor.t);
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            score += weight * here;
-            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
-            lookups += 1;
-            here = share(sampling, cursor.t);
-        }
-        Draw::free([(score + 2.0 * weight * here) * setup.control_transmittance], lookups)
-    }
+    scored_draws!();
 }

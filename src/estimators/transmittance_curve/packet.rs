@@ -14,7 +14,8 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
-use crate::estimators::packet::{Request, Subtracted, pays};
+use crate::estimators::packet::product::Subtracted;
+use crate::estimators::packet::{Request, pays};
 use crate::estimators::places::{self, Place, Places};
 use crate::estimators::walk::Books;
 use crate::estimators::{DrawBuffer, Setup};

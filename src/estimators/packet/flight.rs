@@ -1,0 +1,97 @@
+//! The packet kernel of free flights by Woodcock tracking.
+//!
+//! Specification: draw j is, bit for bit, the draw that the page `free_flight/woodcock` makes from
+//! stream j mod 8.
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+
+use super::{Ends, Request, Walks, ends, pays, run};
+use crate::estimators::Setup;
+use crate::estimators::ledger::{Reader, Row};
+use crate::media::course::{Course, Even, Pieces};
+use crate::media::{Control, Extinction, Piecewise};
+use crate::numeric::pack::{self, Task};
+use crate::numeric::{Lane, Span};
+use crate::problems::Problem;
+use crate::rng::Xoshiro;
+
+/// Free flights by Woodcock tracking, on the hardware of a level, or handed back where one draw after the
+/// other is faster.
+pub fn flight<'a, P: Problem, M: Extinction>(
+    level: Level,
+    setup: &Setup<P>,
+    medium: &M,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    if !pays::<M>(&setup.sampling, &Control::None) {
+        return Some(request);
+    }
+    let ray = setup.problem.medium().span();
+    let task = Flight { sampling: &setup.sampling, ray, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
+}
+
+struct Flight<'a, 'r, M> {
+    sampling: &'a Piecewise,
+    ray: Span,
+    medium: &'a M,
+    request: Request<'r>,
+}
+
+impl<M: Extinction> Task for Flight<'_, '_, M> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampling, ray, medium, request } = self;
+        let from = f64x8::splat(simd, sampling.begin().t);
+        if let Some(even) = sampling.even() {
+            let course = Even::new(simd, even);
+            run(simd, Flights { medium, ray, from, course }, request);
+        } else {
+            let course = Pieces::new(simd, sampling);
+            run(simd, Flights { medium, ray, from, course }, request);
+        }
+    }
+}
+
+/// The walks of free flights.
+struct Flights<'a, S: Simd, M, C> {
+    medium: &'a M,
+    ray: Span,
+    from: f64x8<S>,
+    course: C,
+}
+
+impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
+    const WORDS: usize = 2;
+    type Reader = Distances;
+
+    #[inline(always)]
+    fn reader(&self) -> Distances {
+        Distances { ray: self.ray }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(-streams.ln_uniform());
+        let t = Lane::select(inside, self.course.reached(), self.from);
+        let ratio = self.medium.extinction(t) * self.course.mean_free_path();
+        let goes_on = inside & !streams.uniform().below(ratio);
+        t.store_slice(&mut row.0[0]);
+        self.course.restart(!goes_on);
+        ends(inside, goes_on)
+    }
+}
+
+/// Reads distances.
+struct Distances {
+    ray: Span,
+}
+
+impl Reader for Distances {
+    #[inline(always)]
+    fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
+        (if escaped { self.ray.length() } else { row.0[0][lane] - self.ray.from }, 0.0)
+    }
+}

@@ -1,0 +1,124 @@
+//! The packet kernel of local-majorant tracking.
+//!
+//! Specification: draw j is, bit for bit, the draw that the page `transmittance/local_majorant` makes from
+//! stream j mod 8. A step is a flight within a segment: no lane waits for those that cross several.
+
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8, u64x8};
+
+use super::{Ends, Request, Walks, ends, run};
+use crate::estimators::Setup;
+use crate::estimators::ledger::{Reader, Row};
+use crate::media::Extinction;
+use crate::numeric::pack::{self, Task};
+use crate::numeric::{self, Lane};
+use crate::rng::Xoshiro;
+
+/// The draws of local-majorant tracking, on the hardware of a level; a request is handed back where the
+/// hardware is too narrow or no segment has an extinction.
+pub fn majorants<'a, P, M: Extinction>(
+    level: Level,
+    setup: &Setup<P>,
+    medium: &M,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let row = |(ends, path): ([f64; 2], f64)| {
+        numeric::Row([ends[0], ends[1], path, 0.0, 0.0, 0.0, 0.0, 0.0])
+    };
+    let segments: Vec<numeric::Row> = setup.sampling.stretches().map(row).collect();
+    if segments.is_empty() {
+        return Some(request);
+    }
+    let survivor = setup.control_transmittance;
+    let task = Local { segments, survivor, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
+}
+
+struct Local<'a, 'r, M> {
+    segments: Vec<numeric::Row>,
+    survivor: f64,
+    medium: &'a M,
+    request: Request<'r>,
+}
+
+impl<M: Extinction> Task for Local<'_, '_, M> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { segments, survivor, medium, request } = self;
+        let first = f64x8::splat(simd, 0.0);
+        let [t, end, path, ..] = first.columns(&segments);
+        let last = f64x8::splat(simd, (segments.len() - 1) as f64);
+        let segments = &segments[..];
+        let (segment, looked) = (first, first);
+        run(
+            simd,
+            Hops { segments, last, survivor, medium, segment, t, end, path, looked },
+            request,
+        );
+    }
+}
+
+/// The walks.
+struct Hops<'a, S: Simd, M> {
+    /// Beginning, end and mean free path of each.
+    segments: &'a [numeric::Row],
+    last: f64x8<S>,
+    survivor: f64,
+    medium: &'a M,
+    segment: f64x8<S>,
+    t: f64x8<S>,
+    end: f64x8<S>,
+    path: f64x8<S>,
+    /// How many lookups each has made.
+    looked: f64x8<S>,
+}
+
+impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
+    const WORDS: usize = 2;
+    type Reader = Survivors;
+
+    #[inline(always)]
+    fn reader(&self) -> Survivors {
+        Survivors { survivor: self.survivor }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+        let simd = self.t.token();
+        let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+        let flown = (-streams.ln_uniform()).times_plus(self.path, self.t);
+        let within = flown.below(self.end);
+        let t = Lane::select(within, flown, self.t);
+        let ratio = self.medium.extinction(t) * self.path;
+        let killed = within & streams.uniform().below(ratio);
+        let inside = within | self.segment.below(self.last);
+        let goes_on = inside & !killed;
+        self.looked.store_slice(&mut row.0[0]);
+        self.looked = Lane::select(goes_on, self.looked + Lane::select(within, one, zero), zero);
+        let next = Lane::select(within, self.segment, self.segment + 1.0);
+        self.segment = Lane::select(goes_on, next, zero);
+        let [begin, end, path, ..] = self.segment.columns(self.segments);
+        self.t = Lane::select(within & goes_on, t, begin);
+        (self.end, self.path) = (end, path);
+        ends(inside, goes_on)
+    }
+}
+
+/// Reads who passed.
+struct Survivors {
+    survivor: f64,
+}
+
+impl Reader for Survivors {
+    #[inline(always)]
+    fn draw(&self, _: &Row, _: usize, escaped: bool) -> (f64, f64) {
+        (if escaped { self.survivor } else { 0.0 }, 0.0)
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // they were counted
+    fn lookups(&self, row: &Row, lane: usize, _: u32) -> u32 {
+        row.0[0][lane] as u32
+    }
+}

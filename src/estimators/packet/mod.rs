@@ -1,0 +1,112 @@
+//! Eight draws side by side: what packet kernels share.
+//!
+//! Specification of each: draw j is, bit for bit, the draw that its page makes from stream j mod 8.
+//!
+//! Each lane walks its own walk. A walk that ends begins anew at once, so that no lane waits, and
+//! every lane makes a number of draws that was fixed beforehand: to stop when enough draws are done
+//! would prefer short walks, which is a bias. Steps have no branches. They are noted row by row; after
+//! [`STEPS`] of them the rows are searched for walks that ended, and those become draws. A lane that
+//! has made its draws walks on until the others have; its stream is then set back to where its last
+//! draw left it.
+
+pub mod decomposition;
+pub mod flight;
+pub mod majorants;
+pub mod product;
+pub mod score;
+
+use fearless_simd::{Simd, SimdMask, mask64x8, u64x8};
+
+use super::DrawBuffer;
+use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
+use crate::media::{Control, Extinction, Piecewise};
+use crate::numeric::pack::WIDTH;
+use crate::rng::{LANES, Lanes, Streams, Xoshiro};
+
+pub use decomposition::decomposition;
+pub use flight::flight;
+pub use majorants::majorants;
+pub use product::product;
+pub use score::score;
+
+/// With more pieces of σ̂ than this, lanes that cross them hold the others up for longer than eight
+/// lookups at once gain, unless lookups are costly.
+const MOST_PIECES: usize = 12;
+/// The same of the control, where σ̂ has several pieces, too.
+const MOST_CONTROL_PIECES: usize = 8;
+
+/// Whether packets are faster than one draw after the other.
+pub(super) fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
+    let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
+    let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
+    M::IS_COSTLY || sampling.even().is_some() || few
+}
+
+/// What is to be drawn.
+pub struct Request<'a> {
+    /// The streams of the block, where the draws before left them.
+    pub streams: &'a mut Streams,
+    /// How many draws.
+    pub count: usize,
+    /// Where they go.
+    pub buffer: &'a mut DrawBuffer,
+}
+
+/// Which walks ended in a step, as bits, and which of them because they reached the end.
+struct Ends {
+    ended: u64,
+    escaped: u64,
+}
+
+/// Eight walks.
+trait Walks<S: Simd> {
+    /// How many words of its stream a step takes.
+    const WORDS: usize;
+
+    /// What reads their rows.
+    type Reader: Reader;
+
+    /// What reads their rows.
+    fn reader(&self) -> Self::Reader;
+
+    /// One step of each; walks that end begin anew.
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
+}
+
+#[inline(always)]
+fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
+    Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
+}
+
+/// Walks until every lane has made its draws.
+#[inline(always)]
+#[allow(clippy::cast_possible_truncation)] // eight bits of a mask
+fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
+    let Request { streams, count, buffer } = request;
+    let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return };
+    let reader = walks.reader();
+    let mut numbers = Lanes::of(&streams.lanes).awake(simd);
+    let mut rows = [Row::default(); STEPS];
+    while ledger.is_open() {
+        let before = numbers;
+        let mut notes = Notes::default();
+        for (step, row) in rows.iter_mut().enumerate() {
+            let ends = walks.step(&mut numbers, row);
+            notes.ended[step / 8][step % 8] = ends.ended as u8;
+            notes.escaped[step / 8][step % 8] = ends.escaped as u8;
+        }
+        let over = ledger.collect(&reader, &rows, &notes);
+        if over != [0; WIDTH] {
+            let before = before.at_rest().apart();
+            for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {
+                if steps > 0 {
+                    *stream = before;
+                    for _ in 0..steps * W::WORDS {
+                        stream.word();
+                    }
+                }
+            }
+        }
+    }
+    streams.turn = (streams.turn + count) % LANES;
+}

@@ -1,0 +1,106 @@
+//! The packet kernel of the walk that next-flight estimators share.
+//!
+//! Specification: draw j is, bit for bit, the draw that [`crate::estimators::scoring::walk`] makes from
+//! stream j mod 8.
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+
+use super::{Ends, Request, Walks, ends, run};
+use crate::estimators::Setup;
+use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::scoring::{Score, Share};
+use crate::media::course::{Course, Even};
+use crate::media::{Extinction, even};
+use crate::numeric::Lane;
+use crate::numeric::pack::{self, Task};
+use crate::rng::Xoshiro;
+
+/// The draws of a next-flight estimator, on the hardware of a level; a request is handed back where the
+/// hardware is too narrow or σ̂ is not constant.
+pub fn score<'a, P, M: Extinction, H: Share>(
+    level: Level,
+    setup: &Setup<P>,
+    share: &H,
+    medium: &M,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let (even, value) = (setup.sampling.even(), setup.sampling.single_value());
+    let Some(sampling) = even.filter(|_| value.is_some()) else { return Some(request) };
+    let unit = setup.control_transmittance;
+    let task = Scored { sampling, unit, share, medium, request };
+    pack::on_wide(level, task).err().map(|task| task.request)
+}
+
+struct Scored<'a, 'r, M, H> {
+    sampling: &'a even::Even,
+    unit: f64,
+    share: &'a H,
+    medium: &'a M,
+    request: Request<'r>,
+}
+
+impl<M: Extinction, H: Share> Task for Scored<'_, '_, M, H> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { sampling, unit, share, medium, request } = self;
+        let from = f64x8::splat(simd, sampling.from);
+        let end = f64x8::splat(simd, sampling.to);
+        let rate = f64x8::splat(simd, sampling.value);
+        let fresh = Score::open(share.of((end - from) * rate));
+        let course = Even::new(simd, sampling);
+        let walks = Scores { share, medium, unit, from, end, rate, course, fresh, score: fresh };
+        run(simd, walks, request);
+    }
+}
+
+/// The walks of a next-flight estimator.
+struct Scores<'a, S: Simd, M, H> {
+    share: &'a H,
+    medium: &'a M,
+    unit: f64,
+    from: f64x8<S>,
+    end: f64x8<S>,
+    rate: f64x8<S>,
+    course: Even<'a, S>,
+    fresh: Score<f64x8<S>>,
+    score: Score<f64x8<S>>,
+}
+
+impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
+    const WORDS: usize = 1;
+    type Reader = Totals;
+
+    #[inline(always)]
+    fn reader(&self) -> Totals {
+        Totals { unit: self.unit }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(-streams.ln_uniform());
+        let t = Lane::select(inside, self.course.reached(), self.from);
+        let ratio = self.medium.extinction(t) * self.course.mean_free_path();
+        let score = self.score;
+        score.total::<H>().store_slice(&mut row.0[0]);
+        let next = score.collided(ratio, self.share.of((self.end - t) * self.rate));
+        self.score.weight = Lane::select(inside, next.weight, self.fresh.weight);
+        self.score.last = Lane::select(inside, next.last, self.fresh.last);
+        self.score.sum = Lane::select(inside, next.sum, self.fresh.sum);
+        self.course.restart(!inside);
+        ends(inside, inside)
+    }
+}
+
+/// Reads scores.
+struct Totals {
+    unit: f64,
+}
+
+impl Reader for Totals {
+    #[inline(always)]
+    fn draw(&self, row: &Row, lane: usize, _: bool) -> (f64, f64) {
+        (row.0[0][lane] * self.unit, 0.0)
+    }
+}
