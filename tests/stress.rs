@@ -54,6 +54,19 @@ fn a_broken_bound_is_told_with_its_place() {
 }
 
 #[test]
+fn what_is_mostly_skipped_is_broken_and_says_where() {
+    let mut row = Row::new("ln", "1 … 2", Measure::Relative, 1e-16);
+    row.see(0.0, || "x = 1.25".into());
+    row.skip(|| "x = 1.5".into());
+    row.skip(|| "x = 1.75".into());
+    let narrow = narrow::Narrow { curves: Vec::new() };
+    let broken = Stress { rows: vec![row], narrow, seconds: 0.0 };
+    let text = page::table(&broken, Pen { width: 100, colour: false });
+    assert!(!broken.holds() && text.contains("2 skipped, 1 compared"), "{text}");
+    assert!(text.contains("x = 1.5") && !text.contains("x = 1.75"), "{text}");
+}
+
+#[test]
 fn another_seed_holds_too() {
     let found = all(Effort::Quick, 2, &|_| {});
     let broken: Vec<&Row> = found.rows.iter().filter(|row| !row.holds()).collect();

@@ -40,6 +40,10 @@ pub fn table(found: &Stress, pen: Pen) -> String {
             column("quantity", false, 0, &|row| row.quantity.clone()),
             column("range", false, 2, &|row| row.range.clone()),
             column("trials", true, 1, &|row| count(row.trials)),
+            column("skipped", true, 1, &|row| match row.skipped {
+                0 => String::new(),
+                skipped => count(skipped),
+            }),
             column("worst", true, 0, &|row| short(row.worst, 2)),
             column("bound", true, 0, &|row| short(row.bound, 2)),
             column("in", false, 0, &|row| row.measure.words().to_owned()),
@@ -54,7 +58,14 @@ pub fn table(found: &Stress, pen: Pen) -> String {
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
     for row in rows.iter().filter(|row| !row.holds()) {
-        let said = format!("{}: {} at {}", row.quantity, exact(row.worst), row.place);
+        let said = if row.is_mostly_skipped() {
+            let Row { quantity, skipped, trials, first_skipped, .. } = row;
+            format!(
+                "{quantity}: {skipped} skipped, {trials} compared; first skipped: {first_skipped}"
+            )
+        } else {
+            format!("{}: {} at {}", row.quantity, exact(row.worst), row.place)
+        };
         for line in wrapped(&said, pen.width) {
             let _ = writeln!(text, "{}", pen.paint(Paint::Red, &line));
         }
@@ -108,6 +119,7 @@ struct JsonRow<'a> {
     quantity: &'a str,
     range: &'a str,
     trials: u64,
+    skipped: u64,
     measure: &'static str,
     worst: Option<f64>,
     bound: f64,
@@ -151,6 +163,7 @@ fn json(found: &Stress) -> Result<String, ReportError> {
         quantity: &row.quantity,
         range: &row.range,
         trials: row.trials,
+        skipped: row.skipped,
         measure: row.measure.words(),
         worst: finite(row.worst),
         bound: row.bound,
@@ -194,6 +207,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
             row.quantity.clone(),
             row.range.clone(),
             row.trials.to_string(),
+            row.skipped.to_string(),
             row.measure.words().to_owned(),
             exact(row.worst),
             exact(row.bound),
@@ -201,7 +215,8 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
             row.holds().to_string(),
         ]
     });
-    let header = ["quantity", "range", "trials", "measure", "worst", "bound", "where", "holds"];
+    let header =
+        ["quantity", "range", "trials", "skipped", "measure", "worst", "bound", "where", "holds"];
     let stress = csv("the stress test", header, rows)?;
     let points = found.narrow.curves.iter().flat_map(|curve| {
         curve.points.iter().map(|point| {
