@@ -5,7 +5,7 @@ use std::fmt::Write;
 use plotters::style::Color;
 use serde::Serialize;
 
-use crate::harness::stress::narrow::{Along, Curve, DRAWS};
+use crate::harness::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::harness::stress::{Row, Stress};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
@@ -300,7 +300,9 @@ fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
 const FLOOR: f64 = 1e-3;
 
 fn one_panel(sheet: &mut Sheet, place: usize, along: Along, curves: &[&Curve]) {
-    let points = || curves.iter().flat_map(|curve| &curve.points);
+    // Without a variance there is no noise to compare with.
+    let has_noise = |point: &&Point| point.noise.is_finite();
+    let points = || curves.iter().flat_map(|curve| &curve.points).filter(has_noise);
     let share = |bias: f64, noise: f64| (bias.abs() / noise).max(FLOOR);
     let x = Axis::around(along.title(), true, 0.04, points().map(|point| point.x));
     let shares = points().map(|point| share(point.bias, point.noise)).filter(|y| y.is_finite());
@@ -312,9 +314,10 @@ fn one_panel(sheet: &mut Sheet, place: usize, along: Along, curves: &[&Curve]) {
     panel.line(sheet, edges, (&[], 1.6, GREY));
     for (i, curve) in curves.iter().enumerate() {
         let Style { colour, dash, marker } = Style::of(i);
-        let line = curve.points.iter().map(|point| (point.x, share(point.bias, point.noise)));
+        let shown = || curve.points.iter().filter(has_noise);
+        let line = shown().map(|point| (point.x, share(point.bias, point.noise)));
         panel.line(sheet, line, (dash, 1.6, colour));
-        for point in &curve.points {
+        for point in shown() {
             let Some(spot) = panel.spot(point.x, share(point.bias, point.noise)) else { continue };
             let [low, high] = [-2.0, 2.0].map(|z| (point.bias.abs() + z * point.error).max(0.0));
             let ends = (share(low, point.noise), share(high, point.noise));

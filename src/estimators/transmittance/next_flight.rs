@@ -18,6 +18,7 @@
 //! Graphics 38 (2019).
 
 use crate::catalogue::Settings;
+use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::numeric::Lane;
@@ -46,7 +47,8 @@ impl Estimator<Transmittance> for NextFlight {
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
-        setup.require_constant_sampling().map(|_| ())
+        setup.require_constant_sampling()?;
+        setup.require_finite_weights(&Weight)
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

@@ -16,6 +16,7 @@
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
 use crate::catalogue::Settings;
+use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::numeric::Lane;
@@ -45,7 +46,8 @@ impl Estimator<Transmittance> for UnidirectionalMis {
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
-        setup.require_constant_sampling().map(|_| ())
+        setup.require_constant_sampling()?;
+        setup.require_finite_weights(&Weight)
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

@@ -47,7 +47,12 @@ fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
     }
     let faint = (-root.scaled(1)).exp();
     let s = if root.high > 0.0 { -(-root.scaled(1)).exp_m1() / root } else { Wide::from(2.0) };
-    let below = Wide::ONE + faint + a * s;
+    // 1 + E + As, without the cancellation where weights grow and A is negative.
+    let below = if a.high < 0.0 && root.high > 0.0 {
+        faint * (Wide::ONE - a / root) - b * b / (root * (root - a))
+    } else {
+        Wide::ONE + faint + a * s
+    };
     [b * s / below, (-root).exp().scaled(1) / below]
 }
 

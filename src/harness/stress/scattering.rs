@@ -1,15 +1,11 @@
-//! Exact answers with scattering: each against a closed form in 32 digits or another method.
+//! Single scattering of a point light: the radiance against another quadrature.
 
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use super::rods::{of_stated, share};
 use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
+use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
-use crate::numeric::{Known, Wide};
-use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
-use crate::problems::slab::{Incidence, Light};
-use crate::theory::slab::{self, Resolution, layer::Slice};
 
 const PARTS: u64 = 16;
 
@@ -19,37 +15,8 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(2, 40);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "scattering", part);
-        vec![slabs(dice, trials / 10 + u32::from(part % 4 == 0)), single(dice, trials / 4 + 1)]
+        vec![single(dice, trials / 4 + 1)]
     })
-}
-
-/// Adding and doubling with more directions and a thinner first layer.
-fn slabs(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-4 … 30, |g| to 0.6; twice the resolution";
-    let mut row = Row::new("slab, adding and doubling", range, Measure::OfStated, 1.0);
-    let finer = Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14 };
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-4.0, 1.48), share(dice));
-        let asymmetry = dice.between(-0.6, 0.6);
-        let forward = HenyeyGreenstein::new(asymmetry).filter(|_| dice.below(2) == 0);
-        let phase = forward.map_or(Phase::Isotropic(Isotropic), Phase::HenyeyGreenstein);
-        let cosine = dice.between(0.05, 1.0);
-        let light = if dice.below(3) == 0 { Light::Diffuse } else { Light::Collimated(cosine) };
-        let incidence = Incidence { light, phase };
-        let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 1.0 };
-        let found = slab::answer(&incidence, Known::exact(depth), albedo);
-        let fine = slab::energy(&incidence, &[slice], finer);
-        let (Some(found), Some(fine)) = (found, fine) else {
-            row.see(f64::NAN, || format!("τ = {depth:e}, a = {albedo:e}"));
-            continue;
-        };
-        let pairs = [(found.reflected, fine.reflected), (found.transmitted, fine.transmitted)];
-        for (found, exact) in pairs {
-            let place = || format!("τ = {depth:e}, a = {albedo:e}, g = {asymmetry:.2}, {light:?}");
-            row.see(of_stated(found, Wide::from(exact)), place);
-        }
-    }
-    row
 }
 
 /// The radiance of a homogeneous medium against Gauss' rule in the angle at the light, of many panels.
