@@ -128,7 +128,8 @@ impl<P: Problem> Setup<P> {
         while rarity(many) < NEVER {
             (few, many) = (many, 2.0 * many);
         }
-        while many - few > 1.0 {
+        // To a thousandth is near enough, and beyond 2⁵³ numbers no longer differ by one.
+        while many - few > (1e-3 * many).max(1.0) {
             let middle = 0.5 * (few + many);
             if rarity(middle) < NEVER { few = middle } else { many = middle }
         }
