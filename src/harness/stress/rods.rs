@@ -16,6 +16,8 @@ use crate::theory::particle::ParticleRule;
 use crate::theory::{Mesh, rod as rods};
 
 const PARTS: u64 = 16;
+/// Moments with a larger stated relative error are known to be unknown.
+const LOST: f64 = 0.05;
 
 /// All rows.
 #[must_use]
@@ -205,7 +207,9 @@ fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
             let square = m * m;
             let variance = (two - square) / square;
             second.see(variance.relative_error(moments.relative[0]) / moments.error, place);
-            if critical(rates[3]) <= 1.002 || !moments.relative[2].is_finite() {
+            // A moment that grids do not resolve says so: there are no digits to compare.
+            let is_lost = moments.error >= LOST || !moments.relative[2].is_finite();
+            if critical(rates[3]) <= 1.002 || is_lost {
                 fourth.skip(place);
                 continue;
             }
