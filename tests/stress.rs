@@ -6,6 +6,7 @@ use std::path::Path;
 
 use assert_cmd::Command;
 use trueflight::harness::stress::{Effort, Measure, PAGES, Row, Stress, all, narrow};
+use trueflight::harness::{Amount, Case, Options, Plan, Source};
 use trueflight::report::console::layout::Pen;
 use trueflight::report::stress as page;
 
@@ -51,6 +52,45 @@ fn a_broken_bound_is_told_with_its_place() {
     assert!(!broken.holds());
     let text = page::table(&broken, Pen { width: 100, colour: false });
     assert!(text.contains("NO") && text.contains("x = 1.25") && text.contains("1 of 1"), "{text}");
+}
+
+#[test]
+fn what_is_mostly_skipped_is_broken_and_says_where() {
+    let mut row = Row::new("ln", "1 … 2", Measure::Relative, 1e-16);
+    row.see(0.0, || "x = 1.25".into());
+    row.skip(|| "x = 1.5".into());
+    row.skip(|| "x = 1.75".into());
+    let narrow = narrow::Narrow { curves: Vec::new() };
+    let broken = Stress { rows: vec![row], narrow, seconds: 0.0 };
+    let text = page::table(&broken, Pen { width: 100, colour: false });
+    assert!(!broken.holds() && text.contains("2 skipped, 1 compared"), "{text}");
+    assert!(text.contains("x = 1.5") && !text.contains("x = 1.75"), "{text}");
+}
+
+#[test]
+fn rods_and_collision_sums_keep_their_stated_errors_over_thousands_of_parameters() {
+    let long = PAGES.iter().filter(|(name, _)| ["rods", "collided"].contains(name));
+    let rows: Vec<Row> = long.flat_map(|(_, rows)| rows(Effort::Full, 3)).collect();
+    let broken: Vec<&Row> = rows.iter().filter(|row| !row.holds()).collect();
+    assert!(broken.is_empty(), "{broken:#?}");
+    let solved = rows.iter().find(|row| row.quantity == "rod, two-stream equations");
+    assert!(solved.expect("a row").trials > 4000, "{rows:#?}");
+}
+
+#[test]
+fn weights_that_would_overflow_are_refused() {
+    // r = 1000 in units of e^−690: three collisions pass 1e308.
+    let text = "title = \"t\"\n[problem.transmittance]\nmedium.constant.extinction = 690\n\
+                span = [0, 1]\nsampling.constant.value = 0.69\n\
+                estimators = [{ ratio = {} }, { single.rule = \"clamped\" }, { weighted-delta = {} }]";
+    let source = Source { name: "t".into(), path: "t.toml".into(), text: text.into() };
+    let case = Case::read(&source).expect("read");
+    let options = Options { draws: Amount::Exactly(1000), ..Options::default() };
+    let plan = Plan::new(std::slice::from_ref(&case), &options);
+    for (_, planned) in plan.experiments() {
+        let refusal = planned.outcome.as_ref().err().expect("refused").to_string();
+        assert!(refusal.contains("weights that stay below 1e304"), "{refusal}");
+    }
 }
 
 #[test]

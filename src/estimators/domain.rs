@@ -5,6 +5,7 @@ use crate::catalogue::{number, rounded};
 use crate::media::Placement;
 use crate::numeric::Span;
 use crate::problems::Problem;
+use crate::theory::Rule;
 
 /// Inequalities are tested with this relative slack, so that `σ̂ = max σ_t` is not refused for
 /// rounding.
@@ -41,6 +42,11 @@ impl Refusal {
         Self::Mismatch { needs, found: found.into() }
     }
 }
+
+/// The logarithm of the largest weight that a draw may reach: a little below the largest double.
+const LARGEST_WEIGHT: f64 = 700.0;
+/// Walks that are rarer than `e^` this are never drawn: one in 1e21.
+const NEVER: f64 = 48.4;
 
 /// More collisions than this on a ray are walked one after the other.
 const MOST_COLLISIONS: f64 = 1e6;
@@ -94,6 +100,46 @@ impl<P: Problem> Setup<P> {
                 at,
             }),
         }
+    }
+
+    /// Weights that stay finite in every walk that may be drawn.
+    ///
+    /// ```text
+    /// ln T_c + n ln max|W| ≤ 700,   P(N ≥ n) ≤ exp(−n ln(n/Λ) + n − Λ) = 1e-21,  Λ = ∫σ̂
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// The largest factor and n.
+    pub fn require_finite_weights(&self, rule: &dyn Rule) -> Result<(), Refusal> {
+        let mut cuts = self.sampling.knots().to_vec();
+        cuts.extend(self.control.breaks());
+        let factor = |t: f64, sigma: f64| {
+            let (residual, sampling) = (self.residual(t, sigma), self.sampling.value(t));
+            if sampling > 0.0 { rule.outcome(residual / sampling).weight.abs() } else { 0.0 }
+        };
+        let cut = self.mesh.refined(&cuts, &|_, _| Vec::new());
+        let Some((_, largest)) = cut.largest(factor).filter(|&(_, largest)| largest > 1.0) else {
+            return Ok(());
+        };
+        let collisions = Placement::new(&self.sampling).depth();
+        let rarity = |n: f64| n * (n / collisions).ln() - n + collisions;
+        let (mut few, mut many) = (collisions, 2.0 * collisions + 1.0);
+        while rarity(many) < NEVER {
+            (few, many) = (many, 2.0 * many);
+        }
+        // To a thousandth is near enough, and beyond 2⁵³ numbers no longer differ by one.
+        while many - few > (1e-3 * many).max(1.0) {
+            let middle = 0.5 * (few + many);
+            if rarity(middle) < NEVER { few = middle } else { many = middle }
+        }
+        let most = many.ceil();
+        if self.control_transmittance.ln() + most * largest.ln() <= LARGEST_WEIGHT {
+            return Ok(());
+        }
+        let needs = "weights that stay below 1e304";
+        let found = format!("{most} collisions may multiply them by {largest:.3e} each");
+        Err(Refusal::mismatch(needs, found))
     }
 
     /// A knot at which σ̂ falls to zero while the residual does not: collisions are then so rare

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use plotters::style::Color;
 use serde::Serialize;
 
-use crate::harness::stress::narrow::{Along, Curve, DRAWS};
+use crate::harness::stress::narrow::{Along, Curve, DRAWS, Point};
 use crate::harness::stress::{Row, Stress};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
@@ -40,6 +40,10 @@ pub fn table(found: &Stress, pen: Pen) -> String {
             column("quantity", false, 0, &|row| row.quantity.clone()),
             column("range", false, 2, &|row| row.range.clone()),
             column("trials", true, 1, &|row| count(row.trials)),
+            column("skipped", true, 1, &|row| match row.skipped {
+                0 => String::new(),
+                skipped => count(skipped),
+            }),
             column("worst", true, 0, &|row| short(row.worst, 2)),
             column("bound", true, 0, &|row| short(row.bound, 2)),
             column("in", false, 0, &|row| row.measure.words().to_owned()),
@@ -54,7 +58,14 @@ pub fn table(found: &Stress, pen: Pen) -> String {
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
     for row in rows.iter().filter(|row| !row.holds()) {
-        let said = format!("{}: {} at {}", row.quantity, exact(row.worst), row.place);
+        let said = if row.is_mostly_skipped() {
+            let Row { quantity, skipped, trials, first_skipped, .. } = row;
+            format!(
+                "{quantity}: {skipped} skipped, {trials} compared; first skipped: {first_skipped}"
+            )
+        } else {
+            format!("{}: {} at {}", row.quantity, exact(row.worst), row.place)
+        };
         for line in wrapped(&said, pen.width) {
             let _ = writeln!(text, "{}", pen.paint(Paint::Red, &line));
         }
@@ -108,6 +119,7 @@ struct JsonRow<'a> {
     quantity: &'a str,
     range: &'a str,
     trials: u64,
+    skipped: u64,
     measure: &'static str,
     worst: Option<f64>,
     bound: f64,
@@ -151,6 +163,7 @@ fn json(found: &Stress) -> Result<String, ReportError> {
         quantity: &row.quantity,
         range: &row.range,
         trials: row.trials,
+        skipped: row.skipped,
         measure: row.measure.words(),
         worst: finite(row.worst),
         bound: row.bound,
@@ -194,6 +207,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
             row.quantity.clone(),
             row.range.clone(),
             row.trials.to_string(),
+            row.skipped.to_string(),
             row.measure.words().to_owned(),
             exact(row.worst),
             exact(row.bound),
@@ -201,7 +215,8 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
             row.holds().to_string(),
         ]
     });
-    let header = ["quantity", "range", "trials", "measure", "worst", "bound", "where", "holds"];
+    let header =
+        ["quantity", "range", "trials", "skipped", "measure", "worst", "bound", "where", "holds"];
     let stress = csv("the stress test", header, rows)?;
     let points = found.narrow.curves.iter().flat_map(|curve| {
         curve.points.iter().map(|point| {
@@ -285,7 +300,9 @@ fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
 const FLOOR: f64 = 1e-3;
 
 fn one_panel(sheet: &mut Sheet, place: usize, along: Along, curves: &[&Curve]) {
-    let points = || curves.iter().flat_map(|curve| &curve.points);
+    // Without a variance there is no noise to compare with.
+    let has_noise = |point: &&Point| point.noise.is_finite();
+    let points = || curves.iter().flat_map(|curve| &curve.points).filter(has_noise);
     let share = |bias: f64, noise: f64| (bias.abs() / noise).max(FLOOR);
     let x = Axis::around(along.title(), true, 0.04, points().map(|point| point.x));
     let shares = points().map(|point| share(point.bias, point.noise)).filter(|y| y.is_finite());
@@ -297,9 +314,10 @@ fn one_panel(sheet: &mut Sheet, place: usize, along: Along, curves: &[&Curve]) {
     panel.line(sheet, edges, (&[], 1.6, GREY));
     for (i, curve) in curves.iter().enumerate() {
         let Style { colour, dash, marker } = Style::of(i);
-        let line = curve.points.iter().map(|point| (point.x, share(point.bias, point.noise)));
+        let shown = || curve.points.iter().filter(has_noise);
+        let line = shown().map(|point| (point.x, share(point.bias, point.noise)));
         panel.line(sheet, line, (dash, 1.6, colour));
-        for point in &curve.points {
+        for point in shown() {
             let Some(spot) = panel.spot(point.x, share(point.bias, point.noise)) else { continue };
             let [low, high] = [-2.0, 2.0].map(|z| (point.bias.abs() + z * point.error).max(0.0));
             let ends = (share(low, point.noise), share(high, point.noise));

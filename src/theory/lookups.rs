@@ -18,7 +18,8 @@ use super::product::{Integrals, Product};
 use crate::numeric::Span;
 use crate::numeric::sum::Sum;
 
-/// A panel with more survived collisions than this is halved: `Pois(m; A)` is then smooth on it.
+/// A panel with more survived collisions than this, or than half a standard deviation of those before,
+/// is halved: `Pois(m; A)` is then smooth on it.
 const COLLISIONS: f64 = 2.0;
 /// Walks that are rarer than this do not count.
 const RARE: f64 = 1e-18;
@@ -64,7 +65,8 @@ impl Walk {
         let survivals: Vec<f64> = pairs().map(|(s, o)| s * o.survival).collect();
         let survived = mesh.integral(panel, &survivals);
         let middle = panel.span.middle();
-        if survived > COLLISIONS && panel.span.contains_inside(middle) {
+        let most = COLLISIONS.max(0.5 * self.survivals.value().max(0.0).sqrt());
+        if survived > most && panel.span.contains_inside(middle) {
             let Span { from, to } = panel.span;
             for span in [Span::new(from, middle), Span::new(middle, to)] {
                 if self.alive() < RARE {

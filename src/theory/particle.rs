@@ -72,6 +72,17 @@ impl Odds {
         self.scatter * self.scatter_weight.powi(k)
     }
 
+    /// The same chances and weights without their signs.
+    #[must_use]
+    pub fn absolute(self) -> Self {
+        Self {
+            transmit: self.transmit.abs(),
+            scatter: self.scatter.abs(),
+            transmit_weight: self.transmit_weight.abs(),
+            scatter_weight: self.scatter_weight.abs(),
+        }
+    }
+
     /// What a uniform number decides: scattering first, as in `SimulateParticle`.
     #[inline(always)]
     #[must_use]

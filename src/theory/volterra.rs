@@ -89,8 +89,8 @@ fn panel_functions(mesh: &Mesh, panel: Panel<'_>, sampling: f64) -> Vec<Vec<f64>
     let flights = panel.t.iter().map(|t| (-sampling * (t - panel.span.from)).exp()).collect();
     let mut functions = vec![flights];
     for k in [1, 2, 4, ORDERS] {
-        let powers = panel.extinction.iter().map(|s| power(1.0 - s / sampling, k));
-        let rate: Vec<f64> = powers.map(|p| sampling * (1.0 - p)).collect();
+        let rate: Vec<f64> =
+            panel.extinction.iter().map(|s| sampling * lost(s / sampling, k)).collect();
         functions.push(mesh.running(panel, &rate).iter().map(|depth| (-depth).exp()).collect());
         functions.push(rate);
     }
@@ -112,7 +112,7 @@ fn sweep(
     let mut at_nodes = vec![[0.0; ORDERS]; n];
     let mut before = [0.0; ORDERS];
     for k in 1..=ORDERS {
-        let rate: Vec<f64> = ratio.iter().map(|r| sampling * (1.0 - power(1.0 - r, k))).collect();
+        let rate: Vec<f64> = ratio.iter().map(|&r| sampling * lost(r, k)).collect();
         let total = mesh.integral(panel, &rate);
         let so_far = mesh.running(panel, &rate);
         // exp(+∫) from the panel's beginning to a node multiplies the integrand's exp(−∫).
@@ -137,6 +137,11 @@ fn sweep(
 #[must_use]
 pub fn power(x: f64, k: usize) -> f64 {
     std::iter::repeat_n(x, k).product()
+}
+
+/// `1 − (1 − r)^k`, without the cancellation where r is small, whose noise no panel would resolve.
+fn lost(ratio: f64, k: usize) -> f64 {
+    (0..k).fold(0.0, |sum, _| sum * (1.0 - ratio) + ratio)
 }
 
 /// `C(k, j)`.

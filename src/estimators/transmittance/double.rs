@@ -28,13 +28,14 @@ use crate::theory::{Law, Prediction};
 #[derive(Debug, Clone)]
 pub struct DoubleParticle;
 
-/// σ̂ must reach every place where the residual is not zero.
+/// σ̂ must reach every place where the residual is not zero, and weights must stay finite.
 ///
 /// # Errors
 ///
-/// The stretch that σ̂ leaves out.
+/// The stretch that σ̂ leaves out, or how much a collision may multiply a weight by.
 pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-    setup.require_coverage()
+    setup.require_coverage()?;
+    setup.require_finite_weights(&Weight)
 }
 
 /// The moments on this page's head, and the whole law where r is constant.

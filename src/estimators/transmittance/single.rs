@@ -92,6 +92,7 @@ impl Estimator<Transmittance> for SingleParticle {
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_coverage()?;
+        setup.require_finite_weights(&self.rule)?;
         if self.rule == Single::Terminating { terminating_exists(setup) } else { Ok(()) }
     }
 

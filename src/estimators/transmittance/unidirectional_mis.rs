@@ -16,6 +16,7 @@
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
 use crate::catalogue::Settings;
+use crate::estimators::rules::Weight;
 use crate::estimators::scoring::Share;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, scored_draws};
 use crate::numeric::Lane;
@@ -54,7 +55,8 @@ impl Estimator<Transmittance> for UnidirectionalMis {
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
-        setup.require_constant_sampling().map(|_| ())
+        setup.require_constant_sampling()?;
+        setup.require_finite_weights(&Weight)
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

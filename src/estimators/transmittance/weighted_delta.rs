@@ -34,7 +34,8 @@ impl Estimator<Transmittance> for WeightedDelta {
     }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_coverage()
+        setup.require_coverage()?;
+        setup.require_finite_weights(&RULE)
     }
 
     fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {

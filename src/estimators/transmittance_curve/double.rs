@@ -61,7 +61,8 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
     }
 
     fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
-        setup.require_coverage()
+        setup.require_coverage()?;
+        setup.require_finite_weights(&Weight)
     }
 
     fn predict(&self, setup: &Setup<TransmittanceCurve>) -> Prediction {

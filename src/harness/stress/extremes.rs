@@ -77,8 +77,11 @@ fn see(text: &str, what: &str, seed: u64, is_drawn: bool, rows: &mut [Row; 2]) {
     }
     let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     for row in record.results.cases.iter().flat_map(|case| &case.rows) {
-        let is_refuted = row.verdict == Some(Verdict::Fail);
-        fair.count(is_refuted, || format!("{what}, {}: {}", row.estimator, row.reason));
+        let place = || format!("{what}, {}: {}", row.estimator, row.reason);
+        match row.verdict {
+            None | Some(Verdict::Refused) => fair.skip(place),
+            Some(verdict) => fair.count(verdict == Verdict::Fail, place),
+        }
     }
 }
 

@@ -47,9 +47,13 @@ fn inverse(dice: &mut Dice, trials: u32) -> Row {
             }
         };
         let text = format!("medium.{field}\n{span}");
-        let Some(medium) = text::medium(&text) else { continue };
+        let Some(medium) = text::medium(&text) else {
+            row.skip(|| text.replace('\n', ", "));
+            continue;
+        };
         let whole = medium.optical_depth(medium.span());
         if !(1e-280..1e300).contains(&whole.value) {
+            row.skip(|| text.replace('\n', ", "));
             continue;
         }
         let depth = whole.value * dice.sized(-12.0, 0.0);
@@ -97,10 +101,14 @@ fn pieces(dice: &mut Dice, trials: u32) -> Row {
         let whole = depth_to(f64::INFINITY).value();
         let depth = whole * dice.sized(-9.0, 0.0);
         let mut cursor = field.begin();
-        let Some(value) = field.fly(&mut cursor, depth) else { continue };
+        let place = || format!("{knots:?} {values:?} to {depth:e}");
+        let Some(value) = field.fly(&mut cursor, depth) else {
+            row.skip(place);
+            continue;
+        };
         let off = (depth_to(cursor.t) - Wide::from(depth)).abs().value();
         let grain = 2.0 * f64::EPSILON * cursor.t.abs().max(1.0) * value;
-        row.see(off / (1e-12 * whole + grain), || format!("{knots:?} {values:?} to {depth:e}"));
+        row.see(off / (1e-12 * whole + grain), place);
     }
     row
 }
@@ -115,12 +123,16 @@ fn empty(dice: &mut Dice, trials: u32) -> Row {
             (dice.sized(-3.0, 3.0), dice.sized(-9.0, 9.0), dice.sized(-3.0, 3.0));
         let knots = [0.0, first, first + gap, first + gap + last];
         if knots[2] <= knots[1] || knots[3] <= knots[2] {
+            row.skip(|| format!("{knots:?}"));
             continue;
         }
         let field = Piecewise::steps(&knots, &[value, 0.0, value]);
         let depth = value * (first + last) * dice.between(0.0, 1.0);
         let mut cursor = field.begin();
-        let Some(there) = field.fly(&mut cursor, depth) else { continue };
+        let Some(there) = field.fly(&mut cursor, depth) else {
+            row.skip(|| format!("{knots:?}, depth {depth:e}"));
+            continue;
+        };
         // A flight may end on the edge itself, where rounding puts it.
         let inside = Span::new(knots[1] * (1.0 + 1e-15), knots[2] * (1.0 - 1e-15));
         let is_wrong = inside.contains_inside(cursor.t) || there != value;

@@ -90,8 +90,11 @@ fn spheres(dice: &mut Dice, trials: u32, what: &str, away: [f64; 2], depth: [f64
     let mut row = Row::new("ends of a chord", what, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let depth = dice.sized(depth[0], depth[1]);
-        let Some(scene) = Scene::new(dice, away, depth) else { continue };
-        let Some(exact) = scene.exact() else { continue };
+        let scene = Scene::new(dice, away, depth);
+        let Some((exact, scene)) = scene.and_then(|scene| Some((scene.exact()?, scene))) else {
+            row.skip(|| format!("depth {depth:e} of R"));
+            continue;
+        };
         let ball = Bounds::Sphere { centre: scene.centre, radius: scene.radius };
         let found = ball.ends(&scene.ray);
         for (found, exact) in found.into_iter().zip(inside(exact, scene.ray.length)) {
@@ -109,7 +112,10 @@ fn misses(dice: &mut Dice, trials: u32) -> Row {
     let mut row = Row::new("hits and misses, wrong", range, Measure::Count, 0.0);
     for _ in 0..trials {
         let depth = dice.sign() * dice.sized(-12.0, -2.0);
-        let Some(scene) = Scene::new(dice, [-1.0, 6.0], depth) else { continue };
+        let Some(scene) = Scene::new(dice, [-1.0, 6.0], depth) else {
+            row.skip(|| format!("depth {depth:e} of R"));
+            continue;
+        };
         let ball = Bounds::Sphere { centre: scene.centre, radius: scene.radius };
         let inside = ball.clip(&scene.ray);
         let exact = scene.exact();
@@ -128,12 +134,17 @@ fn depths(dice: &mut Dice, trials: u32) -> Row {
     let mut row = Row::new("optical depth of a chord", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let depth = dice.sized(-12.0, 0.0);
-        let Some(scene) = Scene::new(dice, [0.5, 6.0], depth) else { continue };
-        let Some(medium) = text::medium(&scene.text()) else { continue };
-        // Reading the direction normalises it once more: the ray is the one that was read.
-        let norm = scene.ray.direction.normalised().map(|direction| Ray { direction, ..scene.ray });
-        let Some(ray) = norm else { continue };
-        let Some([from, to]) = (Scene { ray, ..scene }).exact() else { continue };
+        let chord = Scene::new(dice, [0.5, 6.0], depth).and_then(|scene| {
+            let medium = text::medium(&scene.text())?;
+            // Reading the direction normalises it once more: the ray is the one that was read.
+            let direction = scene.ray.direction.normalised()?;
+            let ray = Ray { direction, ..scene.ray };
+            Some((medium, (Scene { ray, ..scene }).exact()?))
+        });
+        let Some((medium, [from, to])) = chord else {
+            row.skip(|| format!("depth {depth:e} of R"));
+            continue;
+        };
         let found = medium.optical_depth(medium.span());
         let off = (Wide::from(found.value) - (to - from)).abs().value();
         let rounding = 0.5 * f64::EPSILON * found.value;
@@ -156,9 +167,12 @@ fn boxes(dice: &mut Dice, trials: u32) -> Row {
             [1.0, dice.sign() * dice.sized(-12.0, 0.0), dice.sign() * dice.sized(-12.0, 0.0)];
         let turn = dice.below(3);
         let direction = Point([0, 1, 2].map(|i| axes[(i + turn) % 3]));
-        let Some(unit) = direction.normalised() else { continue };
         let away = dice.sized(0.0, 6.0) * size;
-        let Some(ray) = Ray::new(target - unit * away, unit, 3.0 * away + 9.0 * size) else {
+        let ray = direction
+            .normalised()
+            .and_then(|unit| Ray::new(target - unit * away, unit, 3.0 * away + 9.0 * size));
+        let Some(ray) = ray else {
+            row.skip(|| format!("{direction:?} to {cube:?}"));
             continue;
         };
         let mut exact = [Wide::default(), Wide::from(ray.length)];
@@ -175,6 +189,7 @@ fn boxes(dice: &mut Dice, trials: u32) -> Row {
         let chord = exact[1] - exact[0];
         let found = Bounds::Box(cube).ends(&ray);
         if chord.high <= 1e-9 * ray.length || Span::new(found[0].value, found[1].value).is_empty() {
+            row.skip(|| format!("{ray:?} in {cube:?}"));
             continue;
         }
         for (found, exact) in found.into_iter().zip(exact) {

@@ -84,6 +84,10 @@ pub struct Row {
     pub range: String,
     /// How many trials.
     pub trials: u64,
+    /// How many more were drawn and gave nothing to compare: refused, out of range, unknown.
+    pub skipped: u64,
+    /// The first of those.
+    pub first_skipped: String,
     /// What the error is measured in.
     pub measure: Measure,
     /// The largest error; not a number once one was none.
@@ -104,7 +108,17 @@ impl Row {
         bound: f64,
     ) -> Self {
         let (quantity, range) = (quantity.into(), range.into());
-        Self { quantity, range, trials: 0, measure, worst: 0.0, bound, place: String::new() }
+        let (place, first_skipped) = Default::default();
+        let (trials, skipped, worst) = (0, 0, 0.0);
+        Self { quantity, range, trials, skipped, first_skipped, measure, worst, bound, place }
+    }
+
+    /// Parameters that gave nothing to compare.
+    pub fn skip(&mut self, place: impl FnOnce() -> String) {
+        if self.skipped == 0 {
+            self.first_skipped = place();
+        }
+        self.skipped += 1;
     }
 
     /// One trial.
@@ -130,6 +144,10 @@ impl Row {
     #[must_use]
     pub fn and(mut self, later: Self) -> Self {
         self.trials += later.trials;
+        if self.skipped == 0 {
+            self.first_skipped = later.first_skipped;
+        }
+        self.skipped += later.skipped;
         if self.measure == Measure::Count {
             if self.worst == 0.0 {
                 self.place = later.place;
@@ -141,10 +159,16 @@ impl Row {
         self
     }
 
-    /// Whether the bound holds. What was never tried does not.
+    /// Whether the bound holds. What was never tried does not, nor what was mostly skipped.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.trials > 0 && self.worst <= self.bound
+        self.trials > 0 && !self.is_mostly_skipped() && self.worst <= self.bound
+    }
+
+    /// Whether more was skipped than compared: such a row says nothing of its range.
+    #[must_use]
+    pub fn is_mostly_skipped(&self) -> bool {
+        self.skipped > self.trials
     }
 }
 
@@ -237,6 +261,9 @@ pages! {
     geometry,
     flights,
     moments,
+    collided,
+    rods,
+    slabs,
     scattering,
     extremes,
     verdicts,
@@ -290,6 +317,18 @@ mod tests {
         later.count(true, || "b".into());
         let both = row.and(later);
         assert!(!both.holds() && both.place == "b" && both.worst == 1.0);
+    }
+
+    #[test]
+    fn what_is_mostly_skipped_does_not_hold() {
+        let mut row = Row::new("q", "r", Measure::Relative, 1e-9);
+        row.see(0.0, || "a".into());
+        row.skip(|| "b".into());
+        assert!(row.holds() && row.first_skipped == "b");
+        let mut later = Row::new("q", "r", Measure::Relative, 1e-9);
+        later.skip(|| "c".into());
+        let both = row.and(later);
+        assert!(!both.holds() && both.skipped == 2 && both.first_skipped == "b");
     }
 
     #[test]

@@ -103,7 +103,11 @@ fn of_products(
         let case = draw(dice);
         let Case { extinction, control, sampling, length } = case;
         let text = format!("medium.constant.extinction = {extinction:e}\nspan = [0, {length:e}]");
-        let Some(medium) = text::medium(&text) else { continue };
+        let Some(medium) = text::medium(&text) else {
+            second.skip(|| text.clone());
+            fourth.skip(|| text.clone());
+            continue;
+        };
         let mesh = Mesh::new(medium);
         let span = Span::new(0.0, length);
         let (flown, main) =
@@ -116,19 +120,24 @@ fn of_products(
             let losses = losses.map(|loss| loss * collisions);
             let found =
                 Product { laws: false, ..Product::new(&mesh, &flown, &main, rule) }.predict();
-            let Some(moments) = found.channels[0].moments else { return };
+            let place = || format!("{name}, r = {:e}, {case:?}", ratio.high);
+            let Some(moments) = found.channels[0].moments else {
+                second.skip(place);
+                fourth.skip(place);
+                return;
+            };
             let [_, j3, j4] = losses;
             let exponents = [losses[0], losses[0] * Wide::from(6.0) - j3.scaled(2) + j4];
             let exact = central(losses);
             let pairs = [(&mut second, moments.relative[0]), (&mut fourth, moments.relative[2])];
             for (((row, found), exact), exponent) in pairs.into_iter().zip(exact).zip(exponents) {
-                let place = || format!("{name}, r = {:e}, {case:?}", ratio.high);
                 // What overflows must be infinite, never not a number, and nothing else may be.
                 if exponent.high > 690.0 || !exact.high.is_finite() {
                     row.see(if found > 1e290 { 0.0 } else { f64::NAN }, place);
                     continue;
                 }
                 if exact.high.abs() < 1e-300 {
+                    row.skip(place);
                     continue;
                 }
                 row.see(exact.relative_error(found) / moments.error, place);
@@ -159,7 +168,10 @@ fn transmittances(dice: &mut Dice, trials: u32) -> Row {
         let (length, depth) = (dice.sized(-9.0, 9.0), dice.sized(-12.0, 9.0));
         let extinction = depth / length;
         let text = format!("medium.constant.extinction = {extinction:e}\nspan = [0, {length:e}]");
-        let Some(medium) = text::medium(&text) else { continue };
+        let Some(medium) = text::medium(&text) else {
+            row.skip(|| text.clone());
+            continue;
+        };
         let depth = medium.optical_depth(medium.span());
         let unit = if depth.value > 300.0 { depth.value } else { 0.0 };
         let found = transmittance(depth, unit);

@@ -167,9 +167,17 @@ fn shifted(effort: Effort, seed: u64) -> Row {
             jobs.push((name, problem, seed + number, if number % 2 == 0 { 1.0 } else { -1.0 }));
         }
     }
-    let counts: Vec<[u64; 2]> =
-        jobs.into_par_iter().map(|(_, problem, seed, sign)| passes(problem, seed, sign)).collect();
-    let [passed, asked] = counts.iter().fold([0, 0], |[a, b], [c, d]| [a + c, b + d]);
+    let counts: Vec<(&str, Option<[u64; 2]>)> = jobs
+        .into_par_iter()
+        .map(|(name, problem, seed, sign)| (name, passes(problem, seed, sign)))
+        .collect();
+    let (mut passed, mut asked) = (0, 0);
+    for (name, counts) in counts {
+        match counts {
+            Some([c, d]) => (passed, asked) = (passed + c, asked + d),
+            None => row.skip(|| format!("{name}: not read")),
+        }
+    }
     // P(N ≥ passed) of a binomial number with chance 1 %, by its Poisson bound.
     let mean = 0.01 * asked as f64;
     let p = crate::stats::ties::p_value(usize::try_from(passed).unwrap_or(usize::MAX), mean);
@@ -179,9 +187,9 @@ fn shifted(effort: Effort, seed: u64) -> Row {
 }
 
 /// How many scalars passed although they were moved by their tolerance, and how many there were.
-fn passes(problem: &str, seed: u64, sign: f64) -> [u64; 2] {
+fn passes(problem: &str, seed: u64, sign: f64) -> Option<[u64; 2]> {
     let text = format!("title = \"t\"\n[problem.transmittance]\n{problem}");
-    let Some(case) = text::case(&text) else { return [0, 0] };
+    let case = text::case(&text)?;
     let options =
         Options { seed, draws: Amount::Exactly(40_000), alpha: ALPHA, ..Options::default() };
     let mut plan = Plan::new(std::slice::from_ref(&case), &options);
@@ -201,5 +209,5 @@ fn passes(problem: &str, seed: u64, sign: f64) -> [u64; 2] {
             counts[0] += u64::from(finding.verdict == Verdict::Pass);
         }
     }
-    counts
+    Some(counts)
 }

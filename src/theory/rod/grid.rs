@@ -81,6 +81,7 @@ impl Step {
 pub struct Grid {
     steps: Vec<Step>,
     parts_per_length: f64,
+    raised: [f64; 2],
 }
 
 /// A walk through a rod, for theory.
@@ -180,7 +181,7 @@ impl<'a> Walk<'a> {
                 Step { end, width, ..self.at(t, sigma) }
             }));
         }
-        Grid { steps, parts_per_length: 1.0 / self.rod.width() }
+        Grid { steps, parts_per_length: 1.0 / self.rod.width(), raised: [0.0; 2] }
     }
 
     /// How many steps the coarsest grid has.
@@ -228,9 +229,41 @@ impl Layer {
             emission: [width * (1.0 + a) * scale, width * b * scale],
         }
     }
+
+    /// More of all that leaves; times 1 changes no bit.
+    fn times(self, factor: f64) -> Self {
+        Self {
+            through: self.through * factor,
+            back: self.back * factor,
+            emission: self.emission.map(|emission| emission * factor),
+        }
+    }
 }
 
 impl Grid {
+    /// The same walk with absolute values of all weights, in which everything that leaves a step is more
+    /// by a share per step and a share per collision of either kind.
+    ///
+    /// What a number grows by, per share, is how often its paths pass a step, or collide: how much of the
+    /// rounding of every step it collects.
+    #[must_use]
+    pub fn raised(&self, by: [f64; 2]) -> Self {
+        let absolute = |step: &Step| Step {
+            odds: step.odds.absolute(),
+            absorbed: step.absorbed.abs(),
+            sampling: step.sampling.abs(),
+            ..*step
+        };
+        Self { steps: self.steps.iter().map(absolute).collect(), raised: by, ..*self }
+    }
+
+    /// By what everything that leaves a step is more.
+    fn growth(&self, step: &Step, [a, b]: [f64; 2]) -> f64 {
+        // σ̂(1 + Q + S) ≤ 2σ̂ + |A| + |B|
+        let collisions = step.width * (2.0 * step.sampling + a.abs() + b.abs());
+        1.0 + self.raised[0] + self.raised[1] * collisions
+    }
+
     /// One over the length of the parts in which the flux is looked at.
     #[must_use]
     pub fn parts_per_length(&self) -> f64 {
@@ -270,7 +303,8 @@ impl Grid {
         let mut beyond = vec![[0.0, ends[1]]; n + 1];
         let mut layers = Vec::with_capacity(n);
         for (i, step) in self.steps.iter().enumerate().rev() {
-            let layer = Layer::new(rates(step), step.width);
+            let rates = rates(step);
+            let layer = Layer::new(rates, step.width).times(self.growth(step, rates));
             let [plus, minus] = source(i, step);
             let [straight, turned] = layer.emission;
             let emitted = [straight * plus + turned * minus, straight * minus + turned * plus];

@@ -22,8 +22,16 @@ use crate::problems::rod::Seen;
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
 /// More steps than this are not solved.
 const MOST_STEPS: usize = 200_000;
-/// What rounding adds, relative.
-const ROUNDING: f64 = 1e-13;
+/// What rounding may take from all that leaves a step: six operations make the layer, eight join it.
+const OF_PASSAGE: f64 = 8.0 * f64::EPSILON;
+/// What it may take per collision: `1 − Q − S p_f` cancels, and powers of weights are rounded.
+const OF_COLLISION: f64 = 16.0 * f64::EPSILON;
+/// What it may take of every path: what is earned on the way, up to eight times.
+const OF_PATH: f64 = 128.0 * f64::EPSILON;
+/// The sum of the absolute weights of Romberg's scheme is below this.
+const OF_SCHEME: f64 = 2.0;
+/// By which share steps are raised to count the passages through them.
+const SHARE: f64 = 1e-8;
 
 /// `E[Y^j X^k]` for j, k = 1, 2, of the absorbed energy and what leaves at one end.
 pub type Joint = [[f64; 2]; 2];
@@ -56,12 +64,13 @@ pub fn romberg(
     numbers: &Numbers<'_>,
 ) -> Option<Vec<[f64; 2]>> {
     let mut before: Vec<Vec<f64>> = Vec::new();
-    let mut finer = 1;
+    let (mut first, mut finer) = (1, 1);
     for level in 0..=precision.levels {
         let Some(found) = numbers(&walk.grid(finer)) else {
             // Steps that are too long may find echoes that finer ones do not.
             before.clear();
             finer *= 2;
+            first = finer;
             continue;
         };
         let mut row = vec![found];
@@ -79,17 +88,37 @@ pub fn romberg(
             let agree = best.iter().zip(last).all(near);
             let no_finer = level == precision.levels || 2 * finer * walk.coarsest() > MOST_STEPS;
             if agree || no_finer {
-                let bounded = best
-                    .iter()
-                    .zip(last)
-                    .map(|pair| [*pair.0, error(pair) + ROUNDING * pair.0.abs()]);
-                return Some(bounded.collect());
+                let rounding = rounding(&walk.grid(first), finer / first, numbers);
+                let rounding = rounding.unwrap_or_else(|| vec![f64::INFINITY; best.len()]);
+                let bounded = best.iter().zip(last).zip(rounding);
+                return Some(
+                    bounded.map(|(pair, rounding)| [*pair.0, error(pair) + rounding]).collect(),
+                );
             }
         }
         before = row;
         finer *= 2;
     }
     None
+}
+
+/// What rounding may add to the numbers of Romberg's scheme, absolute, where the finest grid has steps
+/// `finer` times shorter than a grid on which they exist.
+///
+/// A step takes off a share of what leaves it, which is the same for equal steps: their roundings do not
+/// cancel. A number collects it as often as its paths pass steps; scattering makes them pass again.
+///
+/// ```text
+/// |δx| ≤ 2 (8ε ⟨passages⟩ + 16ε ⟨collisions⟩ + 128ε ⟨1⟩),  ⟨n⟩ = Σ |weight of a path| n
+/// ```
+fn rounding(grid: &Grid, finer: usize, numbers: &Numbers<'_>) -> Option<Vec<f64>> {
+    let of_passage = OF_PASSAGE * finer as f64;
+    let plain = numbers(&grid.raised([0.0; 2]))?;
+    let raised = numbers(&grid.raised([SHARE, SHARE * OF_COLLISION / of_passage]))?;
+    let bound = |(plain, raised): (&f64, &f64)| {
+        OF_SCHEME * ((raised - plain).max(0.0) / SHARE * of_passage + OF_PATH * plain)
+    };
+    Some(plain.iter().zip(&raised).map(bound).collect())
 }
 
 fn nothing(_: usize, _: &Step) -> [f64; 2] {

@@ -6,8 +6,9 @@
 //! ```
 //!
 //! A layer so thin that light scatters in it once at most is doubled until it is the slab; layers that
-//! differ are laid upon each other. Any answer is computed twice, with fewer directions and a thicker
-//! first layer the second time, and the difference is stated as its error.
+//! differ are laid upon each other. Any answer is computed three times, with fewer directions and thicker
+//! first layers the second and the third time, and the differences tell its error: thin slabs need grazing
+//! directions, and two answers with too few of them may agree by chance.
 //!
 //! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
 //! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
@@ -89,6 +90,10 @@ impl Resolution {
             first_layer: 4.0 * self.first_layer,
         }
     }
+
+    fn coarsest(self) -> Self {
+        Self { directions: self.directions * 5 / 8, ..self.coarser() }
+    }
 }
 
 /// Whether two answers of different resolution tell the error of an exact one: not where both would
@@ -103,6 +108,12 @@ const FIRST_LAYER: f64 = 13.0;
 /// What fifty doublings of a hundred directions lose in rounding, relative to the energy: measured as
 /// what is missing where nothing is absorbed, twice over.
 const ROUNDING: f64 = 2e-13;
+/// The difference to an answer with three quarters of the directions is taken so many times, and that to
+/// one with five eighths divided by so much. Of 160 random slabs, 1e-4 to 10 thick, two exceeded the first
+/// alone, taken once, as did one of 128 others, by five times; no more than 0.6 of both was reached.
+const SAFETY: f64 = 2.0;
+/// See [`SAFETY`].
+const GAIN: f64 = 12.0;
 /// The most doublings: beyond, a share of the slab is lost in rounding.
 const MOST_DOUBLINGS: f64 = 100.0;
 
@@ -111,15 +122,17 @@ const MOST_DOUBLINGS: f64 = 100.0;
 pub fn solve(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Answer> {
     let fine = energy(incidence, slices, resolution)?;
     let coarse = energy(incidence, slices, resolution.coarser())?;
-    // Two answers may agree by chance: what is known of the first layer and of rounding is added.
-    let known = |fine: f64, coarse: f64| {
-        let error = (fine - coarse).abs() + (resolution.first_layer + ROUNDING) * fine.abs();
-        Known::new(fine, error)
+    let coarsest = energy(incidence, slices, resolution.coarsest())?;
+    // What is known of the first layer and of rounding is added.
+    let known = |of: &dyn Fn(&Energy) -> f64| {
+        let [fine, coarse, coarsest] = [&fine, &coarse, &coarsest].map(of);
+        let differences = (SAFETY * (fine - coarse).abs()).max((fine - coarsest).abs() / GAIN);
+        Known::new(fine, differences + (resolution.first_layer + ROUNDING) * fine.abs())
     };
     Some(Answer {
-        reflected: known(fine.reflected, coarse.reflected),
-        transmitted: known(fine.transmitted, coarse.transmitted),
-        score: known(fine.score, coarse.score),
+        reflected: known(&|energy| energy.reflected),
+        transmitted: known(&|energy| energy.transmitted),
+        score: known(&|energy| energy.score),
     })
 }
 

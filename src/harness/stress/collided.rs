@@ -1,0 +1,179 @@
+//! Next-flight and unidirectional MIS: moments from power series in 32 digits.
+//!
+//! On a piece of constant σ_t the Volterra equations of `theory::volterra` are ordinary ones in
+//! `v = e^{−σ̄(ℓ−x)}`, whose solution is continued from series to series, a quarter of v at a time.
+//!
+//! ```text
+//! v A_k' = (1 − ρ^k) A_k − ρ^k g_k,  A_k(1) = 0;   v = v₀(1 + t),  A_k = Σ aₙ tⁿ:
+//! (n + 1) aₙ₊₁ = (1 − ρ^k − n) aₙ − ρ^k [g_k]ₙ,   m_k = g_k + A_k
+//! ```
+
+use super::{Dice, Effort, Measure, Row, in_parts, text};
+use crate::estimators::transmittance::next_flight::NextFlight;
+use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
+use crate::numeric::Wide;
+use crate::theory::volterra::{self, Source, binomial};
+use crate::theory::{Mesh, Moments};
+
+const PARTS: u64 = 16;
+/// Terms of a series: at a quarter of its radius, 4⁻⁷² = 4e-44 of the largest.
+const TERMS: usize = 72;
+/// The moments that are compared.
+const ORDERS: usize = 4;
+
+/// All rows.
+#[must_use]
+pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
+    let trials = effort.of(1, 8);
+    in_parts(PARTS, |part| {
+        let dice = &mut Dice::new(seed, "collided", part);
+        let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
+        let row = |what| Row::new(what, range, Measure::OfStated, 1.0);
+        let mut rows = ["variance", "fourth moment"]
+            .map(|what| row(format!("{what} of next-flight and MIS")))
+            .to_vec();
+        for _ in 0..trials {
+            trial(dice, &mut rows);
+        }
+        rows
+    })
+}
+
+fn trial(dice: &mut Dice, rows: &mut [Row]) {
+    let layers = 1 + dice.below(4);
+    let mut breaks = vec![0.0];
+    for _ in 0..layers {
+        breaks.push(breaks[breaks.len() - 1] + dice.between(0.1, 1.0));
+    }
+    let sampling = dice.sized(-1.0, 1.08) / breaks[layers];
+    let values: Vec<f64> = (0..layers).map(|_| sampling * dice.between(0.0, 1.7)).collect();
+    let text = format!(
+        "medium.piecewise-constant = {{ breaks = {breaks:?}, values = {values:?} }}\n\
+         span = [0, {:e}]",
+        breaks[layers]
+    );
+    let place = |name: &str| format!("{name}, σ̂ = {sampling:e}, {}", text.replace('\n', ", "));
+    let Some(medium) = text::medium(&text) else {
+        rows.iter_mut().for_each(|row| row.skip(|| place("not read")));
+        return;
+    };
+    let mesh = Mesh::new(medium);
+    let sources: [(&str, &dyn Source, bool); 2] =
+        [("next-flight", &NextFlight, false), ("unidirectional-mis", &UnidirectionalMis, true)];
+    for (name, source, is_shared) in sources {
+        let found = volterra::predict(&mesh, sampling, source).channels[0].moments;
+        let Some(Moments { relative, error, .. }) = found else {
+            rows.iter_mut().for_each(|row| row.skip(|| place(name)));
+            continue;
+        };
+        let exact = central(raw(&breaks, &values, sampling, is_shared));
+        for ((row, found), exact) in rows.iter_mut().zip([relative[0], relative[2]]).zip(exact) {
+            row.see(exact.relative_error(found) / error, || place(name));
+        }
+    }
+}
+
+/// `m₂ − m₁²` and the fourth central moment, in units of the mean.
+fn central([m1, m2, m3, m4]: [Wide; ORDERS]) -> [Wide; 2] {
+    let n = |x: f64| Wide::from(x);
+    let square = m1 * m1;
+    let fourth = m4 - n(4.0) * m3 * m1 + n(6.0) * m2 * square - n(3.0) * square * square;
+    [(m2 - square) / square, fourth / (square * square)]
+}
+
+/// A power series in t, cut off.
+type Series = Vec<Wide>;
+
+fn product(a: &Series, b: &Series) -> Series {
+    (0..TERMS).map(|n| (0..=n).map(|i| a[i] * b[n - i]).sum()).collect()
+}
+
+/// `v` and what is added at a collision, around `v₀`: `v` or `v/(1 + v)`.
+fn parts(centre: Wide, is_shared: bool) -> [Series; 2] {
+    let mut v = vec![Wide::default(); TERMS];
+    (v[0], v[1]) = (centre, centre);
+    if !is_shared {
+        return [v.clone(), v];
+    }
+    // 1/(1 + v₀ + v₀t)
+    let below = Wide::ONE / (Wide::ONE + centre);
+    let mut inverse = vec![below];
+    for n in 1..TERMS {
+        inverse.push(-(inverse[n - 1] * centre * below));
+    }
+    let shared = product(&v, &inverse);
+    [v, shared]
+}
+
+/// `g_k` without and with what comes later, `A_1 … A_{k−1}`.
+fn added(k: usize, v: &Series, powers: &[Series], later: &[Series], is_shared: bool) -> Series {
+    let mut sum = powers[k].clone();
+    if is_shared {
+        // v(2u)^k + (1 − v)u^k
+        let more = product(v, &powers[k]);
+        let factor = Wide::from(2f64.powi(i32::try_from(k).unwrap_or(0)) - 1.0);
+        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += factor * more);
+    }
+    for j in 1..k {
+        let mixed = product(&powers[k - j], &later[j - 1]);
+        let ways = Wide::from(binomial(k, j));
+        sum.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += ways * mixed);
+    }
+    sum
+}
+
+/// `m_1 … m_4` at the beginning.
+fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [Wide; ORDERS] {
+    let end = Wide::from(breaks[breaks.len() - 1]);
+    let rate = Wide::from(sampling);
+    let mut after = [Wide::default(); ORDERS];
+    let mut centre = Wide::ONE;
+    for (pair, &value) in breaks.windows(2).zip(values).rev() {
+        let target = (-(rate * (end - Wide::from(pair[0])))).exp();
+        let rho = Wide::ONE - Wide::from(value) / rate;
+        while target.high < centre.high {
+            let next = centre * Wide::from(0.75);
+            let next = if next.high > target.high { next } else { target };
+            let t = next / centre - Wide::ONE;
+            let series = continued(centre, rho, after, is_shared);
+            after = std::array::from_fn(|k| {
+                series[k].iter().rev().fold(Wide::default(), |sum, &a| sum * t + a)
+            });
+            centre = next;
+        }
+    }
+    // What is added where nothing has been flown yet.
+    let whole = continued(centre, Wide::default(), after, is_shared);
+    let [v, part] = parts(centre, is_shared);
+    let powers = powers(&part);
+    std::array::from_fn(|k| after[k] + added(k + 1, &v, &powers, &whole, is_shared)[0])
+}
+
+fn powers(part: &Series) -> Vec<Series> {
+    let mut one = vec![Wide::default(); TERMS];
+    one[0] = Wide::ONE;
+    let mut powers = vec![one];
+    for k in 0..ORDERS {
+        powers.push(product(&powers[k], part));
+    }
+    powers
+}
+
+/// The series of `A_1 … A_4` around v₀, where they have such values.
+fn continued(centre: Wide, rho: Wide, values: [Wide; ORDERS], is_shared: bool) -> Vec<Series> {
+    let [v, part] = parts(centre, is_shared);
+    let powers = powers(&part);
+    let mut all: Vec<Series> = Vec::new();
+    for (k, &value) in (1_u32..).zip(&values) {
+        let kept = rho.powi(k);
+        let source = added(all.len() + 1, &v, &powers, &all, is_shared);
+        let mut series = vec![value];
+        for n in 0..TERMS - 1 {
+            let at = Wide::from(n as f64);
+            let sum = (Wide::ONE - kept - at) * series[n] - kept * source[n];
+            series.push(sum / (at + Wide::ONE));
+        }
+        all.push(series);
+    }
+    all
+}
