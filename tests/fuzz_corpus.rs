@@ -66,6 +66,9 @@ fn findings_stay_mended() {
     // A picture for a case was refused without the key.
     let picture = "title = \"t\"\n[picture.multiple-scattering]\nsize = [64, 64]\n";
     assert!(reads_or_names_the_place(picture).is_none());
+    // Brackets in the header of an array took npyz minutes.
+    let nested = [b"\x93NUMPY\x01\x00\x28\x00", &[b'{'; 40][..]].concat();
+    assert!(reads_or_refuses("npy", &nested).is_none());
 }
 
 #[test]

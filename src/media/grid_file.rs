@@ -15,6 +15,7 @@ use std::io::{BufReader, Read};
 use std::path::Path;
 
 use crate::catalogue::number;
+use crate::files::npy;
 use crate::geometry::{Aabb, Point};
 
 /// The samples of a grid, x fastest.
@@ -131,8 +132,9 @@ fn read_vol(file: File) -> Result<Samples, Unreadable> {
 
 fn read_npy(file: File) -> Result<Samples, Unreadable> {
     let cure = "save a float32 or float64 array of shape (nz, ny, nx) by numpy.save";
-    let npy = match npyz::NpyFile::new(BufReader::new(file)) {
-        Ok(npy) => npy,
+    let mut file = BufReader::new(file);
+    let npy = match npy::bytes(&mut file).and_then(|header| npy::parse(&header)) {
+        Ok(header) => npyz::NpyFile::with_header(header, file),
         Err(error) => return wrong(format!("the header cannot be read: {error}"), cure),
     };
     let &[nz, ny, nx] = npy.shape() else {

@@ -1,11 +1,8 @@
 //! `NumPy`'s array file: a header that npyz reads, then words.
 
-use std::io::Read;
-
-use npyz::NpyHeader;
-
 use super::raw::{Word, Words};
 use super::{Bytes, ForeignError};
+use crate::files::npy;
 
 /// Opens an array; `length` counts the bytes of the file.
 pub(super) fn open(
@@ -13,14 +10,14 @@ pub(super) fn open(
     file: &str,
     length: Option<u64>,
 ) -> Result<Words, ForeignError> {
-    let header = header_bytes(&mut bytes).map_err(|cause| ForeignError::unreadable(file, cause))?;
+    let header = npy::bytes(&mut bytes).map_err(|cause| ForeignError::unreadable(file, cause))?;
     if header.is_empty() {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
-    if let Some(shape) = impossible(&header) {
+    if let Some(shape) = npy::uncountable(&header) {
         return Err(ForeignError::Shape { file: file.to_owned(), shape });
     }
-    let array = NpyHeader::from_reader(header.as_slice())
+    let array = npy::parse(&header)
         .map_err(|cause| ForeignError::NotNpy { file: file.to_owned(), cause })?;
     let header = header.len() as u64;
     let word = match array.dtype().descr().trim_matches('\'') {
@@ -52,35 +49,6 @@ pub(super) fn open(
         }
     }
     Ok(Words::new(bytes, file, word, Some(expected)))
-}
-
-/// The bytes of a header: magic, version, the length of the text, the text; fewer where the source
-/// ends before.
-fn header_bytes(bytes: &mut Bytes) -> std::io::Result<Vec<u8>> {
-    let mut header = Vec::new();
-    bytes.take(10).read_to_end(&mut header)?;
-    let Some(&[major, _, low, high]) = header.get(6..10) else { return Ok(header) };
-    let mut rest = u64::from(u16::from_le_bytes([low, high]));
-    if major > 1 {
-        // Version 2 has a length of four bytes.
-        bytes.take(2).read_to_end(&mut header)?;
-        if let Some(&[low, high]) = header.get(10..12) {
-            rest += u64::from(u16::from_le_bytes([low, high])) << 16;
-        }
-    }
-    bytes.take(rest).read_to_end(&mut header)?;
-    Ok(header)
-}
-
-/// The shape in the header's text if it has more elements than can be counted, on which npyz would
-/// overflow.
-fn impossible(header: &[u8]) -> Option<String> {
-    let text = String::from_utf8_lossy(header);
-    let (_, shape) = text.split_once("'shape'")?;
-    let (shape, _) = shape.split_once('(')?.1.split_once(')')?;
-    let mut sizes = shape.split(',').filter_map(|size| size.trim().parse::<u64>().ok());
-    let bytes = sizes.try_fold(16, |bytes: u64, size| bytes.checked_mul(size.max(1)));
-    bytes.is_none().then(|| format!("({shape})"))
 }
 
 #[cfg(test)]

@@ -205,33 +205,40 @@ impl Found {
     }
 }
 
-/// Central moments in units of the truth.
+/// A moment of the fourth power or higher with a larger relative error is not known.
+const RESOLVED: f64 = 0.05;
+/// Moments in units of the truth that are smaller than this are rounding.
+const FAINT: f64 = 1e-9;
+
+/// Central moments in units of the truth. Higher ones that grids do not resolve, for weights that grow too
+/// steeply, are infinite, as where they diverge.
 fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let m = truth.value;
     let [_, [two, e2], [three, e3], [four, e4], _] = *raw;
     let variance = two - m * m;
-    let relative = [
-        variance / (m * m),
-        if three.is_finite() {
-            (three - 3.0 * m * two + 2.0 * m.powi(3)) / m.powi(3)
-        } else {
-            three
-        },
-        if four.is_finite() {
-            (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4)
-        } else {
-            four
-        },
-    ];
+    let second = variance / (m * m);
     let error = (e2 + 2.0 * m * truth.error) / variance;
-    let fourth = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2) / (relative[2] * m.powi(4));
-    let error = if four.is_finite() { error.max(fourth) } else { error };
-    Moments { scale: m, relative, error }
+    let third = (three - 3.0 * m * two + 2.0 * m.powi(3)) / m.powi(3);
+    let fourth = (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4);
+    let off = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2) / m.powi(4);
+    // By Jensen's inequality the fourth moment is not below the square of the second.
+    let is_resolved = off <= (RESOLVED * fourth).max(FAINT)
+        && fourth >= (1.0 - RESOLVED) * second * second - FAINT;
+    if !four.is_finite() || !is_resolved {
+        return Moments { scale: m, relative: [second, f64::INFINITY, f64::INFINITY], error };
+    }
+    Moments { scale: m, relative: [second, third, fourth], error: error.max(off / fourth) }
 }
 
 /// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.
 fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
-    let [_, [two, _], _, [four, _], [eight, _]] = *raw;
+    let [_, [two, _], _, fourth, eighth] = *raw;
+    let or_infinite = |[moment, error]: [f64; 2], least: f64| {
+        let is_resolved = error <= RESOLVED * moment && moment >= (1.0 - RESOLVED) * least;
+        if is_resolved { moment } else { f64::INFINITY }
+    };
+    let four = or_infinite(fourth, two * two);
+    let eight = or_infinite(eighth, four * four);
     Tails {
         rare_event_size: four / (two * two),
         eighth_moment_ratio: if eight.is_finite() { eight / (four * four) } else { f64::INFINITY },

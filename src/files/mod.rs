@@ -3,6 +3,8 @@
 //! A file is written under a temporary name beside its place and then renamed, so that a killed run
 //! leaves no torn file and loses nothing that was written before.
 
+pub mod npy;
+
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
