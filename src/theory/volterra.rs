@@ -47,7 +47,8 @@ pub trait Source {
 #[must_use]
 pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let end = mesh.support().to;
-    let fine = mesh.refined(&[], &|mesh, panel| panel_functions(mesh, panel, sampling));
+    let layer = cuts(mesh, sampling);
+    let fine = mesh.refined(&layer, &|mesh, panel| panel_functions(mesh, panel, sampling, end));
     let mut after = [0.0; ORDERS];
     for panel in fine.panels().rev() {
         after = sweep(&fine, panel, sampling, end, source, after);
@@ -67,7 +68,9 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     ];
     let relative = [central[0].max(0.0), central[1], central[2].max(0.0)];
     let terms = m4.abs() + 4.0 * (m3 * m1).abs() + 6.0 * (m2 * m1 * m1).abs() + 3.0 * m1.powi(4);
-    let noise = (mesh.relative_error() + 1e-14) * terms;
+    // The mean is known: what the quadrature makes of it shows what it misses.
+    let missed = (t * depth.value.exp() - 1.0).abs();
+    let noise = (fine.relative_error() + missed + 1e-14) * terms;
     let error = noise / relative[0].powi(2).min(relative[0]).max(f64::MIN_POSITIVE);
     let moments = Moments { scale: depth.exp_neg().value, relative, error };
     let kurtosis = moments.kurtosis().unwrap_or(1.0);
@@ -84,10 +87,19 @@ pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     Prediction { random_numbers, ..Prediction::single(channel, CountLaw::poisson(flown)) }
 }
 
-/// What must be smooth on a panel: the decay of every order, and the powers of ρ.
-fn panel_functions(mesh: &Mesh, panel: Panel<'_>, sampling: f64) -> Vec<Vec<f64>> {
-    let flights = panel.t.iter().map(|t| (-sampling * (t - panel.span.from)).exp()).collect();
-    let mut functions = vec![flights];
+/// Where the last flights are cut: v lives within a few mean free paths of the end, which may be a
+/// millionth of the support.
+fn cuts(mesh: &Mesh, sampling: f64) -> Vec<f64> {
+    let support = mesh.support();
+    let paths = std::iter::successors(Some(0.5), |paths| Some(2.0 * paths));
+    let cuts = paths.map(|paths| support.to - paths / sampling);
+    cuts.take_while(|&cut| cut > support.from).filter(|&cut| cut < support.to).collect()
+}
+
+/// What must be smooth on a panel: v, the decay of every order, and the powers of ρ.
+fn panel_functions(mesh: &Mesh, panel: Panel<'_>, sampling: f64, end: f64) -> Vec<Vec<f64>> {
+    let v = panel.t.iter().map(|t| (-sampling * (end - t)).exp()).collect();
+    let mut functions = vec![v];
     for k in [1, 2, 4, ORDERS] {
         let rate: Vec<f64> =
             panel.extinction.iter().map(|s| sampling * lost(s / sampling, k)).collect();
