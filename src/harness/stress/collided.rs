@@ -54,7 +54,9 @@ fn trial(dice: &mut Dice, rows: &mut [Row]) {
     );
     let place = |name: &str| format!("{name}, σ̂ = {sampling:e}, {}", text.replace('\n', ", "));
     let Some(medium) = text::medium(&text) else {
-        rows.iter_mut().for_each(|row| row.skip(|| place("not read")));
+        for row in rows.iter_mut() {
+            row.skip(|| place("not read"));
+        }
         return;
     };
     let mesh = Mesh::new(medium);
@@ -63,7 +65,9 @@ fn trial(dice: &mut Dice, rows: &mut [Row]) {
     for (name, source, is_shared) in sources {
         let found = volterra::predict(&mesh, sampling, source).channels[0].moments;
         let Some(Moments { relative, error, .. }) = found else {
-            rows.iter_mut().for_each(|row| row.skip(|| place(name)));
+            for row in rows.iter_mut() {
+                row.skip(|| place(name));
+            }
             continue;
         };
         let exact = central(raw(&breaks, &values, sampling, is_shared));

@@ -194,7 +194,9 @@ fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
 /// The solution of equations whose right sides are 1, by elimination with the largest pivot of a column.
 fn solved(mut rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
     let n = rows.len();
-    rows.iter_mut().for_each(|row| row.push(Wide::ONE));
+    for row in &mut rows {
+        row.push(Wide::ONE);
+    }
     for column in 0..n {
         let size = |i: &usize| rows[*i][column].high.abs();
         let pivot = (column..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;

@@ -61,7 +61,7 @@ fn fly<P: Precision>(scene: &Scene, dice: &mut Dice, mut collide: impl FnMut(P))
 pub struct Product<R> {
     /// The rule.
     pub rule: R,
-    /// σ_c/τ.
+    /// `σ_c/τ`.
     pub control: f64,
 }
 
