@@ -16,7 +16,7 @@ use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential, unit};
+use crate::rng::{Stream, unit};
 
 const RATIO: Product<Weight, Honest> = Product { rule: Weight, fault: Honest };
 
@@ -77,8 +77,8 @@ impl Draws<Transmittance> for NextFlight {
         let mut lookups = 0;
         let first = Lane::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
         let mut score = if *self == Self::WithoutFirst { 0.0 } else { first };
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
+            weight *= 1.0 - medium.extinction(cursor.t) * (1.0 / sampling);
             lookups += 1;
             score += weight * Lane::exp(-sampling * (end - cursor.t));
         }
@@ -108,20 +108,20 @@ impl Draws<Transmittance> for Mis {
         let mut cursor = setup.sampling.begin();
         let mut weight = 1.0;
         let mut lookups = 0;
-        let mut score = 0.0;
         let share = |sampling: f64, t: f64| {
             let v = Lane::exp(-sampling * (end - t));
             if *self == Self::Unweighted { v } else { v / (1.0 + v) }
         };
-        let mut here = share(setup.sampling.value(cursor.t), cursor.t);
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            score += weight * here;
-            weight *= 1.0 - medium.extinction(cursor.t) / sampling;
+        let mut last = share(setup.sampling.value(cursor.t), cursor.t);
+        let mut score = last;
+        while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
+            weight *= 1.0 - medium.extinction(cursor.t) * (1.0 / sampling);
             lookups += 1;
-            here = share(sampling, cursor.t);
+            last = weight * share(sampling, cursor.t);
+            score += last;
         }
-        let last = if *self == Self::WithoutFlight { 1.0 } else { 2.0 };
-        Draw::free([score + last * weight * here], lookups)
+        let flown = if *self == Self::WithoutFlight { 0.0 } else { last };
+        Draw::free([score + flown], lookups)
     }
 }
 

@@ -9,8 +9,9 @@ use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
 use super::{About, Draws, Mutant};
 use crate::estimators::{Draw, Setup};
 use crate::media::Extinction;
+use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::rng::{Stream, exponential, unit};
+use crate::rng::Stream;
 
 /// The family.
 #[must_use]
@@ -60,22 +61,24 @@ impl Draws<Transmittance> for Decomposition {
     ) -> Draw<[f64; 1]> {
         let support = setup.mesh.support();
         let control = setup.control.extinction(support.from);
-        let flight = if control > 0.0 { exponential(rng) / control } else { f64::INFINITY };
-        let end = (support.from + flight).min(support.to);
+        let (depth, _) = (-rng.ln_uniform(), rng.word());
+        let flown = depth.times_plus(1.0 / control, support.from);
+        let subtracted = if self.whole { 0.0 } else { control };
         let mut cursor = setup.sampling.begin();
         let mut lookups = 0;
-        while let Some(sampling) = setup.sampling.fly(&mut cursor, exponential(rng)) {
-            if cursor.t >= end {
+        loop {
+            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
+            if flown <= cursor.t {
                 break;
             }
             lookups += 1;
-            let subtracted = if self.whole { 0.0 } else { control };
-            if unit(rng) < (medium.extinction(cursor.t) - subtracted) / sampling {
+            if number < (medium.extinction(cursor.t) - subtracted) * (1.0 / sampling) {
                 return Draw::free([0.0], lookups);
             }
         }
-        let passed = self.passes || support.from + flight >= support.to;
-        Draw::free([f64::from(u8::from(passed))], lookups)
+        let stopped = flown < support.to && !self.passes;
+        Draw::free([f64::from(u8::from(!stopped))], lookups)
     }
 }
 
@@ -95,15 +98,16 @@ impl Draws<Transmittance> for LocalMajorant {
     ) -> Draw<[f64; 1]> {
         let mut lookups = 0;
         let mut came_to = setup.mesh.support().from;
-        for (ends, majorant) in setup.sampling.segments() {
+        for (ends, path) in setup.sampling.stretches() {
             let mut t = if self.overshoots { came_to.max(ends[0]) } else { ends[0] };
             while t < ends[1] {
-                t += exponential(rng) / majorant;
-                if t.is_nan() || t >= ends[1] {
+                let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+                t = depth.times_plus(path, t);
+                if !t.below(ends[1]) {
                     break;
                 }
                 lookups += 1;
-                if unit(rng) < medium.extinction(t) / majorant {
+                if number < medium.extinction(t) * path {
                     return Draw::free([0.0], lookups);
                 }
             }
