@@ -1,6 +1,7 @@
 //! `trueflight explain`: the manual page of anything in the catalogue.
 
 use clap::Args;
+use trueflight::harness::render::gallery;
 use trueflight::harness::suite;
 
 use super::Console;
@@ -30,8 +31,12 @@ pub fn main(arguments: &Arguments, _console: &Console) -> anyhow::Result<u8> {
     if let Some(source) = suite::find(name) {
         found.push(format!("{name} (cases)\n\n{}\n", source.text.trim_end()));
     }
+    if let Some(source) = gallery::find(name) {
+        found.push(format!("{name} (pictures)\n\n{}\n", source.text.trim_end()));
+    }
     if found.is_empty() {
-        names.extend(suite::suite().into_iter().map(|source| source.name));
+        let sources = suite::suite().into_iter().chain(gallery::gallery());
+        names.extend(sources.map(|source| source.name));
         let near = names.iter().filter(|known| known.contains(name.as_str()));
         let near: Vec<&str> = near.map(String::as_str).collect();
         let hint = if near.is_empty() { String::new() } else { format!(": {}", near.join(", ")) };
