@@ -1,10 +1,10 @@
 //! What the gate costs: the built-in suite drawn with and without it, in turn, in one process.
 //!
 //! ```text
-//! cargo bench --bench gate
+//! cargo bench --bench gate              # or with -- WORD: the cases whose name has the word
 //! ```
 //!
-//! or with `-- WORD` only the cases of the suite whose name has the word. Every round draws the same blocks of every experiment of the suite in each of these ways, on one
+//! Every round draws the same blocks of every experiment of the suite in each of these ways, on one
 //! thread, and takes the processor time; the table shows the medians over the rounds of a round's
 //! differences and ratios.
 //!

@@ -224,6 +224,35 @@ fn next_flight_and_unidirectional_mis_have_their_check_values() {
     assert!(lookups.into_iter().all(|lookups| (lookups - 3.0).abs() < 1e-14));
 }
 
+/// Beyond 5e4 mean free paths of σ̄ the last flights, which make the whole variance, were not resolved.
+#[test]
+fn next_flight_has_its_closed_form_from_few_mean_free_paths_to_many() {
+    // σ_t = 2 on [0, 1], r = 2/σ̄, ρ = 1 − r, κ = 1 − ρ²; A₁ = e^{−σ_t z} − e^{−σ̄z}, z = 1 − x, so that
+    // E[X²] = 2e^{−σ̄−2} − e^{−2σ̄} + σ̄ρ² ∫ (2e^{−(σ̄+2)z} − e^{−2σ̄z}) e^{−σ̄κ(1 − z)} dz.
+    let samplings = [3.0, 10.0, 1e3, 1e5, 9e5];
+    let rows = predicted(&format!(
+        "title = \"layer\"\n[problem.transmittance]\n\
+         medium.constant.extinction = 2\nspan = [0, 1]\nsweep.sampling.values = {samplings:?}\n\
+         estimators = [{{ next-flight = {{}} }}]",
+    ));
+    let variance = |sampling: f64| {
+        let (r, v) = (2.0 / sampling, (-sampling).exp());
+        let (rho, kappa) = (1.0 - r, r * (2.0 - r));
+        let over = |rate: f64| -(-sampling * rate).exp_m1() / rate;
+        let flown = 2.0 * over(1.0 + r - kappa) - over(2.0 - kappa);
+        let truth = (-2f64).exp();
+        let second = v * (2.0 * truth - v) + rho * rho * (-sampling * kappa).exp() * flown;
+        second - truth * truth
+    };
+    let pairs = rows.iter().zip(samplings);
+    let differences = pairs.filter_map(|(row, sampling)| {
+        let found = row.predicted_variance.expect("a variance");
+        differs(&format!("{sampling}"), found, variance(sampling), 1e-9)
+    });
+    none(&differences.collect::<Vec<_>>());
+    assert_eq!(rows.len(), samplings.len());
+}
+
 #[test]
 fn a_walk_that_ends_at_collisions_has_closed_form_lookups_in_a_homogeneous_medium() {
     // ∫ σ̂ e^{−σ̂(1 − q)t} dt over [0, 2]: Woodcock with σ_t = 1, σ̂ = 2.5 has q = 1 − σ_t/σ̂, and
