@@ -47,13 +47,20 @@ impl Resolution {
     pub const COARSE: Self =
         Self { nodes: 7, directions: 7, surface: 8, core: 9, centre: 20, chance: 1e-8 };
 
-    /// What an answer and one of a coarser resolution say together.
-    pub(super) fn known(self, fine: f64, coarse: f64) -> Known {
-        Known::new(fine, (fine - coarse).abs() + self.chance * fine.abs())
+    /// What an answer and those of two coarser resolutions say together.
+    pub(super) fn known(self, [fine, coarse, coarsest]: [f64; 3]) -> Known {
+        let difference = (fine - coarse).abs().max((fine - coarsest).abs() / GAIN);
+        Known::new(fine, difference + self.chance * fine.abs())
     }
 
-    /// What the error is told by: the answers of both differ by more than the finer one is off.
-    pub(super) fn coarser(self) -> Self {
+    /// What the error is told by: the answers of both differ by more than the finer one is off, but where
+    /// they agree by chance. Three seldom do.
+    pub(super) fn all(self) -> [Self; 3] {
+        let coarser = self.coarser();
+        [self, coarser, coarser.coarser()]
+    }
+
+    fn coarser(self) -> Self {
         Self {
             nodes: self.nodes - 2,
             directions: self.directions - 2,
@@ -64,6 +71,9 @@ impl Resolution {
         }
     }
 }
+
+/// The difference to the coarsest of three answers is divided by this; see [`Resolution::known`].
+const GAIN: f64 = 6.0;
 
 /// What is at the centre of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
