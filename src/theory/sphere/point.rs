@@ -112,7 +112,7 @@ pub fn orders(
     let known = |ray: usize, order: usize| {
         let found = resolution.known(all.each_ref().map(|a| a[ray][order]));
         // Next to the source all three may be off alike: measured.
-        let near = (2.0 * ball.radius / offsets[ray]).powi(2);
+        let near = (ball.radius / offsets[ray]).powi(2);
         Known::new(found.value, found.error + resolution.chance * near * found.value.abs())
     };
     let of_ray = |ray: usize| (0..all[0][ray].len()).map(|order| known(ray, order)).collect();
