@@ -18,11 +18,14 @@ use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
 
 /// Halvings of the panels towards either end.
+/// The relative error.
+pub const ERROR: f64 = 1e-14;
+/// Halvings of the panels towards either end.
 const HALVINGS: i32 = 48;
 /// Nodes per panel.
 const NODES: usize = 20;
 
-/// `H(μ)` for the albedo a in `[0, 1]` and μ in `[0, 1]`, to about 1e-14.
+/// `H(μ)` for the albedo a in `[0, 1]` and μ in `[0, 1]`, to [`ERROR`].
 #[must_use]
 pub fn h_function(albedo: f64, cosine: f64) -> f64 {
     let rule = GaussLegendre::new(NODES);

@@ -90,7 +90,7 @@ pub(super) fn predict(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Pre
         let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
         Channel { name, moments: None, by_pilots: true, ..certain }
     };
-    let rounded = |value: f64| Known::new(value, 1e-14 * value.abs());
+    let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
     let mut channels: Vec<Channel> = problem
         .radii()
         .iter()

@@ -13,7 +13,7 @@ use crate::estimators::DrawBuffer;
 /// The largest relative error of the lookups that is still worth a promise.
 const CAP: f64 = 0.02;
 /// The relative error of a predicted number of lookups, where theory does not say.
-const ERROR: f64 = 1e-10;
+pub const ERROR: f64 = 1e-10;
 
 /// The check of the lookups.
 pub struct Lookups;

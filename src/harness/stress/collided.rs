@@ -16,15 +16,15 @@ use crate::theory::volterra::{self, Source, binomial};
 use crate::theory::{Mesh, Moments};
 
 const PARTS: u64 = 16;
-/// Terms of a series: at a quarter of its radius, 4⁻⁷² = 4e-44 of the largest.
-const TERMS: usize = 72;
+/// Terms of a series: at a quarter of its radius, 4⁻⁴⁸ = 1e-29 of the largest.
+const TERMS: usize = 48;
 /// The moments that are compared.
 const ORDERS: usize = 4;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(1, 8);
+    let trials = effort.of(1, 40);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "collided", part);
         let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";

@@ -19,7 +19,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let mut rows: Vec<Row> =
             FIELDS.iter().flat_map(|field| closed(dice, trials, field)).collect();
         rows.push(splits(dice, trials));
-        rows.push(lookups(dice, trials / 15 + 1));
+        rows.push(lookups(dice, trials / 9 + 1));
         rows
     })
 }

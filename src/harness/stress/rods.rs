@@ -37,7 +37,7 @@ pub(super) fn of_stated(found: Known, exact: Wide) -> f64 {
 }
 
 /// R and T of two-stream equations with rates A and B, in units of one over the length.
-fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
+pub(super) fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
     let square = (a - b) * (a + b);
     let root = square.abs().sqrt();
     if square.high < 0.0 {
@@ -88,7 +88,7 @@ pub(super) fn share(dice: &mut Dice) -> f64 {
     }
 }
 
-fn rod_of(depth: f64, albedo: &[f64], forward: f64) -> Option<(Mesh, Rod)> {
+pub(super) fn rod_of(depth: f64, albedo: &[f64], forward: f64) -> Option<(Mesh, Rod)> {
     let text = format!("medium.constant.extinction = {depth:e}\nspan = [0, 1]");
     let medium = text::medium(&text)?;
     let cuts: Vec<f64> = (0..=albedo.len()).map(|i| i as f64 / albedo.len() as f64).collect();
@@ -139,7 +139,7 @@ fn solved(dice: &mut Dice, trials: u32) -> Row {
 }
 
 /// Q and S of a rule to a power, in 32 digits.
-fn moments_of(rule: ParticleRule, ratio: Wide, albedo: f64, k: u32) -> [Wide; 2] {
+pub(super) fn moments_of(rule: ParticleRule, ratio: Wide, albedo: f64, k: u32) -> [Wide; 2] {
     let (left, scattered) = (Wide::ONE - ratio, Wide::from(albedo) * ratio);
     let signed = |x: Wide, size: Wide| if x.high < 0.0 && k % 2 == 1 { -size } else { size };
     let (chances, sum) = match rule {

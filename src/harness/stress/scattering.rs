@@ -1,64 +1,194 @@
-//! Single scattering of a point light: the radiance against another quadrature.
+//! Single scattering of a point light: the radiance against other quadratures.
+//!
+//! ```text
+//! homogeneous, s = foot + D sinh x:  L = a σ_t Φ/(16π² D) ∫ exp(−σ_t (foot + D eˣ)) dx/cosh x
+//! ```
+//!
+//! Both distances are one exponential, and nothing cancels. Elsewhere panels of s double away from the light,
+//! where theory halves panels of x.
 
-use std::f64::consts::PI;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
-use crate::numeric::Wide;
+use crate::geometry::{Point, Ray};
+use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::sum::Sum;
+use crate::numeric::{Known, Span, Wide};
+use crate::phase::Phase;
+use crate::phase::henyey_greenstein::HenyeyGreenstein;
+use crate::phase::isotropic::Isotropic;
+use crate::problems::single_scattering::Lamp;
+use crate::problems::{Problem, SingleScattering};
+use crate::theory::Mesh;
+use crate::theory::single::{Along, Camera, Scene, Tracking};
 
 const PARTS: u64 = 16;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(2, 40);
+    let trials = effort.of(1, 80);
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "scattering", part);
-        vec![single(dice, trials / 4 + 1)]
+        let glances = effort.of(u32::from(part % 4 == 0), 63);
+        vec![homogeneous(dice, trials), fields(dice, glances)]
     })
 }
 
-/// The radiance of a homogeneous medium against Gauss' rule in the angle at the light, of many panels.
-fn single(dice: &mut Dice, trials: u32) -> Row {
-    let range = "homogeneous, light 1e-4 … 10 away; 800 panels in θ";
+/// The radiance as theory finds it.
+fn radiance(problem: &SingleScattering) -> Known {
+    let mesh = Mesh::even(problem.medium().clone(), 1);
+    let (nothing, none) = (Piecewise::constant(0.0, mesh.support()), Control::None);
+    let camera = Camera::new(&mesh, &nothing, &none, Along::Exact);
+    Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
+}
+
+fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
+    let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
     let mut row = Row::new("single scattering, radiance", range, Measure::OfStated, 1.0);
-    let rule = GaussLegendre::new(16);
+    let rule = GaussLegendre::new(20);
     for _ in 0..trials {
-        let (sigma, albedo, length) =
-            (dice.sized(-3.0, 1.0), dice.between(0.1, 1.0), dice.sized(-1.0, 1.5));
-        let (distance, foot) = (dice.sized(-4.0, 1.0), dice.between(-0.3, 1.3) * length);
-        let text = format!(
-            "title = \"t\"\n[problem.single-scattering]\nvolume.constant.extinction = {sigma:e}\n\
-             ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = {length:e} }}\n\
-             light = {{ position = [{distance:e}, 0, {foot:e}] }}\nalbedo = {albedo:e}\n\
-             phase.isotropic = {{}}\nestimators = [{{ source-driven = {{}} }}]"
-        );
+        let (albedo, length) = (dice.between(0.1, 1.0), dice.sized(-1.0, 1.5));
+        let sigma = dice.sized(-4.0, 2.4) / length;
+        let (distance, foot) = (dice.sized(-6.0, 1.0), dice.between(-0.3, 1.3) * length);
         let place = || format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
-        let prepared = text::case(&text)
-            .map(|case| Arc::new(case).scenario.prepare(0, None, super::NOWHERE).outcome);
-        let Some(Ok(ready)) = prepared else {
+        let field = text::volume(&format!("volume.constant.extinction = {sigma:e}"));
+        let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length);
+        let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
+        let problem = field.zip(ray).and_then(|(field, ray)| {
+            let phase = Phase::Isotropic(Isotropic);
+            SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
+        });
+        let Some(problem) = problem else {
             row.skip(place);
             continue;
         };
-        let found = ready.prediction.channels[0].truth;
-        // L = a σ_t/(16π² D) ∫ e^{−σ_t(s + r)} dθ,  s = foot + D tan θ, r = D/cos θ.
-        let angle = |s: f64| ((s - foot) / distance).atan();
-        let (first, last) = (angle(0.0), angle(length));
-        let mut cuts: Vec<f64> = (0..=400)
-            .map(|i| f64::from(i) / 400.0)
-            .flat_map(|x| [first + x * (last - first), angle(x * length)])
-            .collect();
-        cuts.sort_by(f64::total_cmp);
-        let f = |x: f64| (-sigma * (foot + distance * x.tan() + distance / x.cos())).exp();
-        let panel = |pair: &[f64]| Wide::from(rule.integrate(pair[0], pair[1], f));
-        let integral: Wide = cuts.windows(2).map(panel).sum();
-        let exact = integral * Wide::from(albedo * sigma / (16.0 * PI * PI * distance));
-        // The reference's own rounding: that of tan θ next to a right angle.
-        let reference =
-            (4e-14 + 8.0 * f64::EPSILON * (sigma * length + length / distance)) * exact.high;
+        let found = radiance(&problem);
+        let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
+        let ends = [Wide::from(0.0), Wide::from(length)].map(|s| {
+            // arsinh, of the size of its argument.
+            let x = (s - foot) / distance;
+            let size = x.abs();
+            let near =
+                (size + size * size / (Wide::ONE + (Wide::ONE + size * size).sqrt())).ln_1p();
+            if x.high < 0.0 { -near } else { near }
+        });
+        let width = ends[1] - ends[0];
+        let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
+        let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
+        let mut integral = Wide::default();
+        let mut panel = 0.0;
+        while panel < panels {
+            let step = width / Wide::from(panels);
+            for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
+                let x = ends[0] + step * (Wide::from(panel) + Wide::from(node));
+                let grown = x.exp();
+                let twice = grown + Wide::ONE / grown;
+                let left = (-(sigma * (foot + distance * grown))).exp();
+                integral += left.scaled(1) / twice * step * Wide::from(weight);
+            }
+            panel += 1.0;
+        }
+        let scale = Wide::from(albedo) * sigma / (Wide::PI * Wide::PI * distance).scaled(4);
+        let exact = integral * scale;
+        if exact.high < 1e-290 {
+            row.skip(place);
+            continue;
+        }
         let off = (Wide::from(found.value) - exact).abs().value();
-        row.see(beyond(off, reference) / found.error, place);
+        row.see(beyond(off, 0.5 * f64::EPSILON * exact.high) / found.error, place);
     }
     row
+}
+
+const VOLUMES: [&str; 4] = [
+    "eq21 = {}",
+    "radial = { centre = [0, 0, 10], radius = 8, coefficients = [0.6, -0.6] }",
+    "gaussian = { peak = 1, centre = [1, 0, 9], width = 2, bounds.sphere = { centre = [0, 0, 10], radius = 9 } }",
+    "exponential = { extinction = 1, rate = 0.3, bounds.sphere = { centre = [0, 0, 10], radius = 9 } }",
+];
+
+fn fields(dice: &mut Dice, trials: u32) -> Row {
+    let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
+    let mut row = Row::new("single scattering, fields", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let field = VOLUMES[dice.below(VOLUMES.len())];
+        let origin = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), -5.0]);
+        let target = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), 15.0]);
+        let (away, along, turn) =
+            (dice.sized(-3.0, 1.0), dice.between(0.1, 0.9), dice.between(0.0, TAU));
+        let forward = HenyeyGreenstein::new(dice.between(-0.8, 0.8));
+        let phase = forward.map_or(Phase::Isotropic(Isotropic), Phase::HenyeyGreenstein);
+        let place = || {
+            format!(
+                "{field}, from {origin:?} to {target:?}, D = {away:e} at {along:e}, {turn:e}, {phase:?}"
+            )
+        };
+        let ray = Ray::new(origin, target - origin, 26.0);
+        let problem = text::volume(&format!("volume.{field}")).zip(ray).and_then(|(field, ray)| {
+            let side = ray.direction.cross(Point([0.0, 1.0, 0.0])).normalised()?;
+            let up = ray.direction.cross(side);
+            let aside = side * turn.cos() + up * turn.sin();
+            let position = ray.at(26.0 * along) + aside * away;
+            let lamp = Lamp { position, power: 1.0 };
+            SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).ok()
+        });
+        let Some(problem) = problem else {
+            row.skip(place);
+            continue;
+        };
+        let found = radiance(&problem);
+        let off = (found.value - graded(&problem)).abs();
+        row.see(off / found.error, place);
+    }
+    row
+}
+
+/// Panels of s that double away from the light's foot, and none of them wide.
+fn graded(problem: &SingleScattering) -> f64 {
+    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
+    let (support, foot) = (medium.support(), problem.foot());
+    let mut ends = medium.breaks();
+    let steps = 320;
+    let step = support.length() / f64::from(steps);
+    ends.extend((0..=steps).map(|i| support.from + step * f64::from(i)));
+    let mut away = 0.25 * problem.distance();
+    while away < support.length() {
+        ends.extend([foot - away, foot + away]);
+        away *= 1.5;
+    }
+    ends.push(foot);
+    ends.retain(|&s| support.contains_inside(s));
+    ends.extend([support.from, support.to]);
+    ends.sort_by(f64::total_cmp);
+    let gathered = |s: f64| {
+        let before = medium.optical_depth(Span::new(support.from, s)).value;
+        let beyond = problem.shadow_medium(s);
+        let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
+        medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()
+    };
+    let mut sum = Sum::default();
+    for pair in ends.windows(2) {
+        sum.add(rule.integrate(pair[0], pair[1], gathered));
+    }
+    sum.value()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn panels_of_s_are_those_of_x() {
+        let field = text::volume("volume.constant.extinction = 0.4").expect("read");
+        let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 3.0).expect("a direction");
+        let lamp = Lamp { position: Point([0.01, 0.0, 1.0]), power: 1.0 };
+        let phase = Phase::Isotropic(Isotropic);
+        let problem = SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).expect("off");
+        let (found, other) = (radiance(&problem), graded(&problem));
+        assert!((found.value - other).abs() <= found.error);
+        assert!((found.value * (1.0 + 1e-11) - other).abs() > found.error, "{found:?}");
+    }
 }

@@ -19,56 +19,82 @@ use super::rods::{of_stated, share};
 use super::{Dice, Effort, Measure, Row, in_parts};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Wide};
-use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
-use crate::problems::slab::{Incidence, Light};
-use crate::theory::slab::{self, Resolution, layer::Slice};
+use crate::phase::{
+    Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
+};
+use crate::problems::slab::Light;
+use crate::theory::slab;
+use crate::theory::slab::{Resolution, layer::Slice};
 
 const PARTS: u64 = 16;
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;
+
+/// Lights on one slab.
+const LIGHTS: usize = 8;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "slabs", part);
-        let some = effort.of(u32::from(part % 4 == 0), 4);
-        vec![finer(dice, some), even(dice, effort.of(u32::from(part % 2 == 0), 8))]
+        let some = effort.of(u32::from(part % 8 == 0), 3);
+        vec![finer(dice, some), even(dice, effort.of(u32::from(part % 4 == 0), 4))]
     })
 }
 
-fn light(dice: &mut Dice) -> Light {
-    let cosine = dice.between(0.05, 1.0);
-    if dice.below(3) == 0 { Light::Diffuse } else { Light::Collimated(cosine) }
+/// From all sides, and from near and far of the normal.
+fn lights(dice: &mut Dice) -> Vec<Light> {
+    let mut lights = vec![Light::Diffuse];
+    while lights.len() < LIGHTS {
+        let grazes = dice.below(3) == 0;
+        let cosine = if grazes { dice.sized(-4.0, -1.0) } else { dice.between(0.05, 1.0) };
+        lights.push(Light::Collimated(cosine));
+    }
+    lights
 }
 
-fn see(row: &mut Row, found: slab::Answer, exact: [Wide; 2], place: &dyn Fn() -> String) {
-    for (found, exact) in [found.reflected, found.transmitted].into_iter().zip(exact) {
+fn phase(dice: &mut Dice) -> Phase {
+    let asymmetry = dice.between(-0.7, 0.7);
+    match dice.below(4) {
+        0 => Phase::Isotropic(Isotropic),
+        1 => Phase::Rayleigh(Rayleigh),
+        _ => {
+            let phase = HenyeyGreenstein::new(asymmetry).map(Phase::HenyeyGreenstein);
+            phase.unwrap_or(Phase::Isotropic(Isotropic))
+        }
+    }
+}
+
+fn see(row: &mut Row, found: &slab::Answer, exact: [Wide; 3], place: &dyn Fn() -> String) {
+    let found = [found.reflected, found.transmitted, found.score];
+    for (found, exact) in found.into_iter().zip(exact) {
         row.see(of_stated(found, exact), place);
     }
 }
 
 /// Adding and doubling with more directions and a thinner first layer.
 fn finer(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-4 … 30, |g| to 0.6; twice the resolution";
+    let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.7; twice the resolution";
     let mut row = Row::new("slab, adding and doubling", range, Measure::OfStated, 1.0);
     let finer = Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14 };
     for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-4.0, 1.48), share(dice));
-        let asymmetry = dice.between(-0.6, 0.6);
-        let forward = HenyeyGreenstein::new(asymmetry).filter(|_| dice.below(2) == 0);
-        let phase = forward.map_or(Phase::Isotropic(Isotropic), Phase::HenyeyGreenstein);
-        let incidence = Incidence { light: light(dice), phase };
+        let (depth, albedo) = (dice.sized(-6.0, 2.0), share(dice));
+        let (phase, lights) = (phase(dice), lights(dice));
         let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 1.0 };
-        let found = slab::answer(&incidence, Known::exact(depth), albedo);
-        let fine = slab::energy(&incidence, &[slice], finer);
-        let place = || format!("τ = {depth:e}, a = {albedo:e}, {incidence:?}");
-        match found.zip(fine) {
-            Some((found, fine)) => {
-                let exact = [fine.reflected, fine.transmitted].map(Wide::from);
-                see(&mut row, found, exact, &place);
-            }
-            None => row.see(f64::NAN, place),
+        let found = slab::answers(&phase, &lights, Known::exact(depth), albedo);
+        let fine = slab::energies(&phase, &lights, &[slice], finer);
+        let place = |light: &Light| {
+            let light = *light;
+            move || format!("τ = {depth:e}, a = {albedo:e}, {light:?}, {phase:?}")
+        };
+        let Some((found, fine)) = found.zip(fine) else {
+            row.see(f64::NAN, place(&lights[0]));
+            continue;
+        };
+        for ((found, fine), light) in found.iter().zip(fine).zip(&lights) {
+            let exact = [fine.reflected, fine.transmitted, fine.score].map(Wide::from);
+            see(&mut row, found, exact, &place(light));
         }
     }
     row
@@ -76,13 +102,16 @@ fn finer(dice: &mut Dice, trials: u32) -> Row {
 
 /// Isotropic scattering by discrete ordinates.
 fn even(dice: &mut Dice, trials: u32) -> Row {
-    let range = "isotropic, τ = 1e-2 … 100; discrete ordinates, 32 digits";
+    let range = "isotropic, τ = 1e-2 … 100, μ₀ = 1e-4 … 1; discrete ordinates, 32 digits";
     let mut row = Row::new("slab, another method", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let (depth, albedo) = (dice.sized(-2.0, 2.0), share(dice));
-        let incidence = Incidence { light: light(dice), phase: Phase::Isotropic(Isotropic) };
-        let place = || format!("τ = {depth:e}, a = {albedo:e}, {incidence:?}");
-        let found = slab::answer(&incidence, Known::exact(depth), albedo);
+        let (phase, lights) = (Phase::Isotropic(Isotropic), lights(dice));
+        let place = |light: &Light| {
+            let light = *light;
+            move || format!("τ = {depth:e}, a = {albedo:e}, {light:?}")
+        };
+        let found = slab::answers(&phase, &lights, Known::exact(depth), albedo);
         // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
         let grain = Wide::from(1e-20);
         let near = match albedo {
@@ -91,9 +120,17 @@ fn even(dice: &mut Dice, trials: u32) -> Row {
             inside => Wide::from(inside),
         };
         let exact = Ordinates::new(depth, near, ORDINATES);
-        match found.zip(exact) {
-            Some((found, exact)) => see(&mut row, found, exact.energy(incidence.light), &place),
-            None => row.see(f64::NAN, place),
+        let Some((found, exact)) = found.zip(exact) else {
+            row.see(f64::NAN, place(&lights[0]));
+            continue;
+        };
+        for (found, light) in found.iter().zip(&lights) {
+            let [r, t] = exact.energy(*light);
+            let lost = Wide::ONE - near;
+            // Collisions are what is absorbed over 1 − a, of which a white slab leaves no digits.
+            let score = (Wide::ONE - r - t) / lost;
+            let score = if lost.high > 1e-9 { score } else { Wide::from(found.score.value) };
+            see(&mut row, found, [r, t, score], &place(light));
         }
     }
     row
@@ -111,14 +148,7 @@ struct Ordinates {
 impl Ordinates {
     /// `None` where the linear equations have no solution.
     fn new(depth: f64, albedo: Wide, count: usize) -> Option<Self> {
-        let rule = GaussLegendre::new(count);
-        // μ = x³, dense where light grazes; from the steepest to the most grazing.
-        let nodes = rule.nodes.iter().zip(&rule.weights).rev();
-        let (cosines, weights): (Vec<Wide>, Vec<Wide>) = nodes
-            .map(|(&x, &w)| (Wide::from(x).powi(3), Wide::from(3.0 * w) * Wide::from(x).powi(2)))
-            .unzip();
-        let whole: Wide = weights.iter().copied().sum();
-        let weights: Vec<Wide> = weights.into_iter().map(|w| w / whole).collect();
+        let (cosines, weights) = directions(count);
         let roots = roots(albedo, &cosines, &weights);
         let depth = Wide::from(depth);
         // Light from both sides alike, and of opposite signs: their halves add up to that from above.
@@ -127,7 +157,10 @@ impl Ordinates {
                 let far = (-(k * depth)).exp() / (Wide::ONE + k * mu);
                 Wide::ONE / (Wide::ONE - k * mu) + sign * far
             };
-            let row = |&mu: &Wide| roots.iter().map(|&k| entry(mu, k)).collect();
+            let row = |&mu: &Wide| {
+                let entries = roots.iter().map(|&k| entry(mu, k));
+                entries.chain([Wide::ONE]).collect()
+            };
             solved(cosines.iter().map(row).collect())
         });
         let [same, opposite] = solutions;
@@ -172,8 +205,19 @@ impl Ordinates {
     }
 }
 
+/// `μ = x³` of Gauss' nodes, dense where light grazes, from the steepest to the most grazing, and weights.
+pub(super) fn directions(count: usize) -> (Vec<Wide>, Vec<Wide>) {
+    let rule = GaussLegendre::new(count);
+    let nodes = rule.nodes.iter().zip(&rule.weights).rev();
+    let (cosines, weights): (Vec<Wide>, Vec<Wide>) = nodes
+        .map(|(&x, &w)| (Wide::from(x).powi(3), Wide::from(3.0 * w) * Wide::from(x).powi(2)))
+        .unzip();
+    let whole: Wide = weights.iter().copied().sum();
+    (cosines, weights.into_iter().map(|w| w / whole).collect())
+}
+
 /// One k between 0 and the first `1/μ`, and one between each two.
-fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
+pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
     let left = |k: Wide| {
         let term = |(&mu, &w): (&Wide, &Wide)| w / (Wide::ONE - (k * mu).powi(2));
         Wide::ONE - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
@@ -191,12 +235,10 @@ fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
     between.collect()
 }
 
-/// The solution of equations whose right sides are 1, by elimination with the largest pivot of a column.
-fn solved(mut rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
+/// The solution of equations whose rows end with their right sides, by elimination with the largest pivot
+/// of a column.
+pub(super) fn solved(mut rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
     let n = rows.len();
-    for row in &mut rows {
-        row.push(Wide::ONE);
-    }
     for column in 0..n {
         let size = |i: &usize| rows[*i][column].high.abs();
         let pivot = (column..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;

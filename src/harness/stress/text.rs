@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use crate::catalogue::Settings;
 use crate::harness::{Case, Source};
-use crate::media::{Body, Medium};
+use crate::media::body::read_volume;
+use crate::media::{Body, Medium, Volume};
 
 fn source(text: &str) -> Source {
     Source { name: "stress".into(), path: PathBuf::from("stress.toml"), text: text.to_owned() }
@@ -22,4 +23,12 @@ pub(super) fn medium(text: &str) -> Option<Medium> {
 /// A case; `None` where it is refused.
 pub(super) fn case(text: &str) -> Option<Case> {
     Case::read(&source(text)).ok()
+}
+
+/// A field in space; `None` where the text is refused.
+pub(super) fn volume(text: &str) -> Option<Volume> {
+    let faults = RefCell::default();
+    let root = source(text).parse(&faults);
+    let volume = read_volume(&Settings::new(&root, Path::new("."), &faults));
+    volume.map(|(_, volume)| volume).filter(|_| faults.borrow().is_empty())
 }

@@ -154,8 +154,8 @@ struct Found {
     /// `E[X^k]` of each channel for the powers of [`POWERS`], with an absolute error; infinite where
     /// it diverges.
     raw: Vec<[[f64; 2]; POWERS.len()]>,
-    /// Factorial moments of the number of lookups.
-    lookups: [f64; 4],
+    /// Factorial moments of the number of lookups, with absolute errors.
+    lookups: [[f64; 2]; 4],
     /// With the energy absorbed, where that is a channel and the moments exist.
     joint: Option<Joint>,
 }
@@ -191,7 +191,7 @@ impl Found {
         })?;
         let mut numbers = numbers.into_iter();
         let mut next = || numbers.next().unwrap_or([f64::INFINITY; 2]);
-        let lookups = std::array::from_fn(|_| next()[0]);
+        let lookups = std::array::from_fn(|_| next());
         let mut of_channel = |_: &Seen| {
             POWERS.map(|k| if exists(k) { next() } else { [f64::INFINITY, f64::INFINITY] })
         };
@@ -201,7 +201,9 @@ impl Found {
     }
 
     fn lookups(&self) -> CountLaw {
-        CountLaw::of_factorial_moments(self.lookups)
+        let [mean, error] = self.lookups[0];
+        let law = CountLaw::of_factorial_moments(self.lookups.map(|[moment, _]| moment));
+        CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
     }
 }
 

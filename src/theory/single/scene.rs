@@ -9,6 +9,8 @@ use crate::problems::{Problem, SingleScattering};
 
 /// The agreement that is asked of two resolutions of L, relative to the whole.
 const RADIANCE: f64 = 2e-14;
+/// What sums and exponentials lose, relative to the whole.
+const ROUNDING: f64 = 2e-13;
 /// Steps into which the support is cut at least.
 const STEPS: usize = 24;
 /// Panels are no wider than this in the stretched variable.
@@ -131,8 +133,10 @@ impl<'a> Scene<'a> {
                 [medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()]
             });
             let [value] = found.value;
-            // The optical depths add their own rounding.
-            Known::new(value, found.error[0] + 1e-13 * value.abs())
+            // The optical depths add their own rounding, and so do places next to the light.
+            let depths = 2.0 * medium.optical_depth(medium.support()).error;
+            let places = 0.25 * f64::EPSILON * problem.foot().abs() / problem.distance();
+            Known::new(value, found.error[0] + (ROUNDING + depths + places) * value.abs())
         })
     }
 

@@ -29,8 +29,9 @@ const GROWTH: f64 = 1.25;
 const SMALLEST: f64 = 1e-12;
 /// The least optical distance that they resolve.
 const NEAREST: f64 = 1e-8;
-/// The relative error of a sum of so many terms, and of `c − (1 − κ²)` in units of `1/(1 − c)`.
-const ROUNDING: f64 = 1e-14;
+/// The relative error of a sum of so many terms, of closed forms, and of `c − (1 − κ²)` in units of
+/// `1/(1 − c)`.
+pub const ROUNDING: f64 = 1e-14;
 /// Below this albedo the pole is at κ = 1 to all digits, with nothing left of it.
 const FAINT: f64 = 0.03;
 
@@ -101,14 +102,18 @@ pub fn fluence(albedo: f64, distance: f64) -> Known {
         2.0 * kappa * kappa * rest / (albedo * (albedo - rest)) * (-kappa * distance).exp()
     };
     let value = (scattered + settled) / (4.0 * PI * distance);
-    let error = if distance < NEAREST { 1.0 } else { ROUNDING / (1.0 - albedo) };
+    // Exponents are rounded, and with them all that is left of them far away.
+    let rounding = ROUNDING + 2.0 * f64::EPSILON * distance;
+    let error = if distance < NEAREST { 1.0 } else { rounding / (1.0 - albedo) };
     Known::new(value, error * value)
 }
 
 /// `E[r²]` at absorption, in units of `1/σ_t²`, for any phase function of mean cosine g.
 #[must_use]
 pub fn square_at_absorption(albedo: f64, mean_cosine: f64) -> f64 {
-    2.0 / ((1.0 - albedo) * (1.0 - albedo * mean_cosine))
+    // 1 − a g without the cancellation where both are nearly one.
+    let lost = (1.0 - albedo) + albedo * (1.0 - mean_cosine);
+    2.0 / ((1.0 - albedo) * lost)
 }
 
 #[cfg(test)]

@@ -9,8 +9,8 @@
 //! length s, at the surface or at a black sphere, where the radiance is L. J is a polynomial of `r²` in
 //! each of many shells ([`shells`]); the equation is met at their Gauss nodes, with the integrals along
 //! lines of sight cut at the shells' surfaces ([`ball`]) and graded over directions ([`directions`]).
-//! Any answer is computed twice, with fewer nodes and a coarser grading the second time, and the
-//! difference is stated as its error.
+//! Any answer is computed three times, with fewer nodes and a coarser grading the second and the third
+//! time, and the differences tell its error: two may agree by chance.
 //!
 //! What starts at a point in a direction of any odds alike escapes with the probability `J(r)` under an
 //! environment of radiance 1: by reciprocity. A distant light looks from the centre like an
@@ -225,9 +225,10 @@ pub fn answers(
     resolution: Resolution,
     asked: &[Asked],
 ) -> Option<Vec<Known>> {
-    let fine = Solved::new(ball, albedo, lights, resolution)?;
-    let coarse = Solved::new(ball, albedo, lights, resolution.coarser())?;
-    let known = |&asked: &Asked| resolution.known(fine.answer(asked), coarse.answer(asked));
+    let solve = |resolution| Solved::new(ball, albedo, lights, resolution);
+    let [fine, coarse, coarsest] = resolution.all().map(solve);
+    let solved = [fine?, coarse?, coarsest?];
+    let known = |&asked: &Asked| resolution.known(solved.each_ref().map(|s| s.answer(asked)));
     Some(asked.iter().map(known).collect())
 }
 

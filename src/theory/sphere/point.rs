@@ -106,11 +106,17 @@ pub fn orders(
     if ball.centre != Centre::Medium || offsets.iter().any(|&offset| offset <= 0.0) {
         return None;
     }
-    let fine = radiances(ball, albedo, offsets, orders, resolution)?;
-    let coarse = radiances(ball, albedo, offsets, orders, resolution.coarser())?;
-    let known = |(&fine, &coarse): (&f64, &f64)| resolution.known(fine, coarse);
-    let rows = fine.iter().zip(&coarse);
-    Some(rows.map(|(fine, coarse)| fine.iter().zip(coarse).map(known).collect()).collect())
+    let solve = |resolution| radiances(ball, albedo, offsets, orders, resolution);
+    let [fine, coarse, coarsest] = resolution.all().map(solve);
+    let all = [fine?, coarse?, coarsest?];
+    let known = |ray: usize, order: usize| {
+        let found = resolution.known(all.each_ref().map(|a| a[ray][order]));
+        // Next to the source all three may be off alike: measured.
+        let near = (ball.radius / offsets[ray]).powi(2);
+        Known::new(found.value, found.error + resolution.chance * near * found.value.abs())
+    };
+    let of_ray = |ray: usize| (0..all[0][ray].len()).map(|order| known(ray, order)).collect();
+    Some((0..offsets.len()).map(of_ray).collect())
 }
 
 #[cfg(test)]

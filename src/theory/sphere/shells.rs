@@ -47,23 +47,34 @@ impl Resolution {
     pub const COARSE: Self =
         Self { nodes: 7, directions: 7, surface: 8, core: 9, centre: 20, chance: 1e-8 };
 
-    /// What an answer and one of a coarser resolution say together.
-    pub(super) fn known(self, fine: f64, coarse: f64) -> Known {
-        Known::new(fine, (fine - coarse).abs() + self.chance * fine.abs())
+    /// What an answer and those of two other resolutions say together.
+    pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
+        let difference = (fine - coarse).abs().max((fine - other).abs());
+        Known::new(fine, SAFETY * difference + self.chance * fine.abs())
     }
 
-    /// What the error is told by: the answers of both differ by more than the finer one is off.
-    pub(super) fn coarser(self) -> Self {
+    /// What the error is told by: the answers of both others differ by more than the finest is off, but
+    /// where they agree by chance. All three seldom do.
+    pub(super) fn all(self) -> [Self; 3] {
+        [self, self.coarser(2), self.coarser(1)]
+    }
+
+    fn coarser(self, by: u32) -> Self {
+        let fewer = by as usize;
         Self {
-            nodes: self.nodes - 2,
-            directions: self.directions - 2,
-            surface: self.surface - 2,
-            core: self.core - 3,
-            centre: self.centre - 4,
+            nodes: self.nodes - fewer,
+            directions: self.directions - fewer,
+            surface: self.surface - by,
+            core: self.core - by - 1,
+            centre: self.centre - 2 * by,
             chance: self.chance,
         }
     }
 }
+
+/// The larger difference of three answers is taken so many times: of 1536 answers the worst was 2.3 times
+/// as far off.
+const SAFETY: f64 = 4.0;
 
 /// What is at the centre of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]

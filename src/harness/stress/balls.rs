@@ -1,0 +1,294 @@
+//! Balls: Peierls' equation against discrete ordinates, a finer solution, and where everything is white.
+//!
+//! In a homogeneous ball `rS(r)`, S the sources, is what it is in a slab of the same radius on both sides of
+//! its middle, odd about it. With the roots k of [`super::slabs`], lengths in mean free paths, an
+//! environment of radiance 1 makes
+//!
+//! ```text
+//! J(r) = −(1/(ar)) Σ αⱼ (e^{−kⱼ(R−r)} − e^{−kⱼ(R+r)})
+//! Σⱼ αⱼ [1/(1 − kⱼμ) − e^{−2kⱼR}/(1 + kⱼμ)] = −(R + μ)     at every μ
+//! ```
+//!
+//! Where nothing is absorbed and the black sphere is as bright as the sky, J = 1 everywhere, whatever σ_t.
+
+use super::rods::{of_stated, share};
+use super::slabs::{directions, roots, solved};
+use super::{Dice, Effort, Measure, Row, in_parts};
+use crate::numeric::Wide;
+use crate::numeric::quadrature::GaussLegendre;
+use crate::theory::sphere::ball::Ball;
+use crate::theory::sphere::shells::{Centre, Resolution};
+use crate::theory::sphere::{Asked, Lights, answers, point};
+
+const PARTS: u64 = 16;
+/// Directions of the ordinates.
+const ORDINATES: usize = 64;
+/// Places and rays in one ball.
+const ASKED: usize = 32;
+
+const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
+
+/// All rows.
+#[must_use]
+pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
+    in_parts(PARTS, |part| {
+        let dice = &mut Dice::new(seed, "balls", part);
+        let few = |full: bool, quick: bool| u32::from(effort.of(quick, full));
+        let mut rows = even(dice, effort.of(u32::from(part == 0), 2));
+        rows.push(white(dice, few(true, part == 1)));
+        rows.push(finer(dice, few(part % 2 == 0, part == 2)));
+        rows.push(sources(dice, few(part % 8 == 3, part == 3)));
+        rows
+    })
+}
+
+/// A homogeneous ball, lengths in mean free paths.
+struct Even {
+    radius: f64,
+    albedo: Wide,
+    /// k and α.
+    parts: Vec<[Wide; 2]>,
+}
+
+impl Even {
+    fn new(radius: f64, albedo: Wide, count: usize) -> Option<Self> {
+        let (cosines, weights) = directions(count);
+        let roots = roots(albedo, &cosines, &weights);
+        let reach = Wide::from(radius);
+        let faint: Vec<Wide> = roots.iter().map(|&k| (-(k * reach).scaled(1)).exp()).collect();
+        let row = |&mu: &Wide| {
+            let entries = roots.iter().zip(&faint).map(|(&k, &faint)| {
+                Wide::ONE / (Wide::ONE - k * mu) - faint / (Wide::ONE + k * mu)
+            });
+            entries.chain([-(reach + mu)]).collect()
+        };
+        let alphas = solved(cosines.iter().map(row).collect())?;
+        let parts = roots.into_iter().zip(alphas).map(|(k, alpha)| [k, alpha]).collect();
+        Some(Self { radius, albedo, parts })
+    }
+
+    /// J.
+    fn mean(&self, r: f64) -> Wide {
+        let (place, reach) = (Wide::from(r), Wide::from(self.radius));
+        let term = |&[k, alpha]: &[Wide; 2]| {
+            let near = (-(k * (reach - place))).exp();
+            alpha * near * -(-(k * place).scaled(1)).exp_m1()
+        };
+        -(self.parts.iter().map(term).sum::<Wide>() / (self.albedo * place))
+    }
+
+    /// The radiance at the end of a chord that passes the centre at a distance.
+    fn radiance(&self, offset: f64) -> Wide {
+        let half = ((self.radius - offset) * (self.radius + offset)).sqrt();
+        let rule = GaussLegendre::new(12);
+        // J bends like x ln x at the surface.
+        let mut ends = vec![0.0];
+        let mut left = half;
+        while left > 1e-7 * half || ends.len() < 4 {
+            left *= 0.5;
+            ends.push(half - left.min(half - ends[ends.len() - 1]));
+            let from = ends[ends.len() - 2];
+            let last = ends[ends.len() - 1];
+            if last - from > 1.0 {
+                ends.pop();
+                ends.push(from + 1.0);
+                left = half - (from + 1.0);
+            }
+        }
+        ends.push(half);
+        let mut sum = (-(Wide::from(half).scaled(1))).exp();
+        for pair in ends.windows(2) {
+            for (x, &weight) in rule.nodes.iter().zip(&rule.weights) {
+                let t = pair[0] + (pair[1] - pair[0]) * x;
+                let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));
+                // From both sides of the foot.
+                let seen = (Wide::from(t - half)).exp() + (-Wide::from(t + half)).exp();
+                sum += self.albedo * mean * seen * Wide::from(weight * (pair[1] - pair[0]));
+            }
+        }
+        sum
+    }
+}
+
+/// A distance from the centre, often next to the surface or the centre.
+fn place(dice: &mut Dice, core: f64) -> f64 {
+    let share = match dice.below(4) {
+        0 => dice.sized(-6.0, 0.0),
+        1 => 1.0 - dice.sized(-6.0, 0.0),
+        _ => dice.between(0.0, 1.0),
+    };
+    core + (1.0 - core) * share
+}
+
+/// Homogeneous balls under the sky.
+fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
+    let range = "homogeneous, σ_t R = 1e-2 … 20; discrete ordinates, 32 digits";
+    let mut mean = Row::new("mean intensity in a ball", range, Measure::OfStated, 1.0);
+    let mut radiance = Row::new("radiance of a ball", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let (depth, albedo) = (dice.sized(-2.0, 1.3), share(dice).max(1e-9));
+        let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(dice, 0.0))).collect();
+        for _ in 0..4 {
+            asked.push(Asked::Radiance { offset: place(dice, 0.0), from: f64::NEG_INFINITY });
+        }
+        let extinction = move |_: f64| depth;
+        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
+        let found = answers(&ball, albedo, SKY, Resolution::COARSE, &asked);
+        // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
+        let near = if albedo == 1.0 { Wide::ONE - Wide::from(1e-20) } else { Wide::from(albedo) };
+        let exact = Even::new(depth, near, ORDINATES);
+        for (i, asked) in asked.iter().enumerate() {
+            let said = || format!("σ_t R = {depth:e}, a = {albedo:e}, {asked:?}");
+            let row = if i < ASKED { &mut mean } else { &mut radiance };
+            let Some((found, exact)) = found.as_ref().zip(exact.as_ref()) else {
+                row.see(f64::NAN, said);
+                continue;
+            };
+            let exact = match *asked {
+                Asked::Mean(r) => exact.mean(r * depth),
+                Asked::Radiance { offset, .. } => exact.radiance(offset * depth),
+            };
+            row.see(of_stated(found[i], exact), said);
+        }
+    }
+    vec![mean, radiance]
+}
+
+/// σ_t of a ball of radius 1: a polynomial of r², or a Gaussian.
+fn field(dice: &mut Dice) -> (String, Box<dyn Fn(f64) -> f64>) {
+    let size = dice.sized(-2.0, 1.0);
+    if dice.below(3) == 0 {
+        let width = dice.sized(-0.7, 0.5);
+        let said = format!("{size:e} exp(−r²/2/{width:e}²)");
+        return (said, Box::new(move |r2| size * (-0.5 * r2 / (width * width)).exp()));
+    }
+    let [b, c] = [dice.between(-0.5, 1.0), dice.between(-0.5, 1.0)];
+    let said = format!("{size:e} (1 + {b:e} r² + {c:e} r⁴)");
+    (said, Box::new(move |r2| size * (1.0 + r2 * (b + r2 * c))))
+}
+
+/// The medium, or a black sphere of some size, at the centre.
+fn centre(dice: &mut Dice) -> (Centre, f64) {
+    if dice.below(3) == 0 {
+        return (Centre::Medium, 0.0);
+    }
+    let core = if dice.below(2) == 0 { dice.sized(-2.0, 0.0) } else { dice.between(0.05, 0.95) };
+    (Centre::Black(core), core)
+}
+
+fn questions(dice: &mut Dice, core: f64) -> Vec<Asked> {
+    let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(dice, core))).collect();
+    for _ in 0..2 * ASKED {
+        let offset = place(dice, 0.0);
+        let half = ((1.0 - offset) * (1.0 + offset)).sqrt();
+        let blocked = if offset < core { (core * core - offset * offset).sqrt() } else { -half };
+        let inside = dice.between(blocked, half);
+        let from = if dice.below(2) == 0 { f64::NEG_INFINITY } else { inside };
+        asked.push(Asked::Radiance { offset, from });
+    }
+    asked
+}
+
+/// Where nothing can be seen.
+fn white(dice: &mut Dice, trials: u32) -> Row {
+    let range = "radial σ_t, black spheres 0.01 … 0.95 R, a = 1; J = 1";
+    let mut row = Row::new("white ball in white light", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let ((said, extinction), (centre, core)) = (field(dice), centre(dice));
+        let asked = questions(dice, core);
+        let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
+        let lights = Lights { environment: 1.0, core: 1.0 };
+        let found = answers(&ball, 1.0, lights, Resolution::COARSE, &asked);
+        for (i, asked) in asked.iter().enumerate() {
+            let error = found.as_ref().map_or(f64::NAN, |found| of_stated(found[i], Wide::ONE));
+            row.see(error, || format!("σ_t = {said}, {centre:?}, {asked:?}"));
+        }
+    }
+    row
+}
+
+/// Nodes, directions and grading of which the answers are good to a small part of what is stated.
+const FINER: Resolution =
+    Resolution { nodes: 9, directions: 9, surface: 11, core: 14, centre: 23, chance: 1e-10 };
+
+/// Other albedos and lights, by a finer solution.
+fn finer(dice: &mut Dice, trials: u32) -> Row {
+    let range = "radial σ_t, black spheres 0.01 … 0.95 R; a finer solution";
+    let mut row = Row::new("ball of any albedo", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let ((said, extinction), (centre, core)) = (field(dice), centre(dice));
+        let albedo = share(dice);
+        let mut asked = questions(dice, core);
+        asked.extend(questions(dice, core));
+        let lights = if core > 0.0 { Lights { environment: 0.0, core: 1.0 } } else { SKY };
+        let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
+        let found = answers(&ball, albedo, lights, Resolution::COARSE, &asked);
+        let fine = answers(&ball, albedo, lights, FINER, &asked);
+        for (i, asked) in asked.iter().enumerate() {
+            let error = found
+                .as_ref()
+                .zip(fine.as_ref())
+                .map_or(f64::NAN, |(found, fine)| of_stated(found[i], Wide::from(fine[i].value)));
+            row.see(error, || format!("σ_t = {said}, a = {albedo:e}, {centre:?}, {asked:?}"));
+        }
+    }
+    row
+}
+
+/// A point source at the centre, order by order.
+fn sources(dice: &mut Dice, trials: u32) -> Row {
+    let range = "σ_t R = 1e-2 … 3; a finer solution";
+    let mut row = Row::new("point source in a ball, by order", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let (depth, albedo) = (dice.sized(-2.0, 0.5), dice.between(0.1, 1.0));
+        let extinction = move |_: f64| depth;
+        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
+        let offsets: Vec<f64> = (0..4 * ASKED).map(|_| dice.sized(-2.0, -0.01)).collect();
+        let of = |resolution| point::orders(&ball, albedo, &offsets, 3, resolution);
+        let (found, fine) = (of(Resolution::COARSE), of(FINER));
+        let Some((found, fine)) = found.zip(fine) else {
+            row.skip(|| format!("σ_t R = {depth:e}"));
+            continue;
+        };
+        for ((offset, found), fine) in offsets.iter().zip(found).zip(fine) {
+            for (order, (found, fine)) in found.into_iter().zip(fine).enumerate() {
+                let said = || format!("order {order}, σ_t R = {depth:e}, at {offset:e}");
+                row.see(of_stated(found, Wide::from(fine.value)), said);
+            }
+        }
+    }
+    row
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ordinates_see_nothing_in_a_white_ball() {
+        let even = Even::new(2.0, Wide::ONE - Wide::from(1e-20), ORDINATES).expect("solved");
+        for r in [1e-3, 1.0, 1.999_999] {
+            assert!((even.mean(r).value() - 1.0).abs() < 1e-11, "{r}");
+        }
+        assert!((even.radiance(0.7).value() - 1.0).abs() < 1e-10);
+    }
+
+    /// Two answers that agreed by chance stated an error a hundred times too small.
+    #[test]
+    fn a_difference_of_two_would_break_the_row() {
+        let width = 5.009_185_299_915_946e-1;
+        let extinction = move |r2: f64| 4.491_279_127_719_145 * (-0.5 * r2 / (width * width)).exp();
+        let centre = Centre::Black(0.152_548_266_190_216_4);
+        let ball = Ball { radius: 1.0, centre, extinction: &extinction };
+        let lights = Lights { environment: 0.0, core: 1.0 };
+        let asked = [Asked::Radiance { offset: 0.624_808_847_846_952, from: f64::NEG_INFINITY }];
+        let of = |resolution| {
+            let found = answers(&ball, 0.392_282_540_822_851_2, lights, resolution, &asked);
+            found.expect("a medium")[0]
+        };
+        let (found, exact) = (of(Resolution::COARSE), Wide::from(of(FINER).value));
+        assert!(of_stated(found, exact) <= 1.0, "{found:?}");
+        let two = crate::numeric::Known::new(found.value, 0.01 * found.error);
+        assert!(of_stated(two, exact) > 1.0, "{found:?}");
+    }
+}
