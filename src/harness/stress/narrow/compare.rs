@@ -11,7 +11,7 @@ use crate::numeric::Narrow as F32;
 const MOST: f64 = 1e5;
 /// Walks at least.
 const LEAST: f64 = 8.0;
-/// The same of walks that may end anywhere: from fewer a spread is not known.
+/// The same where their own spread has to be found.
 const LEAST_BY_CHANCE: f64 = 25.0;
 /// Walks that say how many collisions others will have.
 const PILOTS: u64 = 12;
@@ -25,11 +25,22 @@ pub struct Known {
     pub truth: f64,
     /// `V/truth²` of the estimator.
     pub variance: f64,
-    /// The same of what is drawn here, at most; `None` for biased ones.
-    pub drawn: Option<f64>,
+    /// That of what is drawn here.
+    pub drawn: Drawn,
 }
 
-/// What theory says of a walk whose decisions are made.
+/// What is known of the doubles' own spread.
+#[derive(Debug, Clone, Copy)]
+pub enum Drawn {
+    /// Its variance, relative to truth², is at most this.
+    Within(f64),
+    /// The same, made by draws so rare that few walks do not see it.
+    Rare(f64),
+    /// It is of no use: the estimator is biased.
+    Biased,
+}
+
+/// What theory says of a walk that scatters.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Stated {
     /// The mean; where it is not known, that of the doubles takes its place and is not tested.
@@ -57,15 +68,23 @@ pub struct Compared {
 pub trait Averaged: Sync {
     /// What theory says; `None` where it has lost the variance.
     fn known(&self, scene: &Scene) -> Option<Known>;
+    /// What a draw costs, in collisions.
+    fn cost(&self, scene: &Scene) -> f64 {
+        scene.collisions
+    }
     /// A draw.
     fn draw<P: Precision>(&self, scene: &Scene, dice: &mut Dice) -> f64;
 }
 
-/// A walk whose decisions are made once, in either precision.
+/// A walk that scatters, in either precision.
 pub trait Walk: Sync {
     /// What theory says.
     fn stated(&self, scene: &Scene) -> Stated;
-    /// A draw, without the likelihood of its decisions.
+    /// Where walks have the same variance and are short, to find it.
+    fn pilots(&self, scene: Scene) -> Scene {
+        scene
+    }
+    /// A draw, weighted by the chances of what was decided.
     fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64;
 }
 
@@ -114,6 +133,11 @@ impl Sums {
         let spread = (square / self.walks - mean * mean).max(0.0);
         [mean, (spread / (self.walks - 1.0)).sqrt()]
     }
+
+    /// Whether there are enough of them for a variance relative to truth².
+    fn sees(&self, variance: f64) -> bool {
+        self.walks >= LEAST_BY_CHANCE * variance.max(1.0)
+    }
 }
 
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
@@ -127,59 +151,72 @@ pub fn compare<E: Averaged>(estimator: &E, trial: Trial) -> Compared {
     let known = estimator.known(&scene);
     let truth = known.map_or(1.0, |known| known.truth);
     let mut sums = Sums::default();
-    for number in 0..walks(budget, scene.collisions, LEAST) {
+    for number in 0..walks(budget, estimator.cost(&scene), LEAST) {
         let dice = || Dice::new(seed, "narrow", number);
         let double = estimator.draw::<f64>(&scene, &mut dice()) / truth;
         sums.see(double, estimator.draw::<F32>(&scene, &mut dice()) / truth);
     }
     let [bias, error] = sums.mean(sums.difference);
-    let drawn = known.and_then(|known| known.drawn);
+    let (drawn, is_seen) = match known.map_or(Drawn::Biased, |known| known.drawn) {
+        Drawn::Within(variance) => (Some(variance), true),
+        Drawn::Rare(variance) => (Some(variance), sums.sees(variance)),
+        Drawn::Biased => (None, true),
+    };
+    let off = sums.double[0] / sums.walks - 1.0;
     Compared {
         walks: sums.walks,
         bias,
         error,
         // Without a variance nothing exceeds it, and nothing holds.
-        noise: known.map_or(f64::NAN, |known| (known.variance / DRAWS).sqrt()),
-        z: drawn
-            .map(|variance| (sums.double[0] / sums.walks - 1.0) / (variance / sums.walks).sqrt()),
+        noise: known.filter(|_| is_seen).map_or(f64::NAN, |known| (known.variance / DRAWS).sqrt()),
+        z: drawn.filter(|_| is_seen).map(|variance| off / (variance / sums.walks).sqrt()),
     }
 }
 
-/// Compares both precisions of a walk whose decisions are made.
+/// The decisions of a walk, on average, and what it costs besides.
+fn cost<W: Walk>(walk: &W, scene: &Scene, seed: u64) -> f64 {
+    let pilot = |number: u64| {
+        let mut trail = Trail::new(Dice::new(seed, "narrow-cost", number));
+        walk.draw::<f64>(scene, &mut trail);
+        trail.length()
+    };
+    (0..PILOTS).map(pilot).sum::<f64>() / PILOTS as f64 + OVERHEAD
+}
+
+/// Compares both precisions of a walk that scatters.
 ///
 /// Where so few walks reach what is sought that their spread is not seen, nothing is said of the noise.
 pub fn compare_walks<W: Walk>(walk: &W, trial: Trial) -> Compared {
     let Trial { scene, seed, budget } = trial;
-    let pilot = |number: u64| {
-        let mut trail = Trail::new(Dice::new(seed, "narrow-pilot", number));
-        walk.draw::<f64>(&scene, &mut trail);
-        trail.length()
-    };
-    let cost = (0..PILOTS).map(pilot).sum::<f64>() / PILOTS as f64 + OVERHEAD;
+    let cost = cost(walk, &scene, seed);
     let mut sums = Sums::default();
     for number in 0..walks(budget, cost, LEAST_BY_CHANCE) {
         let dice = || Dice::new(seed, "narrow", number);
         let mut trail = Trail::new(dice());
         let double = walk.draw::<f64>(&scene, &mut trail);
-        let mut trail = trail.again(dice());
-        let narrow = walk.draw::<F32>(&scene, &mut trail);
-        sums.see(double, narrow * trail.likelihood());
+        let narrow = walk.draw::<F32>(&scene, &mut trail.again(dice()));
+        sums.see(double, narrow);
     }
     let stated = walk.stated(&scene);
     let [mean, spread] = sums.mean(sums.double);
     let truth = stated.truth.unwrap_or(mean);
     let [bias, error] = sums.mean(sums.difference).map(|x| x / truth);
-    let piloted = || spread * spread * (sums.walks - 1.0) / (truth * truth);
-    let variance = stated.variance.unwrap_or_else(piloted);
-    let is_seen = sums.walks >= LEAST_BY_CHANCE * variance.max(1.0);
+    let variance = stated.variance.unwrap_or_else(|| {
+        let scene = walk.pilots(scene);
+        let mut pilots = Sums::default();
+        for number in 0..walks(budget, self::cost(walk, &scene, seed), LEAST_BY_CHANCE) {
+            let mut trail = Trail::by_chance(Dice::new(seed, "narrow-pilot", number));
+            pilots.see(walk.draw::<f64>(&scene, &mut trail), 0.0);
+        }
+        let [_, spread] = pilots.mean(pilots.double);
+        spread * spread * (pilots.walks - 1.0) / (truth * truth)
+    });
+    let is_seen = sums.sees(variance);
     Compared {
         walks: sums.walks,
         bias,
         error,
         noise: if is_seen { (variance / DRAWS).sqrt() } else { f64::NAN },
-        z: stated
-            .truth
-            .filter(|_| is_seen && variance > 0.0)
-            .map(|truth| (mean / truth - 1.0) / (variance / sums.walks).sqrt()),
+        z: stated.truth.filter(|_| is_seen && spread > 0.0).map(|truth| (mean - truth) / spread),
     }
 }

@@ -1,6 +1,6 @@
 //! Transmittance by other ways, and distances of free flights.
 
-use super::compare::{Averaged, Known, compare, flight, fly};
+use super::compare::{Averaged, Drawn, Known, compare, flight, fly};
 use super::precision::Precision;
 use super::scene::{CELLS, Scene};
 use super::{Entry, NO_STEPS, entry};
@@ -17,7 +17,7 @@ impl<R: Collision> Averaged for Cells<R> {
     fn known(&self, scene: &Scene) -> Option<Known> {
         let drawn = scene.of_cells();
         let variance = if R::DECIDES { scene.depth.exp_m1() } else { drawn };
-        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Some(drawn) })
+        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Drawn::Within(drawn) })
     }
 
     #[inline(always)]
@@ -52,7 +52,7 @@ pub struct Distance;
 impl Averaged for Distance {
     fn known(&self, scene: &Scene) -> Option<Known> {
         let [truth, variance] = scene.of_distance();
-        Some(Known { truth, variance, drawn: Some(variance) })
+        Some(Known { truth, variance, drawn: Drawn::Within(variance) })
     }
 
     #[inline(always)]
@@ -74,7 +74,7 @@ pub struct Next;
 impl Averaged for Next {
     fn known(&self, scene: &Scene) -> Option<Known> {
         let variance = scene.of_source(&NextFlight)?;
-        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Some(variance) })
+        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Drawn::Within(variance) })
     }
 
     #[inline(always)]
@@ -97,7 +97,7 @@ pub struct Shared;
 impl Averaged for Shared {
     fn known(&self, scene: &Scene) -> Option<Known> {
         let variance = scene.of_source(&UnidirectionalMis)?;
-        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Some(variance) })
+        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Drawn::Within(variance) })
     }
 
     #[inline(always)]
@@ -128,7 +128,7 @@ pub struct Marching {
 impl Averaged for Marching {
     fn known(&self, scene: &Scene) -> Option<Known> {
         let variance = scene.of_product(0.0, &Weight);
-        Some(Known { truth: (-scene.depth).exp(), variance, drawn: None })
+        Some(Known { truth: (-scene.depth).exp(), variance, drawn: Drawn::Biased })
     }
 
     #[inline(always)]
@@ -156,6 +156,10 @@ pub struct Inversion;
 impl Averaged for Inversion {
     fn known(&self, scene: &Scene) -> Option<Known> {
         Distance.known(scene)
+    }
+
+    fn cost(&self, _: &Scene) -> f64 {
+        2.0 * f64::from(STEPS)
     }
 
     #[inline(always)]

@@ -48,7 +48,8 @@ impl Precision for f64 {
         let x = reach.max(0.0);
         if x < 0.01 {
             // What 1 − e^{−x} would lose.
-            return x * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0))));
+            let rest = (2..8).rev().fold(0.0, |rest, n| -x / f64::from(n) * (1.0 + rest));
+            return x + x * rest;
         }
         if x < 50.0 { 1.0 - Lane::exp(-x) } else { 1.0 }
     }
@@ -114,5 +115,38 @@ impl Precision for F32 {
     #[inline(always)]
     fn share(share: f64, chance: f64) -> Self {
         F32::of((share * (chance * LATTICE)).floor() / LATTICE)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_chance_to_stay_counts_all_numbers_that_do() {
+        // From places near the boundary and far from it, where rounding swallows short flights.
+        for (from, path) in
+            [(0.0, 0.3), (0.0, 1e-6), (0.999_999_9, 0.02), (0.97, 0.01), (1e5, 0.02)]
+        {
+            let (t, end) = (F32::of(from), F32::of(f64::floor(from) + 1.0));
+            let inside = |u: F32| (t - (u.each(1.0) - u).ln() * path).below(end);
+            let reach = (end - t).double() / path;
+            let found = F32::chance_to_stay(reach, inside) * LATTICE;
+            let at = |number: f64| inside(F32::of(number / LATTICE));
+            assert!(found.fract() == 0.0 && (0.0..=LATTICE).contains(&found));
+            assert!(found == 0.0 || at(found - 1.0), "{from} {path}: {found}");
+            assert!(found == LATTICE || !at(found), "{from} {path}: {found}");
+            let exact = f64::chance_to_stay(reach, |_| true);
+            assert!(from > 1.0 || (found / LATTICE - exact).abs() < 2e-5, "{from} {path}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_thin_stretch_keeps_the_digits_of_its_chance() {
+        for reach in [1e-12, 1e-4, 0.009_999, 0.010_001, 3.0] {
+            let exact = -f64::exp_m1(-reach);
+            let found = f64::chance_to_stay(reach, |_| true);
+            assert!((found / exact - 1.0).abs() < 1e-13, "{reach}: {found}");
+        }
     }
 }

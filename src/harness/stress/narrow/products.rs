@@ -3,7 +3,7 @@
 //! The double particle model without a control is ratio tracking, with a constant one residual ratio
 //! tracking; a transmittance curve is the same walk, read on its way.
 
-use super::compare::{Averaged, Known, compare, fly};
+use super::compare::{Averaged, Drawn, Known, compare, fly};
 use super::precision::Precision;
 use super::scene::Scene;
 use super::{Entry, entry};
@@ -25,7 +25,7 @@ impl<R: Collision> Averaged for Product<R> {
         Some(Known {
             truth: (-scene.depth).exp(),
             variance: scene.of_product(control, &self.rule),
-            drawn: Some(scene.of_product(control, &Weight)),
+            drawn: Drawn::Within(scene.of_product(control, &Weight)),
         })
     }
 
@@ -54,7 +54,7 @@ impl Averaged for Decomposed {
         Some(Known {
             truth: (-scene.depth).exp(),
             variance: scene.depth.exp_m1(),
-            drawn: Some(scene.of_product(scene.least(), &Weight)),
+            drawn: Drawn::Within(scene.of_product(scene.least(), &Weight)),
         })
     }
 
@@ -112,3 +112,32 @@ pub const ALL: &[Entry] = &[
     entry!("single (clamped)", |x| compare(&rule(Single::Clamped), x)),
     entry!("weighted-delta", |x| compare(&rule(Single::NonTerminating { albedo: 1.0 }), x)),
 ];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::harness::stress::narrow::Trial;
+    use crate::harness::stress::narrow::precision::LATTICE;
+    use crate::numeric::Narrow as F32;
+
+    #[test]
+    fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
+        let at = |collisions: f64, walks: f64| {
+            let scene = Scene { depth: 2.0, collisions, from: 0.0 };
+            compare(&rule(Weight), Trial { scene, seed: 1, budget: walks * collisions })
+        };
+        let (short, long) = (at(10.0, 2000.0), at(1e5, 8.0));
+        assert!(short.bias.abs() < 1e-5, "{short:?}");
+        assert!(long.bias.abs() > long.noise, "{long:?}");
+    }
+
+    #[test]
+    fn a_flight_through_the_control_passes_with_its_chance() {
+        let scene = Scene { depth: 2.0, collisions: 9.0, from: 0.0 };
+        let control = scene.least();
+        let exact = (-control).exp();
+        assert!((passing::<f64>(&scene, control) - exact).abs() < 1e-15);
+        let narrow = passing::<F32>(&scene, control);
+        assert!((narrow - exact).abs() < 1e-6 && (narrow * LATTICE).fract() == 0.0, "{narrow}");
+    }
+}

@@ -8,11 +8,11 @@
 
 use std::f64::consts::PI;
 
-use super::compare::{Stated, Walk, compare_walks};
+use super::compare::{Averaged, Drawn, Known, compare, flight};
 use super::precision::Precision;
 use super::scene::{FREQUENCY, Scene};
-use super::trail::Trail;
 use super::{Entry, NO_STEPS, entry, stated};
+use crate::harness::stress::Dice;
 use crate::media::Extinction;
 use crate::phase::PhaseFunction;
 use crate::phase::henyey_greenstein::HenyeyGreenstein;
@@ -25,6 +25,8 @@ const FOOT: f64 = 0.7;
 const ALBEDO: f64 = 0.8;
 /// The mean cosine of scattering.
 const FORWARD: f64 = 0.5;
+/// What a point costs where nothing is tracked, in collisions.
+const UNTRACKED: f64 = 20.0;
 /// The points that share a walk.
 const POINTS: usize = 4;
 
@@ -48,32 +50,38 @@ impl Tracking {
         }
     }
 
-    /// Along `z₀ + slope t`, t = 0 … length.
+    /// Along `z₀ + slope t`, t = 0 … length: the weight, and the chance that delta tracking comes through.
     #[inline(always)]
     fn through<P: Precision>(
         self,
         scene: &Scene,
-        trail: &mut Trail,
+        dice: &mut Dice,
         [from, slope, length]: [P; 3],
-    ) -> P {
+    ) -> (P, f64) {
         if self == Self::Exact {
-            return (-(scene.mean(from, from + slope * length) * length)).exp();
+            return (exact(scene, [from, slope, length]), 1.0);
         }
-        let (path, sampling) = (P::of(1.0 / scene.collisions), P::of(scene.collisions));
-        let (mut t, mut weight) = (P::of(0.0), P::of(1.0));
+        let path = P::of(1.0 / scene.collisions);
+        let (mut t, mut weight, mut chance) = (P::of(0.0), P::of(1.0), 1.0);
         loop {
-            let reach = (length - t) * sampling;
-            let flown = trail.fly(reach, |depth| t + depth * path, |t| t.below(length));
-            let Some(place) = flown else { return weight };
-            t = place;
+            t = t + flight::<P>(dice) * path;
+            if !t.below(length) {
+                return (weight, chance);
+            }
             let ratio = scene.extinction(from + slope * t) * path;
             if self == Self::Ratio {
                 weight = weight * (P::of(1.0) - ratio);
-            } else if trail.happens(ratio) {
-                return P::of(0.0);
+            } else {
+                chance *= 1.0 - ratio.chance();
             }
         }
     }
+}
+
+/// A transmittance along `z₀ + slope t`, t = 0 … length.
+#[inline(always)]
+fn exact<P: Precision>(scene: &Scene, [from, slope, length]: [P; 3]) -> P {
+    (-(scene.mean(from, from + slope * length) * length)).exp()
 }
 
 /// The ray and the light as a precision sees them.
@@ -110,14 +118,30 @@ impl<'a, P: Precision> View<'a, P> {
         phase.value(cosine) * (ALBEDO / (4.0 * PI)) / square
     }
 
-    fn camera(&self, tracking: Tracking, trail: &mut Trail, s: P) -> P {
-        tracking.through(self.scene, trail, [self.origin, P::of(1.0), s])
+    /// The transmittances of a point as they are tracked: from the eye, and from the light.
+    fn camera(&self, tracking: Tracking, dice: &mut Dice, s: P) -> (P, f64) {
+        tracking.through(self.scene, dice, [self.origin, P::of(1.0), s])
     }
 
-    fn shadow(&self, tracking: Tracking, trail: &mut Trail, s: P) -> P {
+    fn shadow(&self, tracking: Tracking, dice: &mut Dice, s: P) -> (P, f64) {
         let length = self.square(s).root();
         let slope = (self.foot - s) / length;
-        tracking.through(self.scene, trail, [self.origin + s, slope, length])
+        tracking.through(self.scene, dice, [self.origin + s, slope, length])
+    }
+
+    /// Both transmittances of a point in closed form.
+    fn through(&self, s: P) -> P {
+        exact(self.scene, [self.origin, P::of(1.0), s])
+    }
+
+    fn shaded(&self, s: P) -> P {
+        let length = self.square(s).root();
+        exact(self.scene, [self.origin + s, (self.foot - s) / length, length])
+    }
+
+    /// What a unit of σ_t sends towards the eye.
+    fn lit(&self, s: P) -> P {
+        self.source(s) * self.shaded(s)
     }
 
     /// A point at equal angles, and the density of such points.
@@ -143,22 +167,30 @@ impl<'a, P: Precision> View<'a, P> {
         (-(s * self.scene.depth)).exp() * (self.scene.depth / absorbed)
     }
 
-    /// The next tentative collision of a flight along the ray.
-    fn fly(&self, trail: &mut Trail, s: P) -> Option<P> {
-        let (path, end) = (P::of(1.0 / self.scene.collisions), P::of(1.0));
-        let reach = (end - s) * self.scene.collisions;
-        trail.fly(reach, |depth| s + depth * path, |s| s.below(end))
-    }
-
-    /// The first real collision.
-    fn collide(&self, trail: &mut Trail) -> Option<P> {
+    /// All tentative collisions of a walk along the ray, with `σ_t/σ̂`.
+    #[inline(always)]
+    fn fly(&self, dice: &mut Dice, mut collide: impl FnMut(P, P)) {
+        let path = P::of(1.0 / self.scene.collisions);
         let mut s = P::of(0.0);
         loop {
-            s = self.fly(trail, s)?;
-            if trail.happens(self.extinction(s) / P::of(self.scene.collisions)) {
-                return Some(s);
+            s = s + flight::<P>(dice) * path;
+            if !s.below(P::of(1.0)) {
+                return;
             }
+            collide(s, self.extinction(s) * path);
         }
+    }
+
+    /// What is found at the first real collision, on average over all decisions.
+    #[inline(always)]
+    fn collide(&self, dice: &mut Dice, found: impl Fn(P) -> P) -> f64 {
+        let (mut alive, mut sum) = (1.0, 0.0);
+        self.fly(dice, |s, ratio| {
+            let real = ratio.chance();
+            sum += alive * real * found(s).double();
+            alive *= 1.0 - real;
+        });
+        sum
     }
 }
 
@@ -205,8 +237,8 @@ impl Single {
     }
 }
 
-impl Walk for Single {
-    fn stated(&self, scene: &Scene) -> Stated {
+impl Averaged for Single {
+    fn known(&self, scene: &Scene) -> Option<Known> {
         let field = scene.sines(&format!("vectors = [[0, 0, {FREQUENCY:e}]]"));
         let text = format!(
             "title = \"t\"\n[problem.single-scattering]\nvolume.sines = {field}\n\
@@ -215,132 +247,121 @@ impl Walk for Single {
              phase.henyey-greenstein = {{ g = {FORWARD} }}\nestimators = [{{ {} }}]",
             self.written(scene)
         );
-        stated(&text, "")
+        let stated = stated(&text, "");
+        let (truth, variance) = stated.truth.zip(stated.variance)?;
+        // Averaged decisions of delta tracking weigh like ratio tracking.
+        let drawn = if *self == Self::Source(Tracking::Delta) {
+            Self::Source(Tracking::Ratio).known(scene)?.variance
+        } else {
+            variance
+        };
+        Some(Known { truth, variance, drawn: Drawn::Rare(drawn) })
+    }
+
+    fn cost(&self, scene: &Scene) -> f64 {
+        match self {
+            Self::Source(Tracking::Exact) | Self::Scattering | Self::SourceScattering => UNTRACKED,
+            _ => scene.collisions,
+        }
     }
 
     #[inline(always)]
-    fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64 {
+    fn draw<P: Precision>(&self, scene: &Scene, dice: &mut Dice) -> f64 {
         let view = View::<P>::new(scene);
-        let found = match *self {
+        let number = |dice: &mut Dice| P::uniform(dice.word());
+        match *self {
             Self::Source(tracking) => {
-                let s = view.equiangular(trail.uniform());
-                lit(&view, tracking, trail, s) / view.equiangular_density(s)
+                let s = view.equiangular(number(dice));
+                let (camera, arrives) = view.camera(tracking, dice, s);
+                let (shadow, comes) = view.shadow(tracking, dice, s);
+                let found = camera * (view.extinction(s) * view.source(s)) * shadow;
+                (found / view.equiangular_density(s)).double() * arrives * comes
             }
             Self::Scattering => {
-                let s = view.scattering(trail.uniform());
-                lit(&view, Tracking::Exact, trail, s) / view.scattering_density(s)
+                let s = view.scattering(number(dice));
+                (sent(&view, s) / view.scattering_density(s)).double()
             }
-            Self::Delta => match view.collide(trail) {
-                Some(s) => view.source(s) * view.shadow(Tracking::Exact, trail, s),
-                None => P::of(0.0),
-            },
-            Self::Attenuation => attenuation(&view, trail),
-            Self::Resampled => resampled(&view, trail),
-            Self::SharedWalk => shared_walk(&view, trail),
+            Self::Delta => view.collide(dice, |s| view.lit(s)),
+            Self::Attenuation => {
+                let (mut sum, mut weight) = (P::of(0.0), P::of(1.0));
+                view.fly(dice, |s, ratio| {
+                    sum = sum + weight * ratio * view.lit(s);
+                    weight = weight * (P::of(1.0) - ratio);
+                });
+                sum.double()
+            }
+            Self::Resampled => resampled(&view, dice),
+            Self::SharedWalk => shared_walk(&view, dice),
             Self::SourceScattering => {
-                let points = [view.equiangular(trail.uniform()), view.scattering(trail.uniform())];
+                let points = [view.equiangular(number(dice)), view.scattering(number(dice))];
                 let [one, other] = points.map(|s| {
                     let density = view.equiangular_density(s) + view.scattering_density(s);
-                    lit(&view, Tracking::Exact, trail, s) / density
+                    sent(&view, s) / density
                 });
-                one + other
+                (one + other).double()
             }
             Self::SourceDelta => {
-                let first = view.equiangular(trail.uniform());
-                let second = view.collide(trail);
                 let at = |s: P| {
-                    let through = view.camera(Tracking::Exact, trail, s);
-                    let collision = view.extinction(s) * through;
-                    let lit = view.source(s) * view.shadow(Tracking::Exact, trail, s);
-                    collision * lit / (view.equiangular_density(s) + collision)
+                    let collision = view.extinction(s) * view.through(s);
+                    collision * view.lit(s) / (view.equiangular_density(s) + collision)
                 };
-                let found = [Some(first), second].into_iter().flatten().map(at);
-                found.fold(P::of(0.0), |sum, x| sum + x)
+                at(view.equiangular(number(dice))).double() + view.collide(dice, at)
             }
-        };
-        found.double()
-    }
-}
-
-/// What a point sends to the eye, both transmittances tracked alike.
-#[inline(always)]
-fn lit<P: Precision>(view: &View<P>, tracking: Tracking, trail: &mut Trail, s: P) -> P {
-    let through = view.camera(tracking, trail, s);
-    let source = view.extinction(s) * view.source(s);
-    through * source * view.shadow(tracking, trail, s)
-}
-
-/// Every collision of a walk: its place, and what it sends but for the shadow ray.
-#[inline(always)]
-fn interactions<P: Precision>(
-    view: &View<P>,
-    trail: &mut Trail,
-    mut tell: impl FnMut(P, P, &mut Trail),
-) {
-    let sampling = P::of(view.scene.collisions);
-    let (mut s, mut weight) = (P::of(0.0), P::of(1.0));
-    while let Some(place) = view.fly(trail, s) {
-        s = place;
-        let ratio = view.extinction(s) / sampling;
-        tell(s, weight * ratio * view.source(s), trail);
-        weight = weight * (P::of(1.0) - ratio);
-    }
-}
-
-#[inline(always)]
-fn attenuation<P: Precision>(view: &View<P>, trail: &mut Trail) -> P {
-    let mut sum = P::of(0.0);
-    interactions(view, trail, |s, weight, trail| {
-        sum = sum + weight * view.shadow(Tracking::Exact, trail, s);
-    });
-    sum
-}
-
-#[inline(always)]
-fn resampled<P: Precision>(view: &View<P>, trail: &mut Trail) -> P {
-    let (mut sum, mut chosen) = (P::of(0.0), None);
-    interactions(view, trail, |s, weight, trail| {
-        sum = sum + weight.size();
-        if trail.happens(weight.size() / sum) {
-            chosen = Some(s);
         }
-    });
-    match chosen {
-        Some(s) => sum * view.shadow(Tracking::Exact, trail, s),
-        None => P::of(0.0),
     }
 }
 
+/// What a point sends to the eye, with nothing tracked.
 #[inline(always)]
-fn shared_walk<P: Precision>(view: &View<P>, trail: &mut Trail) -> P {
-    let mut at: [P; POINTS] = std::array::from_fn(|_| view.equiangular(trail.uniform()));
+fn sent<P: Precision>(view: &View<P>, s: P) -> P {
+    view.through(s) * (view.extinction(s) * view.lit(s))
+}
+
+/// On average over which collision is chosen: the later of two with its share of the sum.
+#[inline(always)]
+fn resampled<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
+    let (mut sum, mut weight, mut shadow) = (P::of(0.0), P::of(1.0), 0.0);
+    view.fly(dice, |s, ratio| {
+        let part = weight * ratio * view.source(s);
+        sum = sum + part;
+        let chosen = (part / sum).chance();
+        shadow += chosen * (view.shaded(s).double() - shadow);
+        weight = weight * (P::of(1.0) - ratio);
+    });
+    sum.double() * shadow
+}
+
+#[inline(always)]
+fn shared_walk<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
+    let mut at: [P; POINTS] = std::array::from_fn(|_| view.equiangular(P::uniform(dice.word())));
     at.sort_unstable_by(|a, b| a.double().total_cmp(&b.double()));
-    let (mut sum, mut weight, mut s, mut next) = (P::of(0.0), P::of(1.0), P::of(0.0), 0);
-    loop {
-        let collision = view.fly(trail, s);
-        while next < POINTS && collision.is_none_or(|reached| at[next].at_most(reached)) {
-            let here = at[next];
-            let source = view.extinction(here) * view.source(here);
-            let lit = source * view.shadow(Tracking::Exact, trail, here);
-            sum = sum + weight * lit / view.equiangular_density(here) * (1.0 / POINTS as f64);
+    let (mut sum, mut weight, mut next) = (P::of(0.0), P::of(1.0), 0);
+    let mut pass = |reached: P, weight: P| {
+        while next < POINTS && at[next].at_most(reached) {
+            let source = view.extinction(at[next]) * view.lit(at[next]);
+            let share = P::of(1.0 / POINTS as f64);
+            sum = sum + share * weight * source / view.equiangular_density(at[next]);
             next += 1;
         }
-        let Some(reached) = collision else { return sum };
-        s = reached;
-        weight = weight * (P::of(1.0) - view.extinction(s) / P::of(view.scene.collisions));
-    }
+    };
+    view.fly(dice, |s, ratio| {
+        pass(s, weight);
+        weight = weight * (P::of(1.0) - ratio);
+    });
+    pass(P::of(f64::INFINITY), weight);
+    sum.double()
 }
 
 /// All of them.
 pub const ALL: &[Entry] = &[
-    entry!("source-driven", |x| compare_walks(&Single::Source(Tracking::Exact), x), NO_STEPS),
-    entry!("source-driven, ratio", |x| compare_walks(&Single::Source(Tracking::Ratio), x)),
-    entry!("source-driven, delta", |x| compare_walks(&Single::Source(Tracking::Delta), x)),
-    entry!("scattering-driven", |x| compare_walks(&Single::Scattering, x), NO_STEPS),
-    entry!("delta-tracking", |x| compare_walks(&Single::Delta, x)),
-    entry!("attenuation-driven", |x| compare_walks(&Single::Attenuation, x)),
-    entry!("attenuation-resampled", |x| compare_walks(&Single::Resampled, x)),
-    entry!("shared-walk", |x| compare_walks(&Single::SharedWalk, x)),
-    entry!("source-scattering-mis", |x| compare_walks(&Single::SourceScattering, x), NO_STEPS),
-    entry!("source-delta-mis", |x| compare_walks(&Single::SourceDelta, x)),
+    entry!("source-driven", |x| compare(&Single::Source(Tracking::Exact), x), NO_STEPS),
+    entry!("source-driven, ratio", |x| compare(&Single::Source(Tracking::Ratio), x)),
+    entry!("source-driven, delta", |x| compare(&Single::Source(Tracking::Delta), x)),
+    entry!("scattering-driven", |x| compare(&Single::Scattering, x), NO_STEPS),
+    entry!("delta-tracking", |x| compare(&Single::Delta, x)),
+    entry!("attenuation-driven", |x| compare(&Single::Attenuation, x)),
+    entry!("attenuation-resampled", |x| compare(&Single::Resampled, x)),
+    entry!("shared-walk", |x| compare(&Single::SharedWalk, x)),
+    entry!("source-scattering-mis", |x| compare(&Single::SourceScattering, x), NO_STEPS),
+    entry!("source-delta-mis", |x| compare(&Single::SourceDelta, x)),
 ];

@@ -50,17 +50,21 @@ impl Walk for Slab {
         let (start, end) = (P::of(scene.from), P::of(scene.from + 1.0));
         let (path, albedo) = (P::of(1.0 / scene.collisions), P::of(ALBEDO));
         let (mut z, mut weight, mut cosine) = (start, P::of(1.0), P::of(COSINE));
+        let mut score = 0.0;
         loop {
             let is_down = P::of(0.0).below(cosine);
             let descent = cosine.size() * path;
             let flown = if is_down {
-                trail.fly((end - z) / descent, |depth| z + depth * descent, |z| z.below(end))
+                let reach = (end - z) / descent;
+                trail.fly((weight, reach), |depth| z + depth * descent, |z| z.below(end))
             } else {
-                trail.fly((z - start) / descent, |depth| z - depth * descent, |z| start.below(z))
+                let reach = (z - start) / descent;
+                trail.fly((weight, reach), |depth| z - depth * descent, |z| start.below(z))
             };
-            let Some(place) = flown else {
-                return if is_down == self.transmitted { weight.double() } else { 0.0 };
-            };
+            if is_down == self.transmitted {
+                score += flown.gone * weight.double();
+            }
+            let Some(place) = flown.at else { return score };
             z = place;
             let odds = self.rule.odds(scene.extinction(z) * path, albedo);
             match trail.decide(&odds) {
@@ -71,7 +75,7 @@ impl Walk for Slab {
                     let azimuth = (trail.uniform::<P>() * TAU).cos();
                     cosine = turned(cosine, deflection, azimuth);
                 }
-                Event::Absorbed => return 0.0,
+                Event::Absorbed => return score,
             }
         }
     }

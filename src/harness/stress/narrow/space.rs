@@ -7,11 +7,11 @@
 //! whose optical depth along a diameter is τ. The walk of pictures of multiple scattering is that of
 //! `sphere, particle` in front of another sky; `lambertian` with splitting is `furnace` with splitting.
 
-use super::compare::{Stated, Walk, compare_walks};
+use super::compare::{Stated, Walk, compare_walks, flight};
 use super::place::Place;
 use super::precision::Precision;
 use super::scene::Scene;
-use super::trail::Trail;
+use super::trail::{Flown, Trail};
 use super::{Entry, NO_DEPTH, entry, stated};
 use crate::phase::PhaseFunction;
 use crate::phase::henyey_greenstein::HenyeyGreenstein;
@@ -63,6 +63,8 @@ struct Traveller<P> {
     weight: P,
     order: u32,
     depth: u32,
+    /// What else it is weighted by where it waits.
+    likelihood: f64,
 }
 
 /// The medium as a precision sees it.
@@ -102,9 +104,9 @@ impl<P: Precision> Ball<'_, P> {
 
     /// The next tentative collision on the way to the exit.
     #[inline(always)]
-    fn fly(&self, trail: &mut Trail, t: P, exit: P) -> Option<P> {
+    fn fly(&self, trail: &mut Trail, weight: P, [t, exit]: [P; 2]) -> Flown<P> {
         let reach = (exit - t) * self.sampling;
-        trail.fly(reach, |depth| t + depth * self.path, |t| t.below(exit))
+        trail.fly((weight, reach), |depth| t + depth * self.path, |t| t.below(exit))
     }
 }
 
@@ -129,7 +131,7 @@ impl Space {
                 (ball.centre.plus(entry, P::of(1.0)), up)
             }
         };
-        Traveller { place, direction, weight: P::of(1.0), order: 0, depth: 0 }
+        Traveller { place, direction, weight: P::of(1.0), order: 0, depth: 0, likelihood: 1.0 }
     }
 
     fn albedo(&self) -> f64 {
@@ -148,23 +150,26 @@ impl Space {
         direction.turned(cosine, trail.uniform::<P>())
     }
 
-    /// A shadow ray to the environment.
+    /// A shadow ray to the environment: its weight, and where it is delta tracked its chance.
     #[inline(always)]
-    fn shadow<P: Precision>(&self, ball: &Ball<P>, trail: &mut Trail, place: Place<P>) -> P {
+    fn shadow<P: Precision>(&self, ball: &Ball<P>, trail: &mut Trail, place: Place<P>) -> f64 {
         let cosine = trail.uniform::<P>() * 2.0 - 1.0;
         let direction = Place::of([0.0, 0.0, 1.0]).turned(cosine, trail.uniform::<P>());
         let exit = ball.exit(place, direction);
-        let (mut t, mut weight) = (P::of(0.0), P::of(1.0));
-        while let Some(reached) = ball.fly(trail, t, exit) {
-            t = reached;
+        let (mut t, mut weight, mut chance) = (P::of(0.0), P::of(1.0), 1.0);
+        let mut dice = trail.apart();
+        loop {
+            t = t + flight::<P>(&mut dice) * ball.path;
+            if !t.below(exit) {
+                return weight.double() * chance;
+            }
             let ratio = ball.extinction(place.plus(direction, t)) * ball.path;
             if self.sought == Sought::Ratio {
                 weight = weight * (P::of(1.0) - ratio);
-            } else if trail.happens(ratio) {
-                return P::of(0.0);
+            } else {
+                chance *= 1.0 - ratio.chance();
             }
         }
-        weight
     }
 
     /// Follows a particle until it is scattered or gone; what it scores is added.
@@ -174,35 +179,38 @@ impl Space {
         ball: &Ball<P>,
         trail: &mut Trail,
         mut particle: Traveller<P>,
-        (score, waiting): (&mut P, &mut Vec<Traveller<P>>),
+        (score, waiting): (&mut f64, &mut Vec<Traveller<P>>),
     ) -> Option<Traveller<P>> {
         let (zero, one, albedo) = (P::of(0.0), P::of(1.0), P::of(self.albedo()));
         let Traveller { place: origin, direction, .. } = particle;
         let exit = ball.exit(origin, direction);
         let mut t = zero;
         loop {
-            let flown = ball.fly(trail, t, exit);
-            if self.sought == Sought::Lambertian {
-                *score = *score + (flown.unwrap_or(exit) - t) * particle.weight;
+            let weight = particle.weight;
+            let flown = ball.fly(trail, weight, [t, exit]);
+            match self.sought {
+                Sought::Furnace | Sought::Met => *score += flown.gone * weight.double(),
+                Sought::Ratio | Sought::Delta if particle.order == 0 => {
+                    *score += flown.gone * weight.double();
+                }
+                Sought::Lambertian => {
+                    *score += flown.gone * ((exit - t) * weight).double();
+                }
+                _ => {}
             }
-            let Some(reached) = flown else {
-                let meets = match self.sought {
-                    Sought::Furnace | Sought::Met => true,
-                    Sought::Ratio | Sought::Delta => particle.order == 0,
-                    Sought::Lambertian | Sought::Infinite => false,
-                };
-                *score = if meets { *score + particle.weight } else { *score };
-                return None;
-            };
+            let reached = flown.at?;
+            if self.sought == Sought::Lambertian {
+                *score += trail.likelihood() * ((reached - t) * weight).double();
+            }
             t = reached;
             let place = origin.plus(direction, t);
             let ratio = ball.extinction(place) * ball.path;
             let absorbed = particle.weight * ratio * (one - albedo);
             match self.sought {
-                Sought::Furnace => *score = *score + absorbed,
+                Sought::Furnace => *score += trail.likelihood() * absorbed.double(),
                 Sought::Infinite => {
                     let away = place.less(ball.centre);
-                    *score = *score + absorbed * away.dot(away);
+                    *score += trail.likelihood() * (absorbed * away.dot(away)).double();
                 }
                 _ => {}
             }
@@ -210,7 +218,8 @@ impl Space {
                 particle.depth += 1;
                 let weight = particle.weight * albedo * ratio;
                 let direction = self.turned(trail, direction);
-                waiting.push(Traveller { place, direction, weight, ..particle });
+                let likelihood = trail.likelihood();
+                waiting.push(Traveller { place, direction, weight, likelihood, ..particle });
                 particle.weight = particle.weight * (one - ratio);
                 continue;
             }
@@ -220,7 +229,8 @@ impl Space {
                 Event::Scattered => {
                     let weight = particle.weight * odds.scatter_weight;
                     if matches!(self.sought, Sought::Ratio | Sought::Delta) {
-                        *score = *score + weight * self.shadow(ball, trail, place);
+                        let lit = self.shadow(ball, trail, place);
+                        *score += trail.likelihood() * weight.double() * lit;
                     }
                     let direction = self.turned(trail, direction);
                     let order = particle.order + 1;
@@ -284,17 +294,30 @@ impl Walk for Space {
         stated(&text, channel)
     }
 
+    fn pilots(&self, scene: Scene) -> Scene {
+        // With a majorant, neither analog nor weighted walks depend on it.
+        let depends = self.splits > 0 || self.sought == Sought::Ratio;
+        let few = if depends { f64::INFINITY } else { 4.0 * scene.depth };
+        Scene { collisions: scene.collisions.min(few), ..scene }
+    }
+
     #[inline(always)]
     fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64 {
         let (path, sampling) = (P::of(1.0 / scene.collisions), P::of(scene.collisions));
         let has_end = self.sought != Sought::Infinite;
         let ball = Ball { scene, centre: Place::of([scene.from; 3]), path, sampling, has_end };
-        let (mut score, mut waiting) = (P::of(0.0), Vec::new());
+        let (mut score, mut waiting) = (0.0, Vec::new());
         let mut next = Some(self.start(&ball, trail));
-        while let Some(particle) = next.take().or_else(|| waiting.pop()) {
+        loop {
+            let Some(particle) = next.take().or_else(|| {
+                let waited: Traveller<P> = waiting.pop()?;
+                trail.resume(waited.likelihood);
+                Some(waited)
+            }) else {
+                return score;
+            };
             next = self.flight(&ball, trail, particle, (&mut score, &mut waiting));
         }
-        score.double()
     }
 }
 

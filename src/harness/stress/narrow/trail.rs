@@ -8,9 +8,15 @@
 //! X₂₄ · ∏ P₂₄(decision)/P₅₃(decision),   P₂₄(u < q) = ⌈2²⁴ q⌉/2²⁴
 //! ```
 //!
-//! whose mean is exactly that of walks that decide in single precision. A flight that reaches the
-//! boundary is a decision, too: `P₂₄` is the share of all 2²⁴ numbers that end inside, and what ends
-//! inside is at the same share of those in both.
+//! whose mean is exactly that of walks that decide in single precision. Boundaries are not decided at
+//! all: what leaves is scored with its chance, and what stays goes on with the rest,
+//!
+//! ```text
+//! X = Σ value · P(leave) ∏ P(stay),   P₂₄(stay) the share of all 2²⁴ numbers that end inside
+//! ```
+//!
+//! until roulette, with the doubles' chances in both precisions, ends it. All these chances are doubles:
+//! what is single is what a renderer would compute.
 
 use super::precision::Precision;
 use crate::harness::stress::Dice;
@@ -24,17 +30,34 @@ pub struct Trail {
     /// The next to repeat; `None` where they are made.
     next: Option<usize>,
     likelihood: f64,
+    is_by_chance: bool,
 }
+
+/// What becomes of a flight.
+pub struct Flown<P> {
+    /// The weight of what leaves.
+    pub gone: f64,
+    /// Where what stays lands; `None` if nothing is followed.
+    pub at: Option<P>,
+}
+
+/// Below this weight roulette is played.
+const FOLLOWED: f64 = 1e-3;
 
 impl Trail {
     /// To be decided.
     pub fn new(dice: Dice) -> Self {
-        Self { dice, made: Vec::new(), next: None, likelihood: 1.0 }
+        Self { dice, made: Vec::new(), next: None, likelihood: 1.0, is_by_chance: false }
+    }
+
+    /// To be decided, boundaries too, as estimators do.
+    pub fn by_chance(dice: Dice) -> Self {
+        Self { is_by_chance: true, ..Self::new(dice) }
     }
 
     /// The same decisions once more, with the same random numbers.
     pub fn again(self, dice: Dice) -> Self {
-        Self { dice, next: Some(0), ..self }
+        Self { dice, next: Some(0), likelihood: 1.0, ..self }
     }
 
     /// How many decisions were made.
@@ -42,9 +65,20 @@ impl Trail {
         self.made.len() as f64
     }
 
-    /// How much likelier the decisions are in the precision that repeats them.
+    /// The weight of what is followed, beside that of the walk itself.
+    #[inline(always)]
     pub fn likelihood(&self) -> f64 {
         self.likelihood
+    }
+
+    /// Follows what was left behind with a weight.
+    pub fn resume(&mut self, likelihood: f64) {
+        self.likelihood = likelihood;
+    }
+
+    /// Random numbers for what may take more of them in one precision than in the other.
+    pub fn apart(&mut self) -> Dice {
+        Dice::new(self.dice.word(), "narrow-apart", 0)
     }
 
     /// A uniform number.
@@ -96,19 +130,45 @@ impl Trail {
         }
     }
 
-    /// A flight of mean optical depth 1 from here, `reach` from the boundary: where it lands; `None`
-    /// beyond. What is inside for a depth is inside for all that are less.
+    /// A flight of mean optical depth 1 of a weight, `reach` from the boundary. What is inside for a depth
+    /// is inside for all that are less.
     #[inline(always)]
     pub fn fly<P: Precision>(
         &mut self,
-        reach: P,
+        (weight, reach): (P, P),
         land: impl Fn(P) -> P,
         inside: impl Fn(P) -> bool,
-    ) -> Option<P> {
+    ) -> Flown<P> {
         let flown = |u: P| land(-(u.each(1.0) - u).ln());
         let chance = P::chance_to_stay(reach.double(), |u| inside(flown(u)));
-        let stays = self.choose([chance, 1.0 - chance]) == 0;
+        let (gone, kept) = (self.likelihood * (1.0 - chance), self.likelihood * chance);
         let share = f64::uniform(self.dice.word());
-        stays.then(|| flown(P::share(share, chance)))
+        let at = flown(P::share(share, chance));
+        if self.is_by_chance {
+            let stays = self.choose([chance, 1.0 - chance]) == 0;
+            return Flown { gone: if stays { 0.0 } else { 1.0 }, at: stays.then_some(at) };
+        }
+        self.likelihood = kept;
+        let is_followed = self.is_followed(weight.double().abs() * kept);
+        Flown { gone, at: is_followed.then_some(at) }
+    }
+
+    /// Roulette by the weight in doubles.
+    #[inline(always)]
+    fn is_followed(&mut self, weight: f64) -> bool {
+        let u = f64::uniform(self.dice.word());
+        let (event, chance) = if let Some(next) = &mut self.next {
+            *next += 1;
+            self.made[*next - 1]
+        } else {
+            let chance = (weight / FOLLOWED).min(1.0);
+            let made = (u8::from(u >= chance), chance);
+            self.made.push(made);
+            made
+        };
+        if event == 0 {
+            self.likelihood /= chance;
+        }
+        event == 0
     }
 }
