@@ -20,7 +20,7 @@ use crate::theory::particle::Event;
 
 /// R.
 const RADIUS: f64 = 0.5;
-/// σ_t/τ as a polynomial of x.
+/// `σ_t/τ` as a polynomial of x.
 const SHAPE: [f64; 3] = [1.8, -3.6, 2.0];
 /// How far from the centre the ray passes that looks into the ball.
 const OFFSET: f64 = 0.15;
@@ -112,7 +112,7 @@ impl<P: Precision> Ball<'_, P> {
 
 impl Space {
     /// Where a walk begins.
-    fn start<P: Precision>(&self, ball: &Ball<P>, trail: &mut Trail) -> Traveller<P> {
+    fn start<P: Precision>(self, ball: &Ball<P>, trail: &mut Trail) -> Traveller<P> {
         let up = Place::of([0.0, 0.0, 1.0]);
         let anywhere =
             |trail: &mut Trail| up.turned(trail.uniform::<P>() * 2.0 - 1.0, trail.uniform::<P>());
@@ -134,16 +134,16 @@ impl Space {
         Traveller { place, direction, weight: P::of(1.0), order: 0, depth: 0, likelihood: 1.0 }
     }
 
-    fn albedo(&self) -> f64 {
+    fn albedo(self) -> f64 {
         if self.sought == Sought::Lambertian { 1.0 } else { ALBEDO }
     }
 
-    fn is_isotropic(&self) -> bool {
+    fn is_isotropic(self) -> bool {
         matches!(self.sought, Sought::Met | Sought::Ratio | Sought::Delta)
     }
 
     #[inline(always)]
-    fn turned<P: Precision>(&self, trail: &mut Trail, direction: Place<P>) -> Place<P> {
+    fn turned<P: Precision>(self, trail: &mut Trail, direction: Place<P>) -> Place<P> {
         let u = trail.uniform::<P>();
         let forward = if self.is_isotropic() { 0.0 } else { FORWARD };
         let cosine = HenyeyGreenstein::new(forward).map_or(u, |phase| phase.cosine(u));
@@ -152,7 +152,7 @@ impl Space {
 
     /// A shadow ray to the environment: its weight, and where it is delta tracked its chance.
     #[inline(always)]
-    fn shadow<P: Precision>(&self, ball: &Ball<P>, trail: &mut Trail, place: Place<P>) -> f64 {
+    fn shadow<P: Precision>(self, ball: &Ball<P>, trail: &mut Trail, place: Place<P>) -> f64 {
         let cosine = trail.uniform::<P>() * 2.0 - 1.0;
         let direction = Place::of([0.0, 0.0, 1.0]).turned(cosine, trail.uniform::<P>());
         let exit = ball.exit(place, direction);
@@ -175,7 +175,7 @@ impl Space {
     /// Follows a particle until it is scattered or gone; what it scores is added.
     #[inline(always)]
     fn flight<P: Precision>(
-        &self,
+        self,
         ball: &Ball<P>,
         trail: &mut Trail,
         mut particle: Traveller<P>,
