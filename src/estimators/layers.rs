@@ -18,7 +18,8 @@
 //!
 //! Where the collisions of a layer lie is the same for every σ̂ that is constant, whatever control
 //! and rule. Experiments that find their random numbers at one address can so share all lookups:
-//! each makes the draws that it would make alone ([`draw`]).
+//! each makes the draws that it would make alone ([`draw`]). One that is alone notes no places: a pack
+//! of its walks is looked up and decided at once.
 //!
 //! Source: the layers are the multinomial histogram of N, drawn bin by bin; binomial numbers by
 //! `rand_distr`.
@@ -27,7 +28,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, u64x8};
 
-use super::walkers::Walkers;
+use super::walkers::{Streams, Walkers};
 use crate::media::{Extinction, FreeFlight, Medium, Placement, Visitor};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::rng::{Lanes, Xoshiro};
@@ -77,16 +78,24 @@ pub fn draw(
         }
         // Streams of the layer: how far others went in the one before does not matter.
         let mut chance = places.branch(2 * layer);
-        let mut fate = decides.then(|| places.branch(2 * layer + 1));
-        for first in (0..most).step_by(BATCH) {
-            sites.length = BATCH.min((most - first).next_multiple_of(WIDTH));
-            let (chance, sites) = (&mut chance, &mut *sites);
-            medium.profile().visit(Visit { level, placement, chance, sites });
-            if let Some(fate) = &mut fate {
-                pack::on(level, Decide { fate, sites });
-            }
-            for walkers in requests.iter_mut() {
-                walkers.collide(level, sites, first);
+        let mut fate = if decides { places.branch(2 * layer + 1) } else { chance };
+        let is_done = if let [alone] = requests {
+            let streams = Streams { places: &chance, decisions: &fate };
+            alone.collide_alone(level, medium, placement, streams)
+        } else {
+            false
+        };
+        if !is_done {
+            for first in (0..most).step_by(BATCH) {
+                sites.length = BATCH.min((most - first).next_multiple_of(WIDTH));
+                let (chance, sites) = (&mut chance, &mut *sites);
+                medium.profile().visit(Visit { level, placement, chance, sites });
+                if decides {
+                    pack::on(level, Decide { fate: &mut fate, sites });
+                }
+                for walkers in requests.iter_mut() {
+                    walkers.collide(level, sites, first);
+                }
             }
         }
         for walkers in requests.iter_mut() {

@@ -89,6 +89,10 @@ impl<'a> Ledger<'a> {
         notes: &Notes,
     ) -> [usize; WIDTH] {
         let mut over = [0; WIDTH];
+        // All of one length, which the loop then knows.
+        let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
+        let (values, lookups) = (&mut self.values[..count], &mut self.lookups[..count]);
+        let defects = &mut self.defects[..count];
         for (group, (ended, escaped)) in notes.ended.iter().zip(&notes.escaped).enumerate() {
             let (mut ended, escaped) = (u64::from_le_bytes(*ended), u64::from_le_bytes(*escaped));
             while ended != 0 {
@@ -97,23 +101,19 @@ impl<'a> Ledger<'a> {
                 let (step, lane) = (8 * group + bit as usize / 8, bit as usize % 8);
                 let quota = &mut self.quotas[lane];
                 let place = quota.place;
-                let (Some(value), Some(defect), Some(lookups)) = (
-                    self.values.get_mut(place),
-                    self.defects.get_mut(place),
-                    self.lookups.get_mut(place),
-                ) else {
+                if place >= count {
                     continue; // This lane has made its draws.
-                };
+                }
                 let has_escaped = escaped >> bit & 1 == 1;
                 let row = &rows[step % STEPS];
-                (*value, *defect) = reader.draw(row, lane, has_escaped);
+                (values[place], defects[place]) = reader.draw(row, lane, has_escaped);
                 let now = self.first.wrapping_add(step as u32);
                 let before = reader.lookups(row, lane, now.wrapping_sub(quota.began));
                 // The step that leaves looks at nothing.
-                *lookups = before + u32::from(!has_escaped);
+                lookups[place] = before + u32::from(!has_escaped);
                 quota.began = now.wrapping_add(1);
                 quota.place = place + LANES;
-                if quota.place >= self.values.len() {
+                if quota.place >= count {
                     self.open -= 1;
                     over[lane] = step + 1;
                 }

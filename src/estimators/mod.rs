@@ -6,6 +6,7 @@
 
 pub mod controls;
 pub mod domain;
+pub mod fates;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;

@@ -23,6 +23,13 @@ pub trait Collision: Rule + Copy + 'static {
     #[must_use]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
 
+    /// Whether a particle goes on by a number in `[0, 1)`; one whose ratio is no number does not.
+    #[inline(always)]
+    #[must_use]
+    fn survives<L: Lane>(&self, ratio: L, number: L) -> L::Mask {
+        number.below(self.at(ratio).survival)
+    }
+
     /// `(1 − r)/q`: the factor that a survivor ought to have.
     #[inline(always)]
     #[must_use]
@@ -79,6 +86,12 @@ impl Collision for Null {
         let survival = zero.or_more(one.or_less(one - ratio));
         let death = zero.or_more(one.or_less(ratio));
         Outcome { survival, death, weight: one, loss: zero }
+    }
+
+    /// No number is below 0 or above 1: the cut changes nothing.
+    #[inline(always)]
+    fn survives<L: Lane>(&self, ratio: L, number: L) -> L::Mask {
+        number.below(ratio.each(1.0) - ratio)
     }
 
     /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
@@ -235,6 +248,17 @@ mod tests {
             assert!((Null.due(r, null.survival) - (1.0 - r) / null.survival).abs() < 1e-14);
             assert_eq!(Weight.due(r, weight.survival), (1.0 - r) / weight.survival);
         }
+    }
+
+    #[test]
+    fn null_collisions_are_decided_as_their_chance_says() {
+        for step in -40..60 {
+            let r = 0.05 * f64::from(step);
+            for number in [0.0, 1e-17, 0.3, 0.7, 1.0 - 0.5 * f64::EPSILON] {
+                assert_eq!(Null.survives(r, number), number < Null.at(r).survival, "{r}, {number}");
+            }
+        }
+        assert!(!Null.survives(f64::NAN, 0.0) && !Null.survives(f64::INFINITY, 0.0));
     }
 
     #[test]

@@ -1,16 +1,17 @@
 //! The walks of one order-free request: what becomes of them at the collisions of [`super::layers`].
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
 use rand_distr::{Binomial, Distribution};
 
+use super::fates::{Fates, Flock};
 use super::layers::{BATCH, Sites};
 use super::rules::Collision;
 use super::{DrawBuffer, Setup};
-use crate::media::{Control, Placement};
+use crate::media::{Control, Extinction, FreeFlight, Medium, Placement, Visitor};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Problem;
-use crate::rng::Stream;
+use crate::rng::{Lanes, Stream, Xoshiro};
 
 /// Walks with as many collisions behind them, which do not care in which order they came.
 pub trait Walkers {
@@ -26,8 +27,27 @@ pub trait Walkers {
     /// A batch of the others, from number `first` on, meets its collisions.
     fn collide(&mut self, level: Level, sites: &Sites, first: usize);
 
+    /// All of them meet collisions that nobody shares; `false`, and none has met one, where places have
+    /// to be noted first.
+    fn collide_alone(
+        &mut self,
+        level: Level,
+        medium: &Medium,
+        placement: &Placement,
+        streams: Streams,
+    ) -> bool;
+
     /// All have met theirs.
     fn close(&mut self, layer: u32);
+}
+
+/// The streams of a layer.
+#[derive(Clone, Copy)]
+pub struct Streams<'a> {
+    /// Where collisions lie.
+    pub places: &'a Lanes,
+    /// What becomes of the walks; not looked at where chance does not decide.
+    pub decisions: &'a Lanes,
 }
 
 /// What is to be drawn.
@@ -119,15 +139,31 @@ impl<R: Collision> Walkers for Walks<'_, R> {
             let length = sites.length;
             self.control.look_up(level, &sites.t[..length], &mut self.subtracted[..length]);
         }
-        let (subtracted, mean_free_path) = (&self.subtracted, self.mean_free_path);
-        let fate = Fate {
-            collisions: Collisions { rule: &self.rule, sites, subtracted, mean_free_path },
-            weights: &mut self.weights[..self.walking],
+        let batch = Batch {
+            rule: &self.rule,
+            sites,
+            subtracted: &self.subtracted,
+            mean_free_path: self.mean_free_path,
+            flock: Flock { weights: &mut self.weights[..self.walking], survivors: self.survivors },
             first,
             count,
-            survivors: self.survivors,
         };
-        self.survivors = pack::on(level, fate);
+        self.survivors = pack::on(level, batch);
+    }
+
+    fn collide_alone(
+        &mut self,
+        level: Level,
+        medium: &Medium,
+        placement: &Placement,
+        streams: Streams,
+    ) -> bool {
+        let Some(subtracted) = self.control.single_value() else { return false };
+        let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
+        let rule = &self.rule;
+        let layer = Layer { rule, level, placement, subtracted, streams, flock };
+        self.survivors = medium.profile().visit(layer);
+        true
     }
 
     fn close(&mut self, layer: u32) {
@@ -137,120 +173,104 @@ impl<R: Collision> Walkers for Walks<'_, R> {
     }
 }
 
-/// The collisions of a batch, as these walks see them.
-struct Collisions<'a, R> {
+/// The walks of a batch, the first of which is number `first`, and its collisions.
+struct Batch<'a, R> {
     rule: &'a R,
     sites: &'a Sites,
     subtracted: &'a [f64; BATCH],
     mean_free_path: Option<f64>,
+    flock: Flock<'a>,
+    first: usize,
+    count: usize,
 }
-
-impl<R: Collision> Collisions<'_, R> {
-    /// What becomes of the walks at the collisions of a pack.
-    #[inline(always)]
-    fn fate<S: Simd>(&self, simd: S, from: usize) -> Fates<S> {
-        let Self { rule, sites, subtracted, mean_free_path } = self;
-        let mean_free_path = match *mean_free_path {
-            Some(path) => f64x8::splat(simd, path),
-            None => eight(simd, &sites.mean_free_path, from),
-        };
-        let residual = eight(simd, &sites.extinction, from) - eight(simd, subtracted, from);
-        let ratio = residual * mean_free_path;
-        let outcome = rule.at(ratio);
-        if !R::DECIDES {
-            return Fates { factor: outcome.weight, survived: ALL, unknown: 0 };
-        }
-        // A ratio that is no number makes the draw none: its walk survives to show it.
-        let known = ratio.at_most(ratio);
-        let survived = eight(simd, &sites.decision, from).below(outcome.survival);
-        let unknown = ALL & !known.to_bitmask();
-        let factor = Lane::select(known, outcome.weight, ratio);
-        Fates { factor, survived: survived.to_bitmask() | unknown, unknown }
-    }
-}
-
-/// What becomes of the walks of a pack.
-struct Fates<S: Simd> {
-    /// The factors of their weights.
-    factor: f64x8<S>,
-    /// Who survives, as bits.
-    survived: u64,
-    /// Whose ratio is no number, as bits.
-    unknown: u64,
-}
-
-/// The bits of a whole pack.
-const ALL: u64 = (1 << WIDTH) - 1;
 
 #[inline(always)]
 fn eight<S: Simd>(simd: S, row: &[f64; BATCH], from: usize) -> f64x8<S> {
     f64x8::from_slice(simd, &row[from..from + WIDTH])
 }
 
-/// What becomes of the walks of a batch, the first of which is number `first`.
-struct Fate<'a, R> {
-    collisions: Collisions<'a, R>,
-    weights: &'a mut [f64],
-    first: usize,
-    count: usize,
-    survivors: usize,
-}
-
-impl<R: Collision> Task for Fate<'_, R> {
+impl<R: Collision> Task for Batch<'_, R> {
     type Output = usize;
 
     /// Answers how many have survived, with those before.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> usize {
-        let Self { collisions, weights, first, count, mut survivors } = self;
-        let whole = count / WIDTH * WIDTH;
-        for from in (0..whole).step_by(WIDTH) {
-            let Fates { factor, survived, unknown } = collisions.fate(simd, from);
-            if R::DECIDES && !R::WEIGHS {
-                // They have the weight that they began with, unless it is no number.
-                if unknown != 0
-                    && let Some(weight) = weights.get_mut(survivors)
-                {
-                    *weight = f64::NAN;
-                }
-                survivors += survived.count_ones() as usize;
-            } else if let Some(places) = weights.get_mut(first + from..first + from + WIDTH) {
-                let weight = f64x8::from_slice(simd, places) * factor;
-                if R::DECIDES {
-                    let mut pack = [0.0; WIDTH];
-                    weight.store_slice(&mut pack);
-                    survivors = keep(weights, survivors, &pack, survived);
+        let Self { rule, sites, subtracted, mean_free_path, mut flock, first, count } = self;
+        let path = f64x8::splat(simd, mean_free_path.unwrap_or_default());
+        flock.meet::<S, R>(
+            simd,
+            first,
+            count,
+            #[inline(always)]
+            |from| {
+                let path = if mean_free_path.is_some() {
+                    path
                 } else {
-                    weight.store_slice(places);
-                    survivors += WIDTH;
-                }
-            }
-        }
-        if whole < count {
-            let Fates { factor, survived, .. } = collisions.fate(simd, whole);
-            let mut pack = [0.0; WIDTH];
-            let last = &weights[first + whole..first + count];
-            pack[..last.len()].copy_from_slice(last);
-            let there = (1 << last.len()) - 1;
-            let weight = f64x8::from_slice(simd, &pack) * factor;
-            weight.store_slice(&mut pack);
-            survivors = keep(weights, survivors, &pack, survived & there);
-        }
-        survivors
+                    eight(simd, &sites.mean_free_path, from)
+                };
+                let residual = eight(simd, &sites.extinction, from) - eight(simd, subtracted, from);
+                Fates::new(rule, residual * path, eight(simd, &sites.decision, from))
+            },
+        );
+        flock.survivors
     }
 }
 
-/// Writes the survivors of a pack behind those before them; answers how many there are.
-#[inline(always)]
-fn keep(weights: &mut [f64], mut survivors: usize, pack: &[f64; WIDTH], survived: u64) -> usize {
-    for (lane, &weight) in pack.iter().enumerate() {
-        // Each is written over by the next one that survives.
-        if let Some(place) = weights.get_mut(survivors) {
-            *place = weight;
-        }
-        survivors += (survived >> lane & 1) as usize;
+/// All walks, each at one more collision that is looked up for it alone; the control has one value.
+struct Layer<'a, R> {
+    rule: &'a R,
+    level: Level,
+    placement: &'a Placement<'a>,
+    subtracted: f64,
+    streams: Streams<'a>,
+    flock: Flock<'a>,
+}
+
+impl<R: Collision> Visitor for Layer<'_, R> {
+    type Output = usize;
+
+    fn visit<F: FreeFlight>(self, medium: &F) -> usize {
+        pack::on(self.level, Through { layer: self, medium })
     }
-    survivors
+}
+
+struct Through<'a, R, M> {
+    layer: Layer<'a, R>,
+    medium: &'a M,
+}
+
+impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
+    type Output = usize;
+
+    /// Answers how many have survived.
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) -> usize {
+        let Layer { rule, placement, subtracted, streams, mut flock, .. } = self.layer;
+        let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
+        let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
+        let subtracted = f64x8::splat(simd, subtracted);
+        let plain = placement.plain();
+        let [from, length, path] = plain.unwrap_or_default().map(|value| f64x8::splat(simd, value));
+        let count = flock.weights.len();
+        flock.meet::<S, R>(
+            simd,
+            0,
+            count,
+            #[inline(always)]
+            |_| {
+                let uniform = places.uniform();
+                let (t, path) = if plain.is_some() {
+                    (uniform.times_plus(length, from), path)
+                } else {
+                    placement.at(uniform)
+                };
+                let ratio = (self.medium.extinction(t) - subtracted) * path;
+                let numbers = if R::DECIDES { decisions.uniform() } else { uniform };
+                Fates::new(rule, ratio, numbers)
+            },
+        );
+        flock.survivors
+    }
 }
 
 /// How likely a walk with so many collisions has no more of them.

@@ -60,7 +60,7 @@ fn shape<L: Lane>(half_u: L, turned_v: L) -> L {
     let squared = a * a;
     let fourth = squared * squared;
     let slow = (b * b).times_plus(b.each(2.0 / 3.0), b.each(1.0 / 3.0));
-    fourth * fourth * squared * slow
+    (fourth * fourth) * (squared * slow)
 }
 
 /// Half an angle in half turns.

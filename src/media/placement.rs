@@ -18,7 +18,7 @@ pub struct Placement<'a> {
 
 #[derive(Debug, Clone)]
 enum Shape<'a> {
-    /// One value, but for gaps; the length of the way.
+    /// One value, but for gaps; the length of the way, so rounded that no place is beyond its end.
     Even { even: &'a Even, length: f64, mean_free_path: f64 },
     /// The piece that holds an optical depth; its knot, first value and slope, and the depth before.
     Pieces { search: Search, rows: Vec<Row>, field: &'a Piecewise },
@@ -30,8 +30,8 @@ impl<'a> Placement<'a> {
     pub fn new(field: &'a Piecewise) -> Self {
         let depth = field.depth[field.depth.len() - 1];
         let shape = if let Some(even) = field.even() {
-            let (length, mean_free_path) = (even.to - even.from, 1.0 / even.value);
-            Shape::Even { even, length, mean_free_path }
+            let mean_free_path = 1.0 / even.value;
+            Shape::Even { even, length: within(even.from, even.to), mean_free_path }
         } else {
             let row = |i: usize| {
                 let columns = [field.knots[i], field.left[i], field.slope[i], field.depth[i]];
@@ -61,6 +61,18 @@ impl<'a> Placement<'a> {
         }
     }
 
+    /// Where σ̂ has one value without gaps: `[from, length, 1/σ̂]`, and a number u lies at `from + u·length`,
+    /// as in [`Placement::at`].
+    #[must_use]
+    pub fn plain(&self) -> Option<[f64; 3]> {
+        match self.shape {
+            Shape::Even { even, length, mean_free_path } if even.gaps.is_empty() => {
+                Some([even.from, length, mean_free_path])
+            }
+            _ => None,
+        }
+    }
+
     /// The distance for a number in `[0, 1)`, and the mean free path `1/σ̂` there.
     ///
     /// Within a piece, `y₀ s + k s²/2 = d` as in [`Piecewise::fly`], and `σ̂ = √(y₀² + 2kd)`.
@@ -70,7 +82,6 @@ impl<'a> Placement<'a> {
         match &self.shape {
             &Shape::Even { even, length, mean_free_path } => {
                 let way = uniform.times_plus(uniform.each(length), uniform.each(even.from));
-                let way = way.or_less(way.each(even.to));
                 (even.spread(way), way.each(mean_free_path))
             }
             Shape::Pieces { search, rows, field } => {
@@ -87,11 +98,40 @@ impl<'a> Placement<'a> {
     }
 }
 
+/// The largest length up to `to − from` by which no number below 1 leads beyond `to`, in one rounding
+/// or in two.
+fn within(from: f64, to: f64) -> f64 {
+    let last = 1.0 - 0.5 * f64::EPSILON;
+    let leaves = |length: f64| last.mul_add(length, from) > to || last * length + from > to;
+    let mut length = to - from;
+    while leaves(length) {
+        length = length.next_down();
+    }
+    length
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::media::{FreeFlight, OpticalDepth};
     use crate::numeric::Span;
+
+    #[test]
+    fn no_place_is_beyond_the_end() {
+        let mut ends =
+            vec![(0.0, 20.0), (-1.0, 4.0), (0.1, 0.3), (1e6, 1e6 + 1e-9), (-3.0, 1e-300)];
+        ends.extend(
+            (1..2000).map(|i| (0.1 * f64::from(i), 0.1 * f64::from(i) + f64::from(i).sqrt())),
+        );
+        for (from, to) in ends {
+            let length = within(from, to);
+            let last = (1.0 - 0.5 * f64::EPSILON).times_plus(length, from);
+            assert!(last <= to, "{from} … {to}: {last}");
+            // Rounded ends are all that it can lose.
+            let ulp = f64::EPSILON * from.abs().max(to.abs());
+            assert!((to - from) - length <= 4.0 * ulp, "{from} … {to}");
+        }
+    }
 
     /// The place of a number is where a flight through its share of the optical depth ends.
     #[test]

@@ -84,25 +84,40 @@ const COS_PI: [f64; 8] = [
     4.166_399_462_726_949e-6,
 ];
 
-/// `Σ cₙ xⁿ`: Horner's rule on the even and on the odd terms apart, so that the processor works on
-/// both at once; the order of operations, and so every bit, is fixed by this page.
+/// `Σ cₙ xⁿ` of up to sixteen terms by Estrin's scheme, in pairs, pairs of pairs and so on: half as long
+/// a chain as Horner's rule, and the order of operations, so every bit, is fixed by this page.
 #[inline(always)]
 fn polynomial<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
+    const { assert!(N <= 16) };
     let square = x * x;
-    let last_even = (N - 1) & !1;
-    let last_odd = N - 1 - (N & 1);
-    let (mut even, mut odd) = (x.each(c[last_even]), x.each(c[last_odd]));
-    let mut n = last_even;
-    while n >= 2 {
-        n -= 2;
-        even = even.times_plus(square, x.each(c[n]));
+    let fourth = square * square;
+    let low = eight(0, [x, square, fourth], c);
+    if N <= 8 {
+        return low;
     }
-    let mut n = last_odd;
-    while n >= 3 {
-        n -= 2;
-        odd = odd.times_plus(square, x.each(c[n]));
-    }
-    odd.times_plus(x, even)
+    eight(1, [x, square, fourth], c).times_plus(fourth * fourth, low)
+}
+
+/// The terms from 8i on, over `x^8i`; the powers are x, x² and x⁴.
+#[inline(always)]
+fn eight<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
+    let low = four(2 * i, powers, c);
+    if N <= 8 * i + 4 { low } else { four(2 * i + 1, powers, c).times_plus(powers[2], low) }
+}
+
+/// The terms from 4i on, over `x^4i`.
+#[inline(always)]
+fn four<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
+    let low = two(2 * i, powers, c);
+    if N <= 4 * i + 2 { low } else { two(2 * i + 1, powers, c).times_plus(powers[1], low) }
+}
+
+/// The terms from 2i on, over `x^2i`.
+#[inline(always)]
+fn two<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
+    let [x, ..] = powers;
+    let low = x.each(c[2 * i]);
+    if N <= 2 * i + 1 { low } else { x.each(c[2 * i + 1]).times_plus(x, low) }
 }
 
 /// Natural logarithm of a positive, normal double.

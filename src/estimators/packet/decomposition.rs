@@ -3,9 +3,9 @@
 //! Specification: draw j is, bit for bit, the draw that the page `transmittance/decomposition` makes from
 //! stream j mod 8. The first step of each walk is the control's flight, which looks at nothing.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::{Ends, Request, Walks, ends, pays, run};
+use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::media::course::{Course, Even, Pieces};
@@ -13,7 +13,6 @@ use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
-use crate::rng::Xoshiro;
 
 /// The draws of decomposition tracking beside a constant control, on the hardware of a level; a request
 /// is handed back where the hardware is too narrow or one draw after the other is faster.
@@ -88,7 +87,7 @@ struct Residuals<'a, S: Simd, M, C> {
 }
 
 impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Residuals<'_, S, M, C> {
-    const WORDS: usize = 2;
+    const DECIDES: bool = true;
     type Reader = Survivors;
 
     #[inline(always)]
@@ -97,15 +96,14 @@ impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Residuals<'_, S, M, C> {
     }
 
     #[inline(always)]
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
-        let depth = -streams.ln_uniform();
-        let inside = self.course.fly(depth);
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(numbers.depth);
         let t = Lane::select(inside, self.course.reached(), self.from);
         let collides = inside & !self.flown.at_most(t) & !self.begins;
         let ratio = (self.medium.extinction(t) - self.control) * self.course.mean_free_path();
-        let killed = streams.uniform().below(ratio);
+        let killed = numbers.decision.below(ratio);
         self.flown.store_slice(&mut row.0[0]);
-        let control_flight = depth.times_plus(self.path, self.from);
+        let control_flight = numbers.depth.times_plus(self.path, self.from);
         self.flown = Lane::select(self.begins, control_flight, self.flown);
         let goes_on = self.begins | (collides & !killed);
         self.course.restart(self.begins | !goes_on);

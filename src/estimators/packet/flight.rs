@@ -3,9 +3,9 @@
 //! Specification: draw j is, bit for bit, the draw that the page `free_flight/woodcock` makes from
 //! stream j mod 8.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Ends, Request, Walks, ends, pays, run};
+use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::media::course::{Course, Even, Pieces};
@@ -13,7 +13,6 @@ use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
-use crate::rng::Xoshiro;
 
 /// Free flights by Woodcock tracking, on the hardware of a level, or handed back where one draw after the
 /// other is faster.
@@ -64,7 +63,7 @@ struct Flights<'a, S: Simd, M, C> {
 }
 
 impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
-    const WORDS: usize = 2;
+    const DECIDES: bool = true;
     type Reader = Distances;
 
     #[inline(always)]
@@ -73,11 +72,11 @@ impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
     }
 
     #[inline(always)]
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(-streams.ln_uniform());
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(numbers.depth);
         let t = Lane::select(inside, self.course.reached(), self.from);
         let ratio = self.medium.extinction(t) * self.course.mean_free_path();
-        let goes_on = inside & !streams.uniform().below(ratio);
+        let goes_on = inside & !numbers.decision.below(ratio);
         t.store_slice(&mut row.0[0]);
         self.course.restart(!goes_on);
         ends(inside, goes_on)

@@ -3,15 +3,14 @@
 //! Specification: draw j is, bit for bit, the draw that the page `transmittance/local_majorant` makes from
 //! stream j mod 8. A step is a flight within a segment: no lane waits for those that cross several.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8, u64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
-use super::{Ends, Request, Walks, ends, run};
+use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::media::Extinction;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{self, Lane};
-use crate::rng::Xoshiro;
 
 /// The draws of local-majorant tracking, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or no segment has an extinction.
@@ -75,7 +74,7 @@ struct Hops<'a, S: Simd, M> {
 }
 
 impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
-    const WORDS: usize = 2;
+    const DECIDES: bool = true;
     type Reader = Survivors;
 
     #[inline(always)]
@@ -84,14 +83,14 @@ impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
     }
 
     #[inline(always)]
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
         let simd = self.t.token();
         let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
-        let flown = (-streams.ln_uniform()).times_plus(self.path, self.t);
+        let flown = numbers.depth.times_plus(self.path, self.t);
         let within = flown.below(self.end);
         let t = Lane::select(within, flown, self.t);
         let ratio = self.medium.extinction(t) * self.path;
-        let killed = within & streams.uniform().below(ratio);
+        let killed = within & numbers.decision.below(ratio);
         let inside = within | self.segment.below(self.last);
         let goes_on = inside & !killed;
         self.looked.store_slice(&mut row.0[0]);

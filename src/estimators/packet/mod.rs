@@ -14,8 +14,9 @@ pub mod flight;
 pub mod majorants;
 pub mod product;
 pub mod score;
+mod survival;
 
-use fearless_simd::{Simd, SimdMask, mask64x8, u64x8};
+use fearless_simd::{Simd, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::DrawBuffer;
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
@@ -58,10 +59,27 @@ struct Ends {
     escaped: u64,
 }
 
+/// The random numbers of a step.
+#[derive(Clone, Copy)]
+struct Numbers<S: Simd> {
+    /// The optical depth to the next collision, of mean 1.
+    depth: f64x8<S>,
+    /// Uniform in `[0, 1)`, where chance decides.
+    decision: f64x8<S>,
+}
+
+impl<S: Simd> Numbers<S> {
+    #[inline(always)]
+    fn next(streams: &mut Xoshiro<u64x8<S>>, decides: bool) -> Self {
+        let depth = -streams.ln_uniform();
+        Self { depth, decision: if decides { streams.uniform() } else { depth } }
+    }
+}
+
 /// Eight walks.
 trait Walks<S: Simd> {
-    /// How many words of its stream a step takes.
-    const WORDS: usize;
+    /// Whether chance decides what becomes of them: a step then takes a word for that, too.
+    const DECIDES: bool;
 
     /// What reads their rows.
     type Reader: Reader;
@@ -70,7 +88,7 @@ trait Walks<S: Simd> {
     fn reader(&self) -> Self::Reader;
 
     /// One step of each; walks that end begin anew.
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends;
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends;
 }
 
 #[inline(always)]
@@ -78,20 +96,28 @@ fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
     Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
 }
 
-/// Walks until every lane has made its draws.
+/// Walks until every lane has made its draws; answers where the walks stand then.
 #[inline(always)]
 #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
-fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
+fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
     let Request { streams, count, buffer } = request;
-    let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return };
+    let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return walks };
     let reader = walks.reader();
-    let mut numbers = Lanes::of(&streams.lanes).awake(simd);
+    let mut awake = Lanes::of(&streams.lanes).awake(simd);
+    let words = if W::DECIDES { 2 } else { 1 };
     let mut rows = [Row::default(); STEPS];
+    // The numbers of a step are found while the step of the same number before makes its lookup: a
+    // logarithm takes long and waits for nothing, and a lookup waits for the one before.
+    let (mut before, mut numbers) = (awake, [Numbers::next(&mut { awake }, false); STEPS]);
+    for numbers in &mut numbers {
+        *numbers = Numbers::next(&mut awake, W::DECIDES);
+    }
     while ledger.is_open() {
-        let before = numbers;
+        let after = awake;
         let mut notes = Notes::default();
-        for (step, row) in rows.iter_mut().enumerate() {
-            let ends = walks.step(&mut numbers, row);
+        for (step, (numbers, row)) in numbers.iter_mut().zip(&mut rows).enumerate() {
+            let now = std::mem::replace(numbers, Numbers::next(&mut awake, W::DECIDES));
+            let ends = walks.step(now, row);
             notes.ended[step / 8][step % 8] = ends.ended as u8;
             notes.escaped[step / 8][step % 8] = ends.escaped as u8;
         }
@@ -101,12 +127,14 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) {
             for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {
                 if steps > 0 {
                     *stream = before;
-                    for _ in 0..steps * W::WORDS {
+                    for _ in 0..steps * words {
                         stream.word();
                     }
                 }
             }
         }
+        before = after;
     }
     streams.turn = (streams.turn + count) % LANES;
+    walks
 }

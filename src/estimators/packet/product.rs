@@ -3,9 +3,10 @@
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::walk::product`] makes from
 //! stream j mod 8.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Ends, Request, Walks, ends, pays, run};
+use super::survival::Survivals;
+use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::rules::Collision;
@@ -14,7 +15,6 @@ use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Extinction, Piecewise};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
-use crate::rng::Xoshiro;
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or one draw after the other is faster.
@@ -49,23 +49,41 @@ impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, control, begin, rule, medium, request } = self;
-        let weight = f64x8::splat(simd, begin);
         let from = f64x8::splat(simd, sampling.begin().t);
-        let books = Books::open(weight);
         let control = Subtracted::new(simd, control);
+        let site = Site { rule, medium, control, begin, from };
         if let Some(even) = sampling.even() {
-            let course = Even::new(simd, even);
-            let walks = Products { rule, medium, control, begin, from, course, weight, books };
-            run(simd, walks, request);
+            walk(simd, site, Even::new(simd, even), request);
         } else {
-            let course = Pieces::new(simd, sampling);
-            let walks = Products { rule, medium, control, begin, from, course, weight, books };
-            run(simd, walks, request);
+            walk(simd, site, Pieces::new(simd, sampling), request);
         }
     }
 }
 
+/// Walks without books where that is enough, else with them.
+#[inline(always)]
+fn walk<S: Simd, M: Extinction, R: Collision, C: Course<S> + Copy>(
+    simd: S,
+    site: Site<S, M, R>,
+    course: C,
+    request: Request,
+) {
+    let Request { streams, count, buffer } = request;
+    if R::DECIDES && !R::WEIGHS {
+        let before = streams.clone();
+        let request = Request { streams: &mut *streams, count, buffer: &mut *buffer };
+        if run(simd, Survivals::new(site, course), request).are_balanced() {
+            return;
+        }
+        *streams = before;
+    }
+    let weight = f64x8::splat(simd, site.begin);
+    let books = Books::open(weight);
+    run(simd, Products { site, course, weight, books }, Request { streams, count, buffer });
+}
+
 /// σ_c as the walks ask for it.
+#[derive(Clone, Copy)]
 pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
     control: &'a Control,
     /// Its value, where there is only one.
@@ -89,13 +107,43 @@ impl<'a, S: Simd> Subtracted<'a, S> {
     }
 }
 
-/// The walks of a product estimator.
-struct Products<'a, S: Simd, M, R, C> {
-    rule: &'a R,
+/// What the walks of a product estimator meet.
+pub(super) struct Site<'a, S: Simd, M, R> {
+    pub rule: &'a R,
     medium: &'a M,
     control: Subtracted<'a, S>,
-    begin: f64,
+    pub begin: f64,
     from: f64x8<S>,
+}
+
+impl<S: Simd, M, R> Clone for Site<'_, S, M, R> {
+    #[inline(always)]
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<S: Simd, M, R> Copy for Site<'_, S, M, R> {}
+
+impl<S: Simd, M, R> Site<'_, S, M, R> {
+    #[inline(always)]
+    pub(super) fn zero(&self) -> f64x8<S> {
+        self.from.each(0.0)
+    }
+}
+
+impl<S: Simd, M: Extinction, R> Site<'_, S, M, R> {
+    /// The ratios at the places reached. Beyond the end they mean nothing, and nobody asks for them.
+    #[inline(always)]
+    pub(super) fn ratio<C: Course<S>>(&self, course: &C) -> f64x8<S> {
+        let t = course.reached();
+        (self.medium.extinction(t) - self.control.at(t)) * course.mean_free_path()
+    }
+}
+
+/// The walks of a product estimator.
+struct Products<'a, S: Simd, M, R, C> {
+    site: Site<'a, S, M, R>,
     course: C,
     weight: f64x8<S>,
     books: Books<f64x8<S>>,
@@ -108,24 +156,21 @@ where
     R: Collision,
     C: Course<S>,
 {
-    const WORDS: usize = if R::DECIDES { 2 } else { 1 };
+    const DECIDES: bool = R::DECIDES;
     type Reader = Weights;
 
     #[inline(always)]
     fn reader(&self) -> Weights {
-        Weights { begin: self.begin }
+        Weights { begin: self.site.begin }
     }
 
     #[inline(always)]
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(-streams.ln_uniform());
-        // Beyond the end there is no field to look at.
-        let t = Lane::select(inside, self.course.reached(), self.from);
-        let residual = self.medium.extinction(t) - self.control.at(t);
-        let ratio = residual * self.course.mean_free_path();
-        let outcome = self.rule.at(ratio);
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(numbers.depth);
+        let ratio = self.site.ratio(&self.course);
+        let outcome = self.site.rule.at(ratio);
         let goes_on = if R::DECIDES {
-            let killed = outcome.survival.at_most(streams.uniform());
+            let killed = outcome.survival.at_most(numbers.decision);
             inside & !killed
         } else {
             inside
@@ -135,7 +180,7 @@ where
         books.handed_over.store_slice(&mut row.0[1]);
         books.turnover.store_slice(&mut row.0[2]);
         let (fresh, mut booked) = (Books::open(books.begin), books);
-        booked.hand_over(weight, self.rule.due(ratio, outcome.survival));
+        booked.hand_over(weight, self.site.rule.due(ratio, outcome.survival));
         self.weight = Lane::select(goes_on, weight * outcome.weight, fresh.begin);
         self.books.handed_over = Lane::select(goes_on, booked.handed_over, fresh.handed_over);
         self.books.turnover = Lane::select(goes_on, booked.turnover, fresh.turnover);

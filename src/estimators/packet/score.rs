@@ -3,9 +3,9 @@
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::scoring::walk`] makes from
 //! stream j mod 8.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Ends, Request, Walks, ends, run};
+use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::scoring::{Score, Share};
@@ -13,7 +13,6 @@ use crate::media::course::{Course, Even};
 use crate::media::{Extinction, even};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
-use crate::rng::Xoshiro;
 
 /// The draws of a next-flight estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or σ̂ is not constant.
@@ -69,7 +68,7 @@ struct Scores<'a, S: Simd, M, H> {
 }
 
 impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
-    const WORDS: usize = 1;
+    const DECIDES: bool = false;
     type Reader = Totals;
 
     #[inline(always)]
@@ -78,8 +77,8 @@ impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
     }
 
     #[inline(always)]
-    fn step(&mut self, streams: &mut Xoshiro<u64x8<S>>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(-streams.ln_uniform());
+    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
+        let inside = self.course.fly(numbers.depth);
         let t = Lane::select(inside, self.course.reached(), self.from);
         let ratio = self.medium.extinction(t) * self.course.mean_free_path();
         let score = self.score;

@@ -1,0 +1,81 @@
+//! The packet kernel of walks that keep their weight until they are killed: Woodcock tracking.
+//!
+//! Specification: as [`super::product`], where every ratio r is in `[0, 1]`; where one is not, the walks
+//! say so, and their draws are of no use.
+//!
+//! With `0 ≤ r ≤ 1` the chance to go on is `q = 1 − r`, and what is due to a survivor is `(1 − r)/q = 1`:
+//! it hands nothing over, and its books show what they showed at the beginning. So none are kept, and a
+//! step notes nothing but who ended.
+
+use fearless_simd::{Simd, SimdMask, mask64x8};
+
+use super::product::Site;
+use super::{Ends, Numbers, Walks, ends};
+use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::rules::Collision;
+use crate::estimators::walk::Books;
+use crate::media::{Course, Extinction};
+use crate::numeric::Lane;
+
+/// The walks.
+pub(super) struct Survivals<'a, S: Simd, M, R, C> {
+    site: Site<'a, S, M, R>,
+    course: C,
+    /// Where every ratio so far was in `[0, 1]`.
+    balanced: mask64x8<S>,
+}
+
+impl<'a, S: Simd, M, R, C> Survivals<'a, S, M, R, C> {
+    #[inline(always)]
+    pub(super) fn new(site: Site<'a, S, M, R>, course: C) -> Self {
+        let zero = site.zero();
+        Self { site, course, balanced: zero.at_most(zero) }
+    }
+
+    /// Whether books would have shown nothing.
+    #[inline(always)]
+    pub(super) fn are_balanced(&self) -> bool {
+        self.balanced.all_true()
+    }
+}
+
+impl<S, M, R, C> Walks<S> for Survivals<'_, S, M, R, C>
+where
+    S: Simd,
+    M: Extinction,
+    R: Collision,
+    C: Course<S>,
+{
+    const DECIDES: bool = true;
+    type Reader = Survivors;
+
+    #[inline(always)]
+    fn reader(&self) -> Survivors {
+        let begin = self.site.begin;
+        Survivors { begin, defect: Books::open(begin).defect(begin) }
+    }
+
+    #[inline(always)]
+    fn step(&mut self, numbers: Numbers<S>, _: &mut Row) -> Ends {
+        let inside = self.course.fly(numbers.depth);
+        let ratio = self.site.ratio(&self.course);
+        let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
+        self.balanced = self.balanced & (!inside | (zero.at_most(ratio) & ratio.at_most(one)));
+        let goes_on = inside & self.site.rule.survives(ratio, numbers.decision);
+        self.course.restart(!goes_on);
+        ends(inside, goes_on)
+    }
+}
+
+/// Reads who survived.
+pub(super) struct Survivors {
+    begin: f64,
+    defect: f64,
+}
+
+impl Reader for Survivors {
+    #[inline(always)]
+    fn draw(&self, _: &Row, _: usize, escaped: bool) -> (f64, f64) {
+        (if escaped { self.begin } else { 0.0 }, self.defect)
+    }
+}
