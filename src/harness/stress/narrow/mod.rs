@@ -38,6 +38,7 @@ use rayon::prelude::*;
 use self::compare::{Compared, Stated};
 use self::scene::Scene;
 use super::{Effort, Measure, Row, text};
+use crate::rng::Address;
 
 /// The draws whose statistical error the bias is compared with.
 pub const DRAWS: f64 = 1e8;
@@ -187,10 +188,12 @@ const FAMILIES: &[Family] = &[
     Family { title: "Space", entries: space::ALL, full: BALLS, quick: QUICK_BALLS, budget: LONG },
 ];
 
+/// Pilot draws are found here, where theory has no variance.
+const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
+
 /// What theory says of a channel of a case with one estimator, the only one where it has no name.
 fn stated(text: &str, channel: &str) -> Stated {
-    let prepared =
-        text::case(text).map(|case| Arc::new(case).scenario.prepare(0, None, super::NOWHERE));
+    let prepared = text::case(text).map(|case| Arc::new(case).scenario.prepare(0, None, NOWHERE));
     let Some(Ok(ready)) = prepared.map(|prepared| prepared.outcome) else {
         return Stated::default();
     };
