@@ -14,12 +14,17 @@
 //! | statistics | mean, variance and lookups of the summary, too |
 //! | gate | and the scalars of the gate |
 //! | all checks | and the sums of the laws and the bounds on every draw |
+//!
+//! A second table names the experiments whose bare draws take less than 20 ns, each by itself: what all
+//! checks together make of them.
 
-use cpu_time::ProcessTime;
+use std::hint::black_box;
+
+use cpu_time::{ProcessTime, ThreadTime};
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::checks::Kind;
-use trueflight::harness::plan::BLOCK;
-use trueflight::harness::{Amount, Case, Options, Plan, run, suite};
+use trueflight::harness::plan::{BLOCK, Planned};
+use trueflight::harness::{Amount, Case, Options, Plan, draw, run, suite};
 
 /// Draws per experiment.
 const DRAWS: u64 = 2 * BLOCK;
@@ -45,9 +50,12 @@ fn main() {
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
     one.install(|| {
         if let Some(word) = std::env::args().skip(1).find(|argument| !argument.starts_with('-')) {
-            return report(&format!("cases with `{word}`"), &cases, &|name| name.contains(&word));
+            let is_wanted = |name: &str| name.contains(&word);
+            report(&format!("cases with `{word}`"), &cases, &is_wanted);
+            return cheap(&cases, &is_wanted);
         }
         report("the built-in suite", &cases, &|_| true);
+        cheap(&cases, &|_| true);
         // Walks so short that the gate can be told from them.
         let short: Vec<Case> = suite::calibration()
             .iter()
@@ -123,12 +131,59 @@ fn kernels(plan: &Plan) {
         let Ok(ready) = &planned.outcome else { continue };
         let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
         for block in 0..planned.draws / BLOCK {
-            let mut streams = planned.streams(block);
-            for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {
-                ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
-                std::hint::black_box(&buffer);
-            }
+            bare(planned, block, &mut buffer);
         }
+    }
+}
+
+/// The draws of a block alone.
+fn bare(planned: &Planned, block: u64, buffer: &mut DrawBuffer) {
+    let Ok(ready) = &planned.outcome else { return };
+    let mut streams = planned.streams(block);
+    for _ in 0..BLOCK / DrawBuffer::LENGTH as u64 {
+        ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, buffer);
+        black_box(&buffer);
+    }
+}
+
+/// Experiments that are so fast that their checks can be told, the slowest by comparison first.
+fn cheap(cases: &[Case], is_wanted: &dyn Fn(&str) -> bool) {
+    const FAST: f64 = 20.0;
+    let options = Options { draws: Amount::Exactly(DRAWS), fixed: true, ..Options::default() };
+    let plan = plan(cases, &options, Way::All, is_wanted);
+    let per_draw = |work: &mut dyn FnMut(u64)| {
+        let begin = ThreadTime::now();
+        (0..DRAWS / BLOCK).for_each(work);
+        1e9 * begin.elapsed().as_secs_f64() / DRAWS as f64
+    };
+    let mut rows = Vec::new();
+    for (case, planned) in plan.experiments() {
+        let Ok(ready) = &planned.outcome else { continue };
+        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+        let mut rounds = Vec::new();
+        while rounds.len() < 3 * ROUNDS
+            && rounds.iter().all(|&[bare, _]: &[f64; 2]| bare < 2.0 * FAST)
+        {
+            let alone = per_draw(&mut |block| bare(planned, block, &mut buffer));
+            let whole = per_draw(&mut |block| drop(black_box(draw::blocks(&[planned], block))));
+            rounds.push([alone, whole]);
+        }
+        let alone = median(rounds.iter().map(|round| round[0]));
+        if alone < FAST && rounds.len() == 3 * ROUNDS {
+            let whole = median(rounds.iter().map(|round| round[1]));
+            let ratio = median(rounds.iter().map(|round| round[1] / round[0]));
+            rows.push((
+                ratio,
+                alone,
+                whole,
+                format!("{} {}", case.case.name, planned.names.estimator),
+            ));
+        }
+    }
+    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    println!("\n{} experiments below {FAST} ns a draw, ns bare and with all checks", rows.len());
+    for (ratio, alone, whole, name) in &rows {
+        println!("{ratio:>6.2}× {alone:>7.1} {whole:>7.1}  {name}");
     }
 }
 

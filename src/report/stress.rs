@@ -1,19 +1,16 @@
 //! The stress test's table on the screen, as CSV and as JSON, and single precision as CSV and a plot.
 
+mod plot;
+
 use std::fmt::Write;
 
-use plotters::style::Color;
 use serde::Serialize;
 
-use crate::harness::stress::narrow::{Along, Curve, DRAWS, Point};
+use crate::harness::stress::narrow::{Along, Curve, DRAWS};
 use crate::harness::stress::{Row, Stress};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::legend::{self, Entry};
-use crate::report::plots::sheet::Align;
-use crate::report::plots::style::{DARK, GREY, Style};
-use crate::report::plots::{self, Axis, Panel, Sheet};
+use crate::report::plots;
 use crate::report::rows::table as csv;
 use crate::report::{Artifact, ReportError};
 
@@ -86,21 +83,21 @@ fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
     let title =
         format!("single precision: its bias exceeds the error of {} draws from …", exact(DRAWS));
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let mut estimators: Vec<&str> = curves.iter().map(|curve| curve.estimator).collect();
-    let shown = estimators.len() / Along::ALL.len();
-    estimators.truncate(shown);
+    let estimators: Vec<&Curve> =
+        curves.iter().filter(|curve| curve.along == Along::Steps).collect();
     let of = |along: Along| -> Vec<Field> {
         let curves = curves.iter().filter(|curve| curve.along == along);
         let words = curves.map(|curve| {
             let nowhere = || match curve.holds_to() {
                 Some(x) => format!("> {}", short(x, 3)),
+                None if curve.points.is_empty() => String::new(),
                 None => "not resolved".to_owned(),
             };
             curve.fails_from().map_or_else(nowhere, |x| short(x, 3))
         });
         words.map(Field::plain).collect()
     };
-    let names = estimators.iter().map(|name| Field::plain((*name).to_owned())).collect();
+    let names = estimators.iter().map(|curve| Field::plain(curve.estimator.to_owned())).collect();
     let column = |head, along| Column { head, right: true, rank: 0, fields: of(along) };
     let mut grid = Grid {
         columns: vec![
@@ -139,6 +136,7 @@ struct JsonPoint {
 
 #[derive(Serialize)]
 struct JsonCurve {
+    family: &'static str,
     estimator: &'static str,
     along: &'static str,
     fails_from: Option<f64>,
@@ -171,6 +169,7 @@ fn json(found: &Stress) -> Result<String, ReportError> {
         holds: row.holds(),
     });
     let curves = found.narrow.curves.iter().map(|curve| JsonCurve {
+        family: curve.family,
         estimator: curve.estimator,
         along: curve.along.word(),
         fails_from: curve.fails_from(),
@@ -221,6 +220,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
     let points = found.narrow.curves.iter().flat_map(|curve| {
         curve.points.iter().map(|point| {
             vec![
+                curve.family.to_owned(),
                 curve.estimator.to_owned(),
                 curve.along.word().to_owned(),
                 exact(point.x),
@@ -232,7 +232,17 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
             ]
         })
     });
-    let header = ["estimator", "along", "x", "walks", "bias", "bias_error", "noise_1e8", "exceeds"];
+    let header = [
+        "family",
+        "estimator",
+        "along",
+        "x",
+        "walks",
+        "bias",
+        "bias_error",
+        "noise_1e8",
+        "exceeds",
+    ];
     let narrow = csv("single precision", header, points)?;
     let artifact = |name: &str, text: String| Artifact {
         path: format!("{FOLDER}/{name}").into(),
@@ -243,88 +253,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
         artifact("stress.json", json(found)?),
         artifact("single-precision.csv", narrow),
     ];
-    let sheet = figure(&found.narrow.curves)?;
+    let sheet = plot::figure(&found.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);
     Ok(all)
-}
-
-const LEFT: f64 = 84.0;
-const TOP: f64 = 92.0;
-const PANEL: [f64; 2] = [400.0, 380.0];
-const PITCH: f64 = 494.0;
-
-/// Bias over noise of every estimator along every quantity: above 1 single precision is wrong.
-fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
-    let face = Typeface::load().map_err(|error| ReportError::Draw {
-        figure: "single precision".to_owned(),
-        message: error.to_string(),
-    })?;
-    let width = LEFT + 3.0 * PITCH - 64.0;
-    let names: Vec<&str> = curves
-        .iter()
-        .filter(|curve| curve.along == Along::Steps)
-        .map(|curve| curve.estimator)
-        .collect();
-    let entries: Vec<Entry> = names
-        .iter()
-        .enumerate()
-        .map(|(i, name)| {
-            let Style { colour, dash, marker } = Style::of(i);
-            Entry {
-                label: (*name).to_owned(),
-                line: Some((dash, 2.0)),
-                marker: Some(marker),
-                colour,
-            }
-        })
-        .collect();
-    let below = TOP + PANEL[1] + 78.0;
-    let span = width - LEFT - 18.0;
-    let legend = legend::height(&face, &entries, span);
-    let mut sheet = Sheet::new(width, below + legend + 16.0);
-    let title = "Single precision: its bias beside the statistical error of 1e8 draws";
-    let words = "Points: |mean of X₂₄ − X₅₃|/T over √(V/1e8)/T, from the same random words; bars: two \
-                 standard errors of the bias. Above 1, rounding outgrows the noise.";
-    for (y, text, size, colour) in [(30.0, title, 20.0, DARK), (57.0, words, 13.0, GREY)] {
-        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
-    }
-    for (place, along) in Along::ALL.into_iter().enumerate() {
-        let shown: Vec<&Curve> = curves.iter().filter(|curve| curve.along == along).collect();
-        one_panel(&mut sheet, place, along, &shown);
-    }
-    legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
-    Ok(sheet)
-}
-
-/// What is drawn of a point: below a thousandth the bias is nothing.
-const FLOOR: f64 = 1e-3;
-
-fn one_panel(sheet: &mut Sheet, place: usize, along: Along, curves: &[&Curve]) {
-    // Without a variance there is no noise to compare with.
-    let has_noise = |point: &&Point| point.noise.is_finite();
-    let points = || curves.iter().flat_map(|curve| &curve.points).filter(has_noise);
-    let share = |bias: f64, noise: f64| (bias.abs() / noise).max(FLOOR);
-    let x = Axis::around(along.title(), true, 0.04, points().map(|point| point.x));
-    let shares = points().map(|point| share(point.bias, point.noise)).filter(|y| y.is_finite());
-    let y = Axis::around("bias / noise", true, 0.04, shares.chain([FLOOR, 10.0]));
-    let left = LEFT + place as f64 * PITCH;
-    let panel = Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y };
-    panel.grid(sheet);
-    let edges = [panel.x.low, panel.x.high].map(|x| (x, 1.0));
-    panel.line(sheet, edges, (&[], 1.6, GREY));
-    for (i, curve) in curves.iter().enumerate() {
-        let Style { colour, dash, marker } = Style::of(i);
-        let shown = || curve.points.iter().filter(has_noise);
-        let line = shown().map(|point| (point.x, share(point.bias, point.noise)));
-        panel.line(sheet, line, (dash, 1.6, colour));
-        for point in shown() {
-            let Some(spot) = panel.spot(point.x, share(point.bias, point.noise)) else { continue };
-            let [low, high] = [-2.0, 2.0].map(|z| (point.bias.abs() + z * point.error).max(0.0));
-            let ends = (share(low, point.noise), share(high, point.noise));
-            panel.bar(sheet, spot[0], ends, (3.0, 1.0, colour.mix(0.5)));
-            panel.point(sheet, spot, marker, 4.0, colour);
-        }
-    }
-    let heads = ["(a) τ = 2", "(b) σ\u{302} = 20 max σₜ", "(c) τ = 2, 40 collisions"];
-    panel.frame(sheet, heads[place]);
 }

@@ -19,6 +19,8 @@ const BINS: usize = 20;
 const CELLS: usize = 8;
 /// The share of a cell by which rounding surely moves no distance.
 const SLACK: f64 = 0.0625;
+/// From here on doubles are whole numbers.
+const INTEGERS: f64 = 4_503_599_627_370_496.0;
 /// So few ends need no guide.
 const FEW: usize = 32;
 
@@ -33,6 +35,8 @@ pub struct Classes {
     guide: Vec<u16>,
     /// Where the cells begin.
     first: f64,
+    /// The number of the last cell.
+    last: f64,
     /// How many there are in a length of 1.
     scale: f64,
     /// The probability that a ray escapes.
@@ -64,15 +68,18 @@ impl Classes {
         // Fewer than there are is a guide, too.
         let guide = (0..=cells + 1).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
-        Self { guide: guide.collect(), first, scale, ends, escapes }
+        let last = (cells + 1) as f64;
+        Self { guide: guide.collect(), first, last, scale, ends, escapes }
     }
 
     /// The class of a distance, that of the rays that escape last: how many ends are not beyond it.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a negative one is cell 0
+    #[allow(clippy::cast_possible_truncation)] // the last bits of 2^52 and a little more
     fn class(&self, s: f64) -> usize {
-        let cell = ((s - self.first) * self.scale + 1.0) as usize;
-        let guess = usize::from(self.guide[cell.min(self.guide.len() - 1)]);
+        // The nearest integer of half a cell less: a conversion that need not guard against overflow.
+        let cell = ((s - self.first) * self.scale + 0.5).max(0.0).min(self.last);
+        let cell = (cell + INTEGERS).to_bits() as u32 as usize;
+        let guess = self.guide.get(cell).map_or(0, |&guess| usize::from(guess));
         let reached = |class: usize| self.ends.get(class).is_some_and(|&end| end <= s);
         // Most cells lie in one class or two, and escape is one more: sums do not hang on chance, as
         // branches would.

@@ -19,7 +19,7 @@ pub struct Scene {
 }
 
 /// One over the period of the waves, times 2π.
-const FREQUENCY: f64 = 6.0 * std::f64::consts::PI;
+pub const FREQUENCY: f64 = 6.0 * std::f64::consts::PI;
 /// Their amplitude.
 const WAVE: f64 = 0.8;
 /// The cells of local majorants.
@@ -44,9 +44,30 @@ impl Scene {
         (1.0 - WAVE) * self.depth
     }
 
-    /// `∫₀^s σ_t`.
-    fn depth_to(&self, s: f64) -> f64 {
-        self.depth * (s + WAVE * (1.0 - (FREQUENCY * s).cos()) / FREQUENCY)
+    /// `∫₀^s σ_t`, in closed form.
+    #[inline(always)]
+    pub fn depth_to<L: Lane>(&self, s: L) -> L {
+        let wave = s.each(1.0) - (s * FREQUENCY).cos();
+        (s + wave * (WAVE / FREQUENCY)) * self.depth
+    }
+
+    /// The mean of σ_t between two places.
+    #[inline(always)]
+    pub fn mean<L: Lane>(&self, one: L, other: L) -> L {
+        let half = (other - one) * (0.5 * FREQUENCY);
+        let middle = (one + other) * 0.5 - self.from;
+        let is_near = half.size().at_most(half.each(1e-4));
+        let sinc = L::select(is_near, half.each(1.0), half.sin() / half);
+        ((middle * FREQUENCY).sin() * sinc * WAVE + 1.0) * self.depth
+    }
+
+    /// σ_t along z as a case writes it, `= { … }` to follow a medium's name.
+    pub fn sines(&self, frequencies: &str) -> String {
+        format!(
+            "{{ base = {:e}, amplitudes = [{:e}], {frequencies}, phases = [0] }}",
+            self.depth,
+            WAVE * self.depth
+        )
     }
 
     /// σ̂ of each cell: as many collisions, shared like the largest σ_t.
@@ -79,12 +100,8 @@ impl Scene {
 
     /// The same of next-flight and unidirectional MIS; `None` where theory has lost it.
     pub fn of_source(&self, source: &dyn Source) -> Option<f64> {
-        let text = format!(
-            "medium.sines = {{ base = {:e}, amplitudes = [{:e}], frequencies = [{FREQUENCY:e}], \
-             phases = [0] }}\nspan = [0, 1]",
-            self.depth,
-            WAVE * self.depth
-        );
+        let field = self.sines(&format!("frequencies = [{FREQUENCY:e}]"));
+        let text = format!("medium.sines = {field}\nspan = [0, 1]");
         let mesh = Mesh::new(text::medium(&text)?);
         let found = volterra::predict(&mesh, self.collisions, source);
         found.channels[0].moments.map(|moments| moments.relative[0])
