@@ -63,9 +63,10 @@ impl Scene {
         let centre = centre_of(self.core);
         let ball = Ball { radius: self.radius, centre, extinction };
         let solve = |resolution| Solved::new(&ball, self.albedo, self.lights, resolution);
-        let [fine, coarse, coarsest] = Resolution::COARSE.all().map(solve);
+        let resolution = Resolution::COARSE.about(centre, self.radius);
+        let [fine, coarse, coarsest] = resolution.all().map(solve);
         let solved = [fine?, coarse?, coarsest?];
-        let value = Resolution::COARSE.known(solved.each_ref().map(|s| s.answer(self.asked)));
+        let value = resolution.known(solved.each_ref().map(|s| s.answer(self.asked)));
         Some(Answer { value, spread: solved[0].spread(self.asked, self.is_distant)? })
     }
 }

@@ -225,6 +225,7 @@ pub fn answers(
     resolution: Resolution,
     asked: &[Asked],
 ) -> Option<Vec<Known>> {
+    let resolution = resolution.about(ball.centre, ball.radius);
     let solve = |resolution| Solved::new(ball, albedo, lights, resolution);
     let [fine, coarse, coarsest] = resolution.all().map(solve);
     let solved = [fine?, coarse?, coarsest?];

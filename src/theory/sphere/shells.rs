@@ -49,32 +49,43 @@ impl Resolution {
 
     /// What an answer and those of two other resolutions say together.
     pub(super) fn known(self, [fine, coarse, other]: [f64; 3]) -> Known {
-        let difference = (fine - coarse).abs().max((fine - other).abs());
-        Known::new(fine, SAFETY * difference + self.chance * fine.abs())
+        let difference = (fine - coarse).abs().max(SAFETY * (fine - other).abs());
+        Known::new(fine, difference + self.chance * fine.abs())
+    }
+
+    /// Around what is at the centre: shells as wide as a small black sphere follow `1/r²` badly, all three
+    /// answers alike. Measured: 1.3e-4 at 0.012 R.
+    #[must_use]
+    pub(super) fn about(self, centre: Centre, radius: f64) -> Self {
+        match centre {
+            Centre::Black(core) => {
+                Self { chance: self.chance * (2.0 * radius / core).powi(2), ..self }
+            }
+            Centre::Medium | Centre::Point => self,
+        }
     }
 
     /// What the error is told by: the answers of both others differ by more than the finest is off, but
     /// where they agree by chance. All three seldom do.
     pub(super) fn all(self) -> [Self; 3] {
-        [self, self.coarser(2), self.coarser(1)]
+        [self, self.coarser([2, 2, 3, 4]), self.coarser([1, 1, 1, 1])]
     }
 
-    fn coarser(self, by: u32) -> Self {
-        let fewer = by as usize;
+    fn coarser(self, [nodes, surface, core, centre]: [u32; 4]) -> Self {
         Self {
-            nodes: self.nodes - fewer,
-            directions: self.directions - fewer,
-            surface: self.surface - by,
-            core: self.core - by - 1,
-            centre: self.centre - 2 * by,
+            nodes: self.nodes - nodes as usize,
+            directions: self.directions - nodes as usize,
+            surface: self.surface - surface,
+            core: self.core - core,
+            centre: self.centre - centre,
             chance: self.chance,
         }
     }
 }
 
-/// The larger difference of three answers is taken so many times: of 1536 answers the worst was 2.3 times
-/// as far off.
-const SAFETY: f64 = 4.0;
+/// The difference to the answer of nearly the same fineness is taken so many times. Of 6000 answers about
+/// black spheres of more than 0.012 R none was off by more than 0.6 of what is stated.
+const SAFETY: f64 = 8.0;
 
 /// What is at the centre of a ball.
 #[derive(Debug, Clone, Copy, PartialEq)]
