@@ -28,7 +28,7 @@ pub trait Walkers {
     fn collide(&mut self, level: Level, sites: &Sites, first: usize);
 
     /// All of them meet collisions that nobody shares; `false`, and none has met one, where places have
-    /// to be noted first.
+    /// to be noted first, or the hardware is too narrow to gain by not noting them.
     fn collide_alone(
         &mut self,
         level: Level,
@@ -162,8 +162,9 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
         let rule = &self.rule;
         let layer = Layer { rule, level, placement, subtracted, streams, flock };
-        self.survivors = medium.profile().visit(layer);
-        true
+        let survivors = medium.profile().visit(layer);
+        self.survivors = survivors.unwrap_or_default();
+        survivors.is_some()
     }
 
     fn close(&mut self, layer: u32) {
@@ -227,10 +228,10 @@ struct Layer<'a, R> {
 }
 
 impl<R: Collision> Visitor for Layer<'_, R> {
-    type Output = usize;
+    type Output = Option<usize>;
 
-    fn visit<F: FreeFlight>(self, medium: &F) -> usize {
-        pack::on(self.level, Through { layer: self, medium })
+    fn visit<F: FreeFlight>(self, medium: &F) -> Option<usize> {
+        pack::on_wide(self.level, Through { layer: self, medium }).ok()
     }
 }
 
