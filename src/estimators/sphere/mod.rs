@@ -19,7 +19,7 @@ use crate::theory::{Channel, CountLaw, Law, Moments, Odds, ParticleRule, Predict
 pub use connect::{Connect, Honest, Seeker};
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
-const BLURRED: f64 = 1e-4;
+pub const BLURRED: f64 = 1e-4;
 /// The optical depth from the surface to the centre up to which the equation is solved.
 const DEEPEST: f64 = 30.0;
 /// A tracked transmittance may have this second moment, relative to that of an untracked one.

@@ -14,6 +14,7 @@
 use super::rods::{of_stated, share};
 use super::slabs::{directions, roots, solved};
 use super::{Dice, Effort, Measure, Row, in_parts};
+use crate::estimators::sphere::BLURRED;
 use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::theory::sphere::ball::Ball;
@@ -213,7 +214,7 @@ const FINER: Resolution =
 
 /// Other albedos and lights, by a finer solution.
 fn finer(dice: &mut Dice, trials: u32) -> Row {
-    let range = "radial σ_t, black spheres 0.01 … 0.95 R; a finer solution";
+    let range = "radial σ_t, black spheres 0.01 … 0.95 R, known to 1e-4; a finer solution";
     let mut row = Row::new("ball of any albedo", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
         let ((said, extinction), (centre, core)) = (field(dice), centre(dice));
@@ -224,12 +225,18 @@ fn finer(dice: &mut Dice, trials: u32) -> Row {
         let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
         let found = answers(&ball, albedo, lights, Resolution::COARSE, &asked);
         let fine = answers(&ball, albedo, lights, FINER, &asked);
-        for (i, asked) in asked.iter().enumerate() {
-            let error = found
-                .as_ref()
-                .zip(fine.as_ref())
-                .map_or(f64::NAN, |(found, fine)| of_stated(found[i], Wide::from(fine[i].value)));
-            row.see(error, || format!("σ_t = {said}, a = {albedo:e}, {centre:?}, {asked:?}"));
+        let Some((found, fine)) = found.zip(fine) else {
+            row.see(f64::NAN, || format!("σ_t = {said}, a = {albedo:e}, {centre:?}"));
+            continue;
+        };
+        for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
+            let said = || format!("σ_t = {said}, a = {albedo:e}, {centre:?}, {asked:?}");
+            // Nobody draws against an answer that is known no better.
+            if found.error > BLURRED * found.value {
+                row.skip(said);
+            } else {
+                row.see(of_stated(found, Wide::from(fine.value)), said);
+            }
         }
     }
     row
