@@ -146,7 +146,7 @@ fn fields(dice: &mut Dice, trials: u32) -> Row {
     row
 }
 
-/// Panels of s that double away from the light's foot, and none of them wide.
+/// Panels of s that grow away from the light's foot and from both ends, and none of them wide.
 fn graded(problem: &SingleScattering) -> f64 {
     let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
     let (support, foot) = (medium.support(), problem.foot());
@@ -158,6 +158,12 @@ fn graded(problem: &SingleScattering) -> f64 {
     while away < support.length() {
         ends.extend([foot - away, foot + away]);
         away *= 1.5;
+    }
+    // A light just outside sees the ends of the support at a glance: roots of the distance from them.
+    let mut near = step;
+    while near > 1e-13 * support.length() {
+        near *= 0.5;
+        ends.extend([support.from + near, support.to - near]);
     }
     ends.push(foot);
     ends.retain(|&s| support.contains_inside(s));

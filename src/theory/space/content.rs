@@ -90,7 +90,8 @@ fn has_kinks(volume: &Volume) -> bool {
 
 /// What a sequence of resolutions is still off, by its last steps. Where the field is smooth, the last one
 /// if it settles fast, and four times that if it settles slowly. Kinks make steps of any size, and two
-/// resolutions may be alike by chance: the largest of three steps says more.
+/// resolutions may be alike by chance: the largest of three steps says more, and where fewer were made,
+/// each that is missing may have been four times as large.
 fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     let last = &steps[steps.len().saturating_sub(3)..];
     let shrinks = |factor: f64| {
@@ -101,7 +102,8 @@ fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     } else if shrinks(4.0) {
         4.0 * last[2]
     } else {
-        6.0 * last.iter().copied().fold(0.0, f64::max)
+        let missing = 3_usize.saturating_sub(last.len());
+        6.0 * 4f64.powf(missing as f64) * last.iter().copied().fold(0.0, f64::max)
     }
 }
 

@@ -159,7 +159,7 @@ struct Family {
 }
 
 const SHORT: [f64; 2] = [3e4, 5e5];
-const LONG: [f64; 2] = [2e4, 6e5];
+const LONG: [f64; 2] = [2e4, 4e5];
 
 const FAMILIES: &[Family] = &[
     Family {
