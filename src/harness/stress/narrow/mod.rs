@@ -158,8 +158,8 @@ struct Family {
     budget: [f64; 2],
 }
 
-const SHORT: [f64; 2] = [3e4, 5e5];
-const LONG: [f64; 2] = [2e4, 4e5];
+const SHORT: [f64; 2] = [3e4, 3e5];
+const LONG: [f64; 2] = [2e4, 3e5];
 
 const FAMILIES: &[Family] = &[
     Family {
