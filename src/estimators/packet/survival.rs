@@ -60,7 +60,7 @@ where
         let inside = self.course.fly(numbers.depth);
         let ratio = self.site.ratio(&self.course);
         let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
-        self.balanced = self.balanced & (!inside | (zero.at_most(ratio) & ratio.at_most(one)));
+        self.balanced &= !inside | (zero.at_most(ratio) & ratio.at_most(one));
         let goes_on = inside & self.site.rule.survives(ratio, numbers.decision);
         self.course.restart(!goes_on);
         ends(inside, goes_on)

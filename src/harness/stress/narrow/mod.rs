@@ -13,7 +13,7 @@
 //! u₂₄    the upper 24 bits of the word: 1 − k/2²⁴, as renderers make it
 //! ```
 //!
-//! V and E[X] are what theory says of a case of the same words. Where it knows no V (roulette, walks in
+//! V and the mean are what theory says of a case of the same words. Where it knows no V (roulette, walks in
 //! space) that of the doubles' own draws takes its place, and where it has no answer their mean.
 //!
 //! The lattice of u₂₄ alone shortens flights by `ln(2πN)/(2N) = 5.5e-7`, N = 2²⁴: estimators of small
