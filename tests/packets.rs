@@ -116,6 +116,7 @@ fn cases() -> Vec<Case> {
             estimators = [{ESTIMATORS} {OTHERS}
                 {{ ray-marching = {{ steps = 10, jitter = true, expect = \"biased\" }} }},
                 {{ ray-marching = {{ steps = 3, expect = \"biased\" }} }},
+                {{ woodcock = {{ sampling.constant.value = 0.3, expect = \"biased\" }} }},
                 {{ ratio.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [0.5, 2, 1] }} }}]"
         );
         let flight = format!(

@@ -47,8 +47,8 @@ struct Node {
 }
 
 fn cut_nodes() -> Vec<Node> {
-    // Below e⁻⁷⁶ lies 1e-33 of the integral.
-    let steps = -76 * STEPS..=26 * STEPS;
+    // Below e⁻⁷⁶ lies 1e-33 of the integral, above e³¹ 1e-27.
+    let steps = -76 * STEPS..=31 * STEPS;
     let node = |i: i32| {
         let w = (n(f64::from(i)) / n(f64::from(STEPS))).exp();
         // tanh ln(1 + w), without the exponential.
