@@ -1,14 +1,16 @@
 //! What eight walks side by side leave behind, and the draws that are made of it.
 //!
 //! Steps have no branches: each notes a row of numbers and who ended in it. After [`STEPS`] of them
-//! the notes are searched, in the order of the steps, and every walk that ended becomes the next
-//! draw of its lane. What a lane ends beyond its number of draws is left out.
+//! the notes are searched, lane by lane, and every walk that ended becomes the next draw of its lane.
+//! What a lane ends beyond its number of draws is left out.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, u8x64};
 
 use super::DrawBuffer;
 use crate::numeric::pack::WIDTH;
 use crate::rng::LANES;
 
-/// Steps between two searches; eight notes of who ended make a word.
+/// Steps between two searches; what a lane did in them makes a word.
 pub const STEPS: usize = 64;
 
 /// What is noted of a step: three numbers of each lane, before the step's outcome.
@@ -50,13 +52,43 @@ pub struct Ledger<'a> {
     defects: &'a mut [f64],
 }
 
-/// Who ended in [`STEPS`] steps, and who of them escaped: eight steps to a word.
-#[derive(Default)]
+/// Who ended in [`STEPS`] steps, and who of them escaped: the lanes of a step are the bits of its byte.
 pub struct Notes {
     /// Who ended.
-    pub ended: [[u8; 8]; STEPS / 8],
+    pub ended: [u8; STEPS],
     /// Who of them reached the end.
-    pub escaped: [[u8; 8]; STEPS / 8],
+    pub escaped: [u8; STEPS],
+}
+
+impl Notes {
+    /// Nothing yet.
+    #[must_use]
+    pub fn empty() -> Self {
+        Self { ended: [0; STEPS], escaped: [0; STEPS] }
+    }
+
+    /// The same by lanes.
+    #[inline(always)]
+    #[must_use]
+    pub fn by_lanes<S: Simd>(&self, simd: S) -> [Endings; WIDTH] {
+        let (ended, escaped) =
+            (u8x64::from_slice(simd, &self.ended), u8x64::from_slice(simd, &self.escaped));
+        let mut endings = [Endings::default(); WIDTH];
+        for (lane, ending) in endings.iter_mut().enumerate() {
+            let bit = 1 << lane;
+            ending.ended = (ended & bit).simd_eq(bit).to_bitmask();
+            ending.escaped = (escaped & bit).simd_eq(bit).to_bitmask();
+        }
+        endings
+    }
+}
+
+/// In which of [`STEPS`] steps a lane ended a walk, and in which of them because it reached the end, as
+/// bits.
+#[derive(Clone, Copy, Default)]
+pub struct Endings {
+    ended: u64,
+    escaped: u64,
 }
 
 impl<'a> Ledger<'a> {
@@ -86,38 +118,35 @@ impl<'a> Ledger<'a> {
         &mut self,
         reader: &R,
         rows: &[Row; STEPS],
-        notes: &Notes,
+        endings: &[Endings; WIDTH],
     ) -> [usize; WIDTH] {
         let mut over = [0; WIDTH];
         // All of one length, which the loop then knows.
         let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
         let (values, lookups) = (&mut self.values[..count], &mut self.lookups[..count]);
         let defects = &mut self.defects[..count];
-        for (group, (ended, escaped)) in notes.ended.iter().zip(&notes.escaped).enumerate() {
-            let (mut ended, escaped) = (u64::from_le_bytes(*ended), u64::from_le_bytes(*escaped));
-            while ended != 0 {
-                let bit = ended.trailing_zeros() & 63;
+        for (lane, (quota, ending)) in self.quotas.iter_mut().zip(endings).enumerate() {
+            let Quota { mut place, mut began } = *quota;
+            let mut ended = ending.ended;
+            // A lane that has made its draws walks on for nothing.
+            while ended != 0 && place < count {
+                let step = ended.trailing_zeros() & (STEPS as u32 - 1);
                 ended &= ended - 1;
-                let (step, lane) = (8 * group + bit as usize / 8, bit as usize % 8);
-                let quota = &mut self.quotas[lane];
-                let place = quota.place;
-                if place >= count {
-                    continue; // This lane has made its draws.
-                }
-                let has_escaped = escaped >> bit & 1 == 1;
-                let row = &rows[step % STEPS];
+                let has_escaped = ending.escaped >> step & 1 == 1;
+                let row = &rows[step as usize];
                 (values[place], defects[place]) = reader.draw(row, lane, has_escaped);
-                let now = self.first.wrapping_add(step as u32);
-                let before = reader.lookups(row, lane, now.wrapping_sub(quota.began));
+                let now = self.first.wrapping_add(step);
+                let before = reader.lookups(row, lane, now.wrapping_sub(began));
                 // The step that leaves looks at nothing.
                 lookups[place] = before + u32::from(!has_escaped);
-                quota.began = now.wrapping_add(1);
-                quota.place = place + LANES;
-                if quota.place >= count {
+                began = now.wrapping_add(1);
+                place += LANES;
+                if place >= count {
                     self.open -= 1;
-                    over[lane] = step + 1;
+                    over[lane] = step as usize + 1;
                 }
             }
+            *quota = Quota { place, began };
         }
         self.first = self.first.wrapping_add(STEPS as u32);
         over

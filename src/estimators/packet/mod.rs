@@ -140,7 +140,7 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
     ahead.find_all(&mut awake, W::DECIDES);
     while ledger.is_open() {
         let after = awake;
-        let mut notes = Notes::default();
+        let mut notes = Notes::empty();
         for (step, row) in rows.iter_mut().enumerate() {
             let now = if W::DECIDES {
                 // A step waits for the one before: logarithms, which wait for nothing, fill the time.
@@ -149,10 +149,10 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
                 Numbers { depth: ahead.depths[step], decision: ahead.depths[step] }
             };
             let ends = walks.step(now, row);
-            notes.ended[step / 8][step % 8] = ends.ended as u8;
-            notes.escaped[step / 8][step % 8] = ends.escaped as u8;
+            notes.ended[step] = ends.ended as u8;
+            notes.escaped[step] = ends.escaped as u8;
         }
-        let over = ledger.collect(&reader, &rows, &notes);
+        let over = ledger.collect(&reader, &rows, &notes.by_lanes(simd));
         if over != [0; WIDTH] {
             let before = before.at_rest().apart();
             for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {

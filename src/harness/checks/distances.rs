@@ -21,8 +21,10 @@ const CELLS: usize = 8;
 const SLACK: f64 = 0.0625;
 /// From here on doubles are whole numbers.
 const INTEGERS: f64 = 4_503_599_627_370_496.0;
-/// Distances whose cells are found at once.
-const ROW: usize = 256;
+/// Distances that are counted at once.
+const ROW: usize = 512;
+/// Ends that a distance is compared with at once.
+const NEAR: usize = 3;
 /// So few ends need no guide.
 const FEW: usize = 32;
 
@@ -31,8 +33,11 @@ pub struct Distances;
 
 /// Equally probable classes of the distances of the rays that collide.
 pub struct Classes {
-    /// The upper ends of all classes, the last of which is the distance of the rays that escape.
+    /// The upper ends of all classes, the last of which is the distance of the rays that escape, and
+    /// [`NEAR`] that are no number: nothing reaches those.
     ends: Vec<f64>,
+    /// How many classes.
+    classes: usize,
     /// Equal cells from the first end to the last but one: how many ends surely lie before each.
     guide: Vec<u16>,
     /// Where the cells begin.
@@ -64,14 +69,16 @@ impl Classes {
         let cells = CELLS * ends.len();
         let width = length / cells.max(1) as f64;
         ends.push(escape);
+        let classes = ends.len();
         // A distance that rounding puts into the next cell still finds its class ahead.
         let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
         let passed = |cell| ends.partition_point(|&end| end < before(cell));
         // Fewer than there are is a guide, too.
         let guide = (0..=cells + 1).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
-        let last = (cells + 1) as f64;
-        Self { guide: guide.collect(), first, last, scale, ends, escapes }
+        let (guide, last) = (guide.collect(), (cells + 1) as f64);
+        ends.extend([f64::NAN; NEAR]);
+        Self { guide, first, last, scale, ends, classes, escapes }
     }
 
     /// The cell of a distance.
@@ -90,37 +97,42 @@ impl Classes {
     /// it.
     #[inline(always)]
     fn class(&self, s: f64, cell: u32) -> usize {
-        let guess = self.guide.get(cell as usize).map_or(0, |&guess| usize::from(guess));
-        let reached = |class: usize| self.ends.get(class).is_some_and(|&end| end <= s);
-        // Most cells lie in one class or two, and escape is one more: sums do not hang on chance, as
-        // branches would.
-        let mut class = guess + usize::from(reached(guess)) + usize::from(reached(guess + 1));
-        while reached(class) {
-            class += 1;
+        let mut class = self.guide.get(cell as usize).map_or(0, |&before| usize::from(before));
+        loop {
+            let near = self.ends.get(class..).and_then(<[f64]>::first_chunk::<NEAR>);
+            let Some(near) = near else { return class };
+            // Most cells lie in one class or two, and escape is one more: sums do not hang on chance, as
+            // branches would.
+            let reached = near.iter().map(|&end| usize::from(end <= s)).sum::<usize>();
+            class += reached;
+            if reached < NEAR {
+                return class;
+            }
         }
-        class
     }
 
     /// How many classes, escape not counted.
     pub(super) fn len(&self) -> usize {
-        self.ends.len()
+        self.classes
     }
 
     /// Counts draws: the classes in order, then the rays that escape.
     pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
         let values = &draws.values[0];
-        if self.ends.len() <= FEW {
-            // All draws against one end after the other, so that no branch hangs on chance.
-            let mut reached = values.len();
-            for (class, &end) in self.ends.iter().enumerate() {
-                let beyond = in_fused_code(
-                    #[inline(always)]
-                    || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
-                );
-                sums[class] += (reached - beyond) as f64;
-                reached = beyond;
+        if self.classes <= FEW {
+            // All draws of a row against one end after the other, so that no branch hangs on chance.
+            for values in values.chunks(ROW) {
+                let mut reached = values.len();
+                for (sum, &end) in sums.iter_mut().zip(&self.ends[..self.classes]) {
+                    let beyond = in_fused_code(
+                        #[inline(always)]
+                        || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
+                    );
+                    *sum += (reached - beyond) as f64;
+                    reached = beyond;
+                }
+                sums[self.classes] += reached as f64;
             }
-            sums[self.len()] += reached as f64;
             return;
         }
         // The cells of a row at once: that has no branches and no lists.
