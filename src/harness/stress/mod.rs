@@ -264,6 +264,10 @@ macro_rules! pages {
     ($($module:ident,)*) => {
         $(pub mod $module;)*
         mod bodies;
+        mod chains;
+        mod ordinates;
+        mod peierls;
+        mod techniques;
         mod text;
         pub mod narrow;
 
@@ -284,11 +288,14 @@ pages! {
     moments,
     collided,
     rods,
+    inside,
     slabs,
+    walks,
     balls,
     infinite,
     contents,
     scattering,
+    scattered,
     costs,
     extremes,
     verdicts,

@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::chains::arsinh;
 use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
 use crate::geometry::{Point, Ray};
 use crate::media::{Control, Piecewise};
@@ -45,6 +46,21 @@ fn radiance(problem: &SingleScattering) -> Known {
     Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
 }
 
+/// A light of power 1 beside a ray through a homogeneous medium that scatters evenly.
+pub(super) fn lit(
+    sigma: f64,
+    distance: f64,
+    foot: f64,
+    length: f64,
+    albedo: f64,
+) -> Option<SingleScattering> {
+    let field = text::volume(&format!("volume.constant.extinction = {sigma:e}"))?;
+    let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length)?;
+    let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
+    let phase = Phase::Isotropic(Isotropic);
+    SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
+}
+
 fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
     let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
     let mut row = Row::new("single scattering, radiance", range, Measure::OfStated, 1.0);
@@ -54,27 +70,13 @@ fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
         let sigma = dice.sized(-4.0, 2.4) / length;
         let (distance, foot) = (dice.sized(-6.0, 1.0), dice.between(-0.3, 1.3) * length);
         let place = || format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
-        let field = text::volume(&format!("volume.constant.extinction = {sigma:e}"));
-        let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length);
-        let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
-        let problem = field.zip(ray).and_then(|(field, ray)| {
-            let phase = Phase::Isotropic(Isotropic);
-            SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
-        });
-        let Some(problem) = problem else {
+        let Some(problem) = lit(sigma, distance, foot, length, albedo) else {
             row.skip(place);
             continue;
         };
         let found = radiance(&problem);
         let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
-        let ends = [Wide::from(0.0), Wide::from(length)].map(|s| {
-            // arsinh, of the size of its argument.
-            let x = (s - foot) / distance;
-            let size = x.abs();
-            let near =
-                (size + size * size / (Wide::ONE + (Wide::ONE + size * size).sqrt())).ln_1p();
-            if x.high < 0.0 { -near } else { near }
-        });
+        let ends = [0.0, length].map(|s| arsinh((Wide::from(s) - foot) / distance));
         let width = ends[1] - ends[0];
         let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
         let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);

@@ -107,23 +107,27 @@ impl Walk {
 
     /// `E[X_R^k]` and `E[X_T^k]`; `None` where they are infinite.
     fn powers(&self, k: i32) -> Option<[Known; 2]> {
-        let moments = |odds: Odds| [odds.transmitted(k), odds.scattered(k), 0.0];
+        let moments = |ratio: f64| {
+            let means = [1.0 - ratio, self.albedo * ratio];
+            let [straight, scattered] = self.odds(ratio).moments(means, k);
+            [straight, scattered, 0.0]
+        };
         let layers = |pieces: &[Piece]| -> Vec<Slice> {
-            pieces.iter().map(|piece| piece.slice(|ratio| moments(self.odds(ratio)))).collect()
+            pieces.iter().map(|piece| piece.slice(moments)).collect()
         };
         let exact = |slices: &[Slice]| {
             let answer = solve(&self.incidence, slices, Resolution::COARSE)?;
             Some([answer.reflected, answer.transmitted])
         };
         if self.is_tracking() {
-            return exact(&[Piece::of(self.depth, 1.0).slice(|ratio| moments(self.odds(ratio)))]);
+            return exact(&[Piece::of(self.depth, 1.0).slice(moments)]);
         }
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
                 // A mean over a layer would hide where light along it grows without end.
                 let grows = |&[_, ratio]: &[f64; 2]| {
-                    let [straight, scattered, _] = moments(self.odds(ratio));
+                    let [straight, scattered, _] = moments(ratio);
                     straight >= 1.0 && scattered > 0.0
                 };
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
