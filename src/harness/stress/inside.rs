@@ -42,9 +42,9 @@ struct Kinds([Row; 3]);
 
 impl Kinds {
     fn new(what: &str, range: &str) -> Self {
-        let row =
-            |seen: &str| Row::new(format!("{what}{seen} of a rod"), range, Measure::OfStated, 1.0);
-        Self(["orders", "flux inside", "absorption"].map(row))
+        let row = |seen: &str| Row::new(format!("{what}{seen}"), range, Measure::OfStated, 1.0);
+        let seen = ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
+        Self(seen.map(row))
     }
 
     fn of(&mut self, seen: Seen) -> Option<&mut Row> {
