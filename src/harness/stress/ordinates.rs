@@ -20,20 +20,29 @@ use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::problems::slab::Light;
 
+/// A root that doubles find is so near, relative.
+const NEAR: f64 = 1e-12;
+/// The most of Newton's steps.
+const STEPS: u32 = 8;
+
 /// Directions and the solutions in them.
 pub struct Ordinates {
     depth: Wide,
     cosines: Vec<Wide>,
     weights: Vec<Wide>,
-    /// ν, A and B.
-    swing: Option<[Wide; 3]>,
-    /// k, α and β.
-    parts: Vec<[Wide; 3]>,
+    swing: Option<Swing>,
+    /// k, α, β and `e^{−kτ}`.
+    parts: Vec<[Wide; 4]>,
 }
 
-/// The sine and the cosine of half a slab's swing, and ν.
-fn half_way(nu: Wide, depth: Wide) -> [Wide; 2] {
-    (nu * depth).scaled(-1).sin_cos()
+/// The solution that swings.
+struct Swing {
+    /// ν.
+    rate: Wide,
+    /// The sine and the cosine of ντ/2.
+    half_way: [Wide; 2],
+    /// A and B.
+    sizes: [Wide; 2],
 }
 
 impl Ordinates {
@@ -45,33 +54,39 @@ impl Ordinates {
             roots.remove(0);
             swing(albedo, &cosines, &weights)
         });
+        let faint: Vec<Wide> = roots.iter().map(|&k| (-(k * depth)).exp()).collect();
+        let half_way = nu.map(|nu| (nu * depth).scaled(-1).sin_cos());
         // Light from both sides alike, and of opposite signs: their halves add up to that from above.
         let solutions = [Wide::ONE, -Wide::ONE].map(|sign| {
-            let entry = |mu: Wide, k: Wide| {
-                let far = (-(k * depth)).exp() / (Wide::ONE + k * mu);
+            let entry = |mu: Wide, k: Wide, faint: Wide| {
+                let far = faint / (Wide::ONE + k * mu);
                 Wide::ONE / (Wide::ONE - k * mu) + sign * far
             };
-            let swinging = |mu: Wide, nu: Wide| {
-                let ([sine, cosine], x) = (half_way(nu, depth), nu * mu);
+            let swinging = |mu: Wide, nu: Wide, [sine, cosine]: [Wide; 2]| {
+                let x = nu * mu;
                 let size = Wide::ONE + x * x;
-                if sign.high > 0.0 {
-                    (cosine - x * sine) / size
-                } else {
-                    (sine + x * cosine) / size
-                }
+                let turned = [cosine - x * sine, sine + x * cosine];
+                turned[usize::from(sign.high < 0.0)] / size
             };
             let row = |&mu: &Wide| {
-                let first = nu.iter().map(|&nu| swinging(mu, nu));
-                let entries = roots.iter().map(|&k| entry(mu, k));
-                first.chain(entries).chain([Wide::ONE]).collect()
+                let first = nu.zip(half_way).map(|(nu, half_way)| swinging(mu, nu, half_way));
+                let entries = roots.iter().zip(&faint).map(|(&k, &faint)| entry(mu, k, faint));
+                first.into_iter().chain(entries).chain([Wide::ONE]).collect()
             };
             solved(cosines.iter().map(row).collect())
         });
         let [same, opposite] = solutions;
         let (mut same, mut opposite) = (same?, opposite?);
-        let swing = nu.map(|nu| [nu, same.remove(0), opposite.remove(0)]);
-        let parts = roots.iter().zip(same).zip(opposite);
-        let parts = parts.map(|((&k, a), b)| [k, (a + b).scaled(-1), (a - b).scaled(-1)]).collect();
+        let swing = nu.zip(half_way).map(|(nu, half_way)| Swing {
+            rate: nu,
+            half_way,
+            sizes: [same.remove(0), opposite.remove(0)],
+        });
+        let parts = roots.iter().zip(faint).zip(same.into_iter().zip(opposite));
+        let part = |((&k, faint), (a, b)): ((&Wide, Wide), (Wide, Wide))| {
+            [k, (a + b).scaled(-1), (a - b).scaled(-1), faint]
+        };
+        let parts = parts.map(part).collect();
         Some(Self { depth, cosines, weights, swing, parts })
     }
 
@@ -86,11 +101,12 @@ impl Ordinates {
         (0..=PLACES).all(|i| {
             let t = self.depth * Wide::from(f64::from(i) / f64::from(PLACES));
             let rest = self.depth - t;
-            let swinging = self.swing.map(|[nu, a, b]| {
-                let [sine, cosine] = (nu * (rest - t)).scaled(-1).sin_cos();
+            let swinging = self.swing.as_ref().map(|swing| {
+                let [a, b] = swing.sizes;
+                let [sine, cosine] = (swing.rate * (rest - t)).scaled(-1).sin_cos();
                 (a * cosine + b * sine).scaled(-1)
             });
-            let part = |&[k, alpha, beta]: &[Wide; 3]| {
+            let part = |&[k, alpha, beta, _]: &[Wide; 4]| {
                 alpha * (-(k * t)).exp() + beta * (-(k * rest)).exp()
             };
             let sum: Wide = self.parts.iter().map(part).chain(swinging).sum();
@@ -102,8 +118,8 @@ impl Ordinates {
     fn leaving(&self, cosine: Wide) -> [Wide; 2] {
         let straight = (-(self.depth / cosine)).exp();
         let mut leaving = [Wide::default(), straight];
-        if let Some([nu, a, b]) = self.swing {
-            let ([sine, swung], x) = (half_way(nu, self.depth), nu * cosine);
+        if let Some(Swing { rate, half_way: [sine, swung], sizes: [a, b] }) = self.swing {
+            let x = rate * cosine;
             let size = (Wide::ONE + x * x).scaled(1);
             let (less, more) = (Wide::ONE - straight, Wide::ONE + straight);
             let even = a * (swung * less + x * sine * more) / size;
@@ -111,8 +127,7 @@ impl Ordinates {
             leaving[0] += even + odd;
             leaving[1] += even - odd;
         }
-        for &[k, alpha, beta] in &self.parts {
-            let faint = (-(k * self.depth)).exp();
+        for &[k, alpha, beta, faint] in &self.parts {
             let near = (Wide::ONE - faint * straight) / (Wide::ONE + k * cosine);
             let away = Wide::ONE - k * cosine;
             let x = away * self.depth / cosine;
@@ -172,16 +187,48 @@ pub(super) fn directions(count: usize) -> (Vec<Wide>, Vec<Wide>) {
     (cosines, weights.into_iter().map(|w| w / whole).collect())
 }
 
-/// One k between 0 and the first `1/μ`, and one between each two.
+/// One k between 0 and the first `1/μ`, and one between each two: bisected in doubles and found by Newton's
+/// steps from there, or bisected in 32 digits where doubles do not tell it from a `1/μ`.
 pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
     let left = |k: Wide| {
         let term = |(&mu, &w): (&Wide, &Wide)| w / (Wide::ONE - (k * mu).powi(2));
         Wide::ONE - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
     };
+    let rough = |k: f64| {
+        let term = |(mu, w): (&Wide, &Wide)| w.high / (1.0 - (k * mu.high).powi(2));
+        1.0 - albedo.high * cosines.iter().zip(weights).map(term).sum::<f64>()
+    };
+    let step = |k: Wide| {
+        let (mut sum, mut slope) = (Wide::default(), Wide::default());
+        for (&mu, &w) in cosines.iter().zip(weights) {
+            let inverse = Wide::ONE / (Wide::ONE - (k * mu).powi(2));
+            sum += w * inverse;
+            slope += w * (inverse * mu).powi(2);
+        }
+        (Wide::ONE - albedo * sum) / (albedo * slope * k).scaled(1)
+    };
     let mut from = Wide::default();
     let between = cosines.iter().map(|&mu| {
         let (mut low, mut high) = (from, Wide::ONE / mu);
         from = high;
+        let mut ends = [low.high, high.high];
+        for _ in 0..60 {
+            let middle = 0.5 * (ends[0] + ends[1]);
+            ends[usize::from(rough(middle) <= 0.0)] = middle;
+        }
+        let near = [1.0 - NEAR, 1.0 + NEAR].map(|x| Wide::from(ends[0]) * Wide::from(x));
+        let is_between = near[0].high > low.high && near[1].high < high.high;
+        if is_between && left(near[0]).high > 0.0 && left(near[1]).high < 0.0 {
+            let mut root = Wide::from(ends[0]);
+            for _ in 0..STEPS {
+                let more = step(root);
+                root += more;
+                let is_inside = near[0].high <= root.high && root.high <= near[1].high;
+                if is_inside && more.high.abs() <= 1e-24 * root.high {
+                    return root;
+                }
+            }
+        }
         for _ in 0..110 {
             let middle = (low + high).scaled(-1);
             if left(middle).high > 0.0 { low = middle } else { high = middle }
