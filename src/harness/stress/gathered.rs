@@ -33,7 +33,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let mut rows = ["variance", "fourth moment"].map(|what| {
             Row::new(format!("single scattering in fields, {what}"), range, Measure::OfStated, 1.0)
         });
-        for _ in 0..effort.of(u32::from(part % 4 == 0), 2) {
+        for _ in 0..effort.of(u32::from(part % 4 == 0), 4) {
             trial(dice, &mut rows);
         }
         rows.to_vec()
@@ -58,7 +58,7 @@ struct At {
 fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
     let (what, problem) = field(dice);
     let (scale, shadow_scale) = (dice.sized(-0.2, 0.7), dice.sized(-0.2, 0.7));
-    let kind = dice.below(3);
+    let kind = dice.below(9);
     let Some(problem) = problem.filter(|problem| !problem.medium().support().is_empty()) else {
         rows.iter_mut().for_each(|row| row.skip(|| what.clone()));
         return;
@@ -67,7 +67,7 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
     let mesh = Mesh::new(problem.medium().clone());
     let largest = mesh.largest(|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
     let (sampling, most) = (scale * largest, problem.shadow_majorant());
-    let tracking = match kind {
+    let tracking = match kind % 3 {
         0 => Tracking::Exact,
         1 => Tracking::Ratio { sampling: shadow_scale * most, control: 0.0 },
         _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
@@ -83,26 +83,23 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
         Points::of(&scene(along), &Technique { density: &density, gain: &gain, found: None })
     };
     let nodes = nodes(&problem, sampling, tracking);
-    let found = [
-        ("by angle, exact", by_angle(Along::Exact), at_point(&nodes, false)),
-        ("by angle, ratio", by_angle(Along::Ratio), at_point(&nodes, true)),
-        (
-            "at collisions",
-            walks::at_collisions(&scene(Along::Ratio)),
-            at_collisions(&nodes, sampling),
-        ),
-    ];
-    for (name, points, raw) in found {
-        let place = || format!("{name}, σ̂ = {sampling:e}, {tracking:?}, {what}");
-        match points.prediction().channels[0].moments {
-            Some(known) => {
-                let exact = central(raw.map(Wide::from), Wide::from(known.scale));
-                for (row, (exact, i)) in rows.iter_mut().zip(exact.into_iter().zip([0, 2])) {
-                    row.see(exact.relative_error(known.relative[i]) / known.error, place);
-                }
-            }
-            None => rows.iter_mut().for_each(|row| row.skip(place)),
+    let (name, points, raw) = match kind / 3 {
+        0 => ("by angle, exact", by_angle(Along::Exact), at_point(&nodes, false)),
+        1 => ("by angle, ratio", by_angle(Along::Ratio), at_point(&nodes, true)),
+        _ => {
+            let points = walks::at_collisions(&scene(Along::Ratio));
+            ("at collisions", points, at_collisions(&nodes, sampling))
         }
+    };
+    let place = || format!("{name}, σ̂ = {sampling:e}, {tracking:?}, {what}");
+    match points.prediction().channels[0].moments {
+        Some(known) => {
+            let exact = central(raw.map(Wide::from), Wide::from(known.scale));
+            for (row, (exact, i)) in rows.iter_mut().zip(exact.into_iter().zip([0, 2])) {
+                row.see(exact.relative_error(known.relative[i]) / known.error, place);
+            }
+        }
+        None => rows.iter_mut().for_each(|row| row.skip(place)),
     }
 }
 
