@@ -33,7 +33,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let mut rows = ["variance", "fourth moment"].map(|what| {
             Row::new(format!("single scattering in fields, {what}"), range, Measure::OfStated, 1.0)
         });
-        for _ in 0..effort.of(u32::from(part % 4 == 0), 4) {
+        for _ in 0..effort.of(u32::from(part % 2 == 0), 3) {
             trial(dice, &mut rows);
         }
         rows.to_vec()

@@ -10,6 +10,8 @@
 //! Y^k, Y = Σ c w:           A = σ̂(1 − Q_k − S_k p_f), B = σ̂ S_k p_b,  s from Y, …, Y^{k−1}
 //! ```
 
+use std::cell::OnceCell;
+
 use super::collided::central;
 use super::rods::{moments_of, of_stated, rod_with, share};
 use super::{Dice, Effort, Measure, Row, in_parts};
@@ -182,6 +184,10 @@ struct Line {
     stretches: Vec<Stretch>,
     forward: Wide,
     parts: f64,
+    /// The highest order.
+    highest: usize,
+    /// What leaves at the end and at the beginning by order, to the powers 1 … 4, once it is known.
+    orders: [[OnceCell<Vec<Wide>>; 2]; 4],
 }
 
 impl Line {
@@ -206,7 +212,12 @@ impl Line {
             Stretch { steps, step, sampling, absorbed, part: twelfth * parts / 12, odds }
         };
         let stretches = (0..12).map(of).collect();
-        Self { stretches, forward, parts: parts as f64 }
+        let order = |seen: &Seen| match seen {
+            Seen::ReflectedBy(order) | Seen::TransmittedBy(order) => *order,
+            _ => 0,
+        };
+        let highest = case.channels.iter().map(order).max().unwrap_or(0);
+        Self { stretches, forward, parts: parts as f64, highest, orders: Default::default() }
     }
 
     /// `E[X], …, E[X^k]` of a channel, the others 0.
@@ -214,11 +225,10 @@ impl Line {
         let mut powers = [Wide::default(); 4];
         match seen {
             Seen::ReflectedBy(order) | Seen::TransmittedBy(order) => {
-                let is_back = matches!(seen, Seen::ReflectedBy(_));
-                let (zero, one) = (Wide::default(), Wide::ONE);
-                let ends = if is_back { [one, zero] } else { [zero, one] };
-                for (power, k) in powers.iter_mut().zip(1..=k) {
-                    *power = self.by_order(k, ends, order);
+                let is_back = usize::from(matches!(seen, Seen::ReflectedBy(_)));
+                for (power, k) in powers.iter_mut().zip(1..=k as usize) {
+                    let orders = &self.orders[k - 1][is_back];
+                    *power = orders.get_or_init(|| self.by_order(k, is_back))[order];
                 }
             }
             Seen::Flux(part) => {
@@ -235,19 +245,22 @@ impl Line {
         powers
     }
 
-    fn by_order(&self, k: u32, ends: [Wide; 2], order: usize) -> Wide {
-        let k = k as usize;
+    /// Of all orders to the power k.
+    fn by_order(&self, k: usize, is_back: usize) -> Vec<Wide> {
+        let mut ends = [Wide::default(); 2];
+        ends[1 - is_back] = Wide::ONE;
         let rates = |stretch: &Stretch| [Wide::ONE - stretch.odds[k][0], Wide::default()];
         let mut worth = self.solve(&rates, &|_, _| NOTHING, ends);
-        for _ in 0..order {
+        let mut orders = vec![worth[0][0][0]];
+        for _ in 0..self.highest {
             let before = worth;
             let source = |stretch: &Stretch, i: usize| {
-                let [q, s] = [Wide::default(), stretch.odds[k][1]];
-                self.after([q, s], &before[i])
+                self.after([Wide::default(), stretch.odds[k][1]], &before[i])
             };
             worth = self.solve(&rates, &source, [Wide::default(); 2]);
+            orders.push(worth[0][0][0]);
         }
-        worth[0][0][0]
+        orders
     }
 
     /// `E[Y^j]` of a score c.

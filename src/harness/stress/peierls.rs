@@ -2,7 +2,7 @@
 //!
 //! What light scattered at x is worth that leaves on top is ½E₂ of the optical depth above it, or scatters
 //! again; below likewise. Between the nodes of a panel it is a polynomial; next to the logarithm of E₁ the
-//! quadrature is finer by the cube.
+//! quadrature is finer by the fourth power.
 //!
 //! ```text
 //! W(x) = ½E₂(u(x)) + ½ ∫ E₁(|u(x) − u(x')|) s(x') W(x') dx',   u = ∫ l dx,  l = σ̂(1 − Q),  s = σ̂ S
@@ -70,7 +70,7 @@ fn exponentials(x: f64) -> [f64; 2] {
 impl<'a> Peierls<'a> {
     /// Cut at the given places inside.
     pub fn new(rates: &'a Rates<'a>, breaks: &[f64]) -> Self {
-        let (rule, finer) = (GaussLegendre::new(NODES), GaussLegendre::new(16));
+        let (rule, finer) = (GaussLegendre::new(NODES), GaussLegendre::new(24));
         let mut ends = vec![0.0, 0.5, 1.0];
         ends.extend(breaks);
         for shrink in 1..=SHRINKS {
@@ -135,9 +135,9 @@ impl<'a> Peierls<'a> {
         for end in [panel.x.from, panel.x.to] {
             let length = end - nearest;
             for (v, weight) in self.finer.nodes.iter().zip(&self.finer.weights) {
-                let x = nearest + length * v.powi(3);
+                let x = nearest + length * v.powi(4);
                 let [first, _] = exponentials((self.depth_at(panel, x) - depth).abs());
-                let share = 1.5 * weight * length.abs() * v * v * first * (self.rates)(x)[1];
+                let share = 2.0 * weight * length.abs() * v.powi(3) * first * (self.rates)(x)[1];
                 for (sum, basis) in sums.iter_mut().zip(self.basis(panel, x)) {
                     *sum += share * basis;
                 }

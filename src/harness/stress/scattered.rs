@@ -36,7 +36,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
             ["variance", "fourth moment", "lookups"]
                 .map(|what| row(&format!("single scattering {kind}, {what}")))
         });
-        for _ in 0..effort.of(u32::from(part % 4 == 0), 10) {
+        for _ in 0..effort.of(u32::from(part % 2 == 0), 6) {
             trial(dice, &mut kinds);
         }
         kinds.into_iter().flatten().collect()

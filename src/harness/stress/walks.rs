@@ -43,9 +43,9 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "walks", part);
         let some = |every: u64, full: u32| effort.of(u32::from(part % every == 0), full);
-        let mut rows = even(dice, some(8, 3));
+        let mut rows = even(dice, some(4, 3));
         rows.extend(finer(dice, some(8, 2)));
-        rows.extend(graded(dice, some(8, 2)));
+        rows.extend(graded(dice, some(8, 1)));
         rows
     })
 }
