@@ -18,8 +18,8 @@
 //!
 //! Where the collisions of a layer lie is the same for every σ̂ that is constant, whatever control
 //! and rule. Experiments that find their random numbers at one address can so share all lookups:
-//! each makes the draws that it would make alone ([`draw`]). One that is alone notes no places: a pack
-//! of its walks is looked up and decided at once.
+//! each makes the draws that it would make alone ([`draw`]). One that is alone, with one σ̂ and one
+//! σ_c, notes no places: a pack of its walks is looked up and decided at once.
 //!
 //! Source: the layers are the multinomial histogram of N, drawn bin by bin; binomial numbers by
 //! `rand_distr`.
@@ -51,6 +51,19 @@ pub struct Sites {
     pub length: usize,
 }
 
+impl Sites {
+    fn empty() -> Box<Self> {
+        let none = [0.0; BATCH];
+        Box::new(Self {
+            t: none,
+            extinction: none,
+            mean_free_path: none,
+            decision: none,
+            length: 0,
+        })
+    }
+}
+
 /// Makes the draws of requests that share their places, on the hardware of a level: one by itself, or
 /// several whose σ̂ is constant. Each makes the draws that it would make alone.
 pub fn draw(
@@ -60,13 +73,7 @@ pub fn draw(
     places: &Lanes,
     requests: &mut [&mut dyn Walkers],
 ) {
-    let mut sites = Box::new(Sites {
-        t: [0.0; BATCH],
-        extinction: [0.0; BATCH],
-        mean_free_path: [0.0; BATCH],
-        decision: [0.0; BATCH],
-        length: 0,
-    });
+    let mut sites: Option<Box<Sites>> = None;
     let decides = requests.iter().any(|walkers| walkers.decides());
     for layer in 0.. {
         for walkers in requests.iter_mut() {
@@ -77,8 +84,8 @@ pub fn draw(
             return;
         }
         // Streams of the layer: how far others went in the one before does not matter.
-        let mut chance = places.branch(2 * layer);
-        let mut fate = if decides { places.branch(2 * layer + 1) } else { chance };
+        let mut chance = places.branch(level, 2 * layer);
+        let mut fate = if decides { places.branch(level, 2 * layer + 1) } else { chance };
         let is_done = if let [alone] = requests {
             let streams = Streams { places: &chance, decisions: &fate };
             alone.collide_alone(level, medium, placement, streams)
@@ -86,9 +93,10 @@ pub fn draw(
             false
         };
         if !is_done {
+            let sites = sites.get_or_insert_with(Sites::empty);
             for first in (0..most).step_by(BATCH) {
                 sites.length = BATCH.min((most - first).next_multiple_of(WIDTH));
-                let (chance, sites) = (&mut chance, &mut *sites);
+                let (chance, sites) = (&mut chance, &mut **sites);
                 medium.profile().visit(Visit { level, placement, chance, sites });
                 if decides {
                     pack::on(level, Decide { fate: &mut fate, sites });

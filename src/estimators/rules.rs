@@ -30,6 +30,14 @@ pub trait Collision: Rule + Copy + 'static {
         number.below(self.at(ratio).survival)
     }
 
+    /// The weight after a collision with ratio `r = (σ_t − σ_c)/σ̂`, from the one before it, by the residual
+    /// extinction and the mean free path `1/σ̂`: of order-free walks, whose draws no others have to equal.
+    #[inline(always)]
+    #[must_use]
+    fn weigh<L: Lane>(&self, weight: L, residual: L, mean_free_path: L) -> L {
+        weight * self.at(residual * mean_free_path).weight
+    }
+
     /// `(1 − r)/q`: the factor that a survivor ought to have.
     #[inline(always)]
     #[must_use]
@@ -49,6 +57,12 @@ impl Collision for Weight {
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let one = ratio.each(1.0);
         Outcome { survival: one, death: ratio.each(0.0), weight: one - ratio, loss: ratio }
+    }
+
+    /// `w − (σ_t − σ_c) w/σ̂`, which waits less for the extinction than `w(1 − r)`.
+    #[inline(always)]
+    fn weigh<L: Lane>(&self, weight: L, residual: L, mean_free_path: L) -> L {
+        (-residual).times_plus(weight * mean_free_path, weight)
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
 use rand_distr::{Binomial, Distribution};
 
-use super::fates::{Fates, Flock};
+use super::fates::{Collisions, Flock};
 use super::layers::{BATCH, Sites};
 use super::rules::Collision;
 use super::{DrawBuffer, Setup};
@@ -11,6 +11,7 @@ use crate::media::{Control, Extinction, FreeFlight, Medium, Placement, Visitor};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Problem;
+use crate::rng::xoshiro::SCALE;
 use crate::rng::{Lanes, Stream, Xoshiro};
 
 /// Walks with as many collisions behind them, which do not care in which order they came.
@@ -28,7 +29,8 @@ pub trait Walkers {
     fn collide(&mut self, level: Level, sites: &Sites, first: usize);
 
     /// All of them meet collisions that nobody shares; `false`, and none has met one, where places have
-    /// to be noted first, or the hardware is too narrow to gain by not noting them.
+    /// to be noted first, since σ̂ or the control varies, or the hardware is too narrow to gain by not
+    /// noting them.
     fn collide_alone(
         &mut self,
         level: Level,
@@ -73,8 +75,8 @@ pub fn product<'a, P: Problem, R: Collision>(
 struct Walks<'a, R> {
     rule: R,
     control: &'a Control,
-    /// `σ_c` at the collisions of a batch; written once where it has one value.
-    subtracted: [f64; BATCH],
+    /// `σ_c` at the collisions of a batch, written once where it has one value; `None` before the first.
+    subtracted: Option<Box<[f64; BATCH]>>,
     /// `1/σ̂`, where it has one value.
     mean_free_path: Option<f64>,
     hazards: Hazards,
@@ -97,7 +99,7 @@ impl<'a, R: Collision> Walks<'a, R> {
         Some(Self {
             rule,
             control: &setup.control,
-            subtracted: [setup.control.single_value().unwrap_or_default(); BATCH],
+            subtracted: None,
             mean_free_path: placement.mean_free_path(),
             hazards: Hazards::new(placement.depth()),
             counts,
@@ -135,14 +137,17 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         if count == 0 {
             return;
         }
-        if self.control.single_value().is_none() {
+        let single = self.control.single_value();
+        let subtracted =
+            self.subtracted.get_or_insert_with(|| Box::new([single.unwrap_or_default(); BATCH]));
+        if single.is_none() {
             let length = sites.length;
-            self.control.look_up(level, &sites.t[..length], &mut self.subtracted[..length]);
+            self.control.look_up(level, &sites.t[..length], &mut subtracted[..length]);
         }
         let batch = Batch {
             rule: &self.rule,
             sites,
-            subtracted: &self.subtracted,
+            subtracted,
             mean_free_path: self.mean_free_path,
             flock: Flock { weights: &mut self.weights[..self.walking], survivors: self.survivors },
             first,
@@ -158,10 +163,18 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         placement: &Placement,
         streams: Streams,
     ) -> bool {
-        let Some(subtracted) = self.control.single_value() else { return false };
+        let (Some([from, length, mean_free_path]), Some(subtracted)) =
+            (placement.plain(), self.control.single_value())
+        else {
+            return false;
+        };
+        let unit = length * SCALE;
+        if !unit.is_normal() {
+            return false; // It would have lost digits.
+        }
         let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
-        let rule = &self.rule;
-        let layer = Layer { rule, level, placement, subtracted, streams, flock };
+        let (rule, places) = (&self.rule, [from, unit]);
+        let layer = Layer { rule, level, places, mean_free_path, subtracted, streams, flock };
         let survivors = medium.profile().visit(layer);
         self.survivors = survivors.unwrap_or_default();
         survivors.is_some()
@@ -198,30 +211,37 @@ impl<R: Collision> Task for Batch<'_, R> {
     fn run<S: Simd>(self, simd: S) -> usize {
         let Self { rule, sites, subtracted, mean_free_path, mut flock, first, count } = self;
         let path = f64x8::splat(simd, mean_free_path.unwrap_or_default());
-        flock.meet::<S, R>(
+        flock.meet(
             simd,
+            rule,
             first,
             count,
             #[inline(always)]
             |from| {
-                let path = if mean_free_path.is_some() {
+                let mean_free_path = if mean_free_path.is_some() {
                     path
                 } else {
                     eight(simd, &sites.mean_free_path, from)
                 };
                 let residual = eight(simd, &sites.extinction, from) - eight(simd, subtracted, from);
-                Fates::new(rule, residual * path, eight(simd, &sites.decision, from))
+                Collisions {
+                    residual,
+                    mean_free_path,
+                    decision: eight(simd, &sites.decision, from),
+                }
             },
         );
         flock.survivors
     }
 }
 
-/// All walks, each at one more collision that is looked up for it alone; the control has one value.
+/// All walks, each at one more collision that is looked up for it alone; σ̂ and control have one value.
 struct Layer<'a, R> {
     rule: &'a R,
     level: Level,
-    placement: &'a Placement<'a>,
+    /// Where they may be: from here on, in steps of so much.
+    places: [f64; 2],
+    mean_free_path: f64,
     subtracted: f64,
     streams: Streams<'a>,
     flock: Flock<'a>,
@@ -246,28 +266,36 @@ impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
     /// Answers how many have survived.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> usize {
-        let Layer { rule, placement, subtracted, streams, mut flock, .. } = self.layer;
+        let Layer {
+            rule,
+            places: [from, unit],
+            mean_free_path,
+            subtracted,
+            streams,
+            mut flock,
+            ..
+        } = self.layer;
         let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
         let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
-        let subtracted = f64x8::splat(simd, subtracted);
-        let plain = placement.plain();
-        let [from, length, path] = plain.unwrap_or_default().map(|value| f64x8::splat(simd, value));
+        let [from, unit, mean_free_path, subtracted] =
+            [from, unit, mean_free_path, subtracted].map(|value| f64x8::splat(simd, value));
         let count = flock.weights.len();
-        flock.meet::<S, R>(
+        // Found while the lookup before is made: a shorter chain, of which more are under way at once.
+        let mut next = [places.integer().times_plus(unit, from), decisions.uniform()];
+        flock.meet(
             simd,
+            rule,
             0,
             count,
             #[inline(always)]
             |_| {
-                let uniform = places.uniform();
-                let (t, path) = if plain.is_some() {
-                    (uniform.times_plus(length, from), path)
-                } else {
-                    placement.at(uniform)
-                };
-                let ratio = (self.medium.extinction(t) - subtracted) * path;
-                let numbers = if R::DECIDES { decisions.uniform() } else { uniform };
-                Fates::new(rule, ratio, numbers)
+                let [t, decision] = next;
+                next[0] = places.integer().times_plus(unit, from);
+                if R::DECIDES {
+                    next[1] = decisions.uniform();
+                }
+                let residual = self.medium.extinction(t) - subtracted;
+                Collisions { residual, mean_free_path, decision }
             },
         );
         flock.survivors

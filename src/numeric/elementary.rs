@@ -84,40 +84,24 @@ const COS_PI: [f64; 8] = [
     4.166_399_462_726_949e-6,
 ];
 
-/// `Σ cₙ xⁿ` of up to sixteen terms by Estrin's scheme, in pairs, pairs of pairs and so on: half as long
-/// a chain as Horner's rule, and the order of operations, so every bit, is fixed by this page.
+/// `Σ cₙ xⁿ`: pairs of terms, and Horner's rule in x² for the pairs. Half as long a chain as Horner's rule
+/// in x for one more multiplication; the order of operations, so every bit, is fixed by this page.
 #[inline(always)]
 fn polynomial<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
-    const { assert!(N <= 16) };
     let square = x * x;
-    let fourth = square * square;
-    let low = eight(0, [x, square, fourth], c);
-    if N <= 8 {
-        return low;
+    let last = (N - 1) / 2;
+    let mut sum = pair(last, x, c);
+    for i in (0..last).rev() {
+        sum = sum.times_plus(square, pair(i, x, c));
     }
-    eight(1, [x, square, fourth], c).times_plus(fourth * fourth, low)
+    sum
 }
 
-/// The terms from 8i on, over `x^8i`; the powers are x, x² and x⁴.
+/// The terms 2i and 2i + 1 over `x^2i`.
 #[inline(always)]
-fn eight<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
-    let low = four(2 * i, powers, c);
-    if N <= 8 * i + 4 { low } else { four(2 * i + 1, powers, c).times_plus(powers[2], low) }
-}
-
-/// The terms from 4i on, over `x^4i`.
-#[inline(always)]
-fn four<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
-    let low = two(2 * i, powers, c);
-    if N <= 4 * i + 2 { low } else { two(2 * i + 1, powers, c).times_plus(powers[1], low) }
-}
-
-/// The terms from 2i on, over `x^2i`.
-#[inline(always)]
-fn two<L: Lane, const N: usize>(i: usize, powers: [L; 3], c: &[f64; N]) -> L {
-    let [x, ..] = powers;
+fn pair<L: Lane, const N: usize>(i: usize, x: L, c: &[f64; N]) -> L {
     let low = x.each(c[2 * i]);
-    if N <= 2 * i + 1 { low } else { x.each(c[2 * i + 1]).times_plus(x, low) }
+    if 2 * i + 1 < N { x.each(c[2 * i + 1]).times_plus(x, low) } else { low }
 }
 
 /// Natural logarithm of a positive, normal double.

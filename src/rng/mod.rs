@@ -10,6 +10,7 @@
 
 pub mod xoshiro;
 
+use fearless_simd::Level;
 use rand::Rng;
 use rand_pcg::Pcg64;
 
@@ -122,7 +123,7 @@ impl Streams {
         const WORDS: usize = 64;
         std::iter::repeat_with(move || self.places()).flat_map(|places| {
             (0..BRANCHES).flat_map(move |number| {
-                let lanes = places.branch(number).apart();
+                let lanes = places.branch(Level::new(), number).apart();
                 Self { lanes, turn: 0, counts: lanes[0] }.words().take(WORDS)
             })
         })
@@ -136,6 +137,7 @@ impl Streams {
 
 /// The finaliser of `SplitMix64` (S. Vigna, after G. Steele, D. Lea, C. Flood, *Fast splittable
 /// pseudorandom number generators*, OOPSLA 2014), a bijection of 64-bit words.
+#[inline(always)]
 fn mix(mut z: u64) -> u64 {
     z = z.wrapping_add(0x9e37_79b9_7f4a_7c15);
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);

@@ -13,15 +13,17 @@
 
 use std::convert::Infallible;
 
-use fearless_simd::{Bytes, ExtractToken, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8};
+use fearless_simd::{
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8,
+};
 use rand::TryRng;
 
 use super::mix;
 use crate::numeric::Lane;
-use crate::numeric::pack::WIDTH;
+use crate::numeric::pack::{self, Task, WIDTH};
 
 /// `2^-53`, the distance between uniform numbers.
-const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
+pub const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
 
 /// A 64-bit word, or a pack of words that is treated element by element.
 pub trait Words: Copy {
@@ -147,16 +149,22 @@ impl<W: Words> Xoshiro<W> {
         word
     }
 
+    /// Uniform among the integers below `2^53`.
+    #[inline(always)]
+    pub fn integer(&mut self) -> W::Numbers {
+        self.word().upper()
+    }
+
     /// Uniform in `[0, 1)`, all 53 bits: for decisions, `uniform() < p` has probability `p`.
     #[inline(always)]
     pub fn uniform(&mut self) -> W::Numbers {
-        self.word().upper() * SCALE
+        self.integer() * SCALE
     }
 
     /// Uniform in `(0, 1]`: its logarithm is finite.
     #[inline(always)]
     pub fn positive_uniform(&mut self) -> W::Numbers {
-        let upper = self.word().upper();
+        let upper = self.integer();
         // The product is exact, fused or not.
         upper.times_plus(upper.each(-SCALE), upper.each(1.0))
     }
@@ -183,10 +191,8 @@ impl Lanes {
 
     /// The streams of a branch: found from where these stand and a number, without going there.
     #[must_use]
-    pub fn branch(&self, number: u32) -> Self {
-        let shift = u64::from(number) + 1;
-        let branched = |word: u64| mix(word ^ mix(shift));
-        Self(self.0.map(|words| words.map(branched)))
+    pub fn branch(&self, level: Level, number: u32) -> Self {
+        pack::on(level, Branch { lanes: *self, shift: mix(u64::from(number) + 1) })
     }
 
     /// Each of the streams by itself.
@@ -208,6 +214,23 @@ impl Lanes {
                 u64x8::from_slice(simd, d),
             ],
         }
+    }
+}
+
+struct Branch {
+    lanes: Lanes,
+    shift: u64,
+}
+
+impl Task for Branch {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn run<S: Simd>(mut self, _: S) -> Lanes {
+        for word in self.lanes.0.as_flattened_mut() {
+            *word = mix(*word ^ self.shift);
+        }
+        self.lanes
     }
 }
 

@@ -16,7 +16,7 @@ pub mod product;
 pub mod score;
 mod survival;
 
-use fearless_simd::{Simd, SimdMask, f64x8, mask64x8, u64x8};
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::DrawBuffer;
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
@@ -68,11 +68,41 @@ struct Numbers<S: Simd> {
     decision: f64x8<S>,
 }
 
-impl<S: Simd> Numbers<S> {
+/// The random numbers of [`STEPS`] steps.
+struct Ahead<S: Simd> {
+    depths: [f64x8<S>; STEPS],
+    /// Not looked at where chance does not decide.
+    decisions: [f64x8<S>; STEPS],
+}
+
+impl<S: Simd> Ahead<S> {
     #[inline(always)]
-    fn next(streams: &mut Xoshiro<u64x8<S>>, decides: bool) -> Self {
-        let depth = -streams.ln_uniform();
-        Self { depth, decision: if decides { streams.uniform() } else { depth } }
+    fn new(simd: S) -> Self {
+        let none = [f64x8::splat(simd, 0.0); STEPS];
+        Self { depths: none, decisions: none }
+    }
+
+    /// Hands out the numbers of a step and finds those of the same step in the next window.
+    #[inline(always)]
+    fn exchange(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>) -> Numbers<S> {
+        let now = Numbers { depth: self.depths[step], decision: self.decisions[step] };
+        self.find(step, streams, true);
+        now
+    }
+
+    #[inline(always)]
+    fn find(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+        self.depths[step] = -streams.ln_uniform();
+        if decides {
+            self.decisions[step] = streams.uniform();
+        }
+    }
+
+    #[inline(always)]
+    fn find_all(&mut self, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
+        for step in 0..STEPS {
+            self.find(step, streams, decides);
+        }
     }
 }
 
@@ -106,17 +136,18 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
     let mut awake = Lanes::of(&streams.lanes).awake(simd);
     let words = if W::DECIDES { 2 } else { 1 };
     let mut rows = [Row::default(); STEPS];
-    // The numbers of a step are found while the step of the same number before makes its lookup: a
-    // logarithm takes long and waits for nothing, and a lookup waits for the one before.
-    let (mut before, mut numbers) = (awake, [Numbers::next(&mut { awake }, false); STEPS]);
-    for numbers in &mut numbers {
-        *numbers = Numbers::next(&mut awake, W::DECIDES);
-    }
+    let (mut before, mut ahead) = (awake, Ahead::new(simd));
+    ahead.find_all(&mut awake, W::DECIDES);
     while ledger.is_open() {
         let after = awake;
         let mut notes = Notes::default();
-        for (step, (numbers, row)) in numbers.iter_mut().zip(&mut rows).enumerate() {
-            let now = std::mem::replace(numbers, Numbers::next(&mut awake, W::DECIDES));
+        for (step, row) in rows.iter_mut().enumerate() {
+            let now = if W::DECIDES {
+                // A step waits for the one before: logarithms, which wait for nothing, fill the time.
+                ahead.exchange(step, &mut awake)
+            } else {
+                Numbers { depth: ahead.depths[step], decision: ahead.depths[step] }
+            };
             let ends = walks.step(now, row);
             notes.ended[step / 8][step % 8] = ends.ended as u8;
             notes.escaped[step / 8][step % 8] = ends.escaped as u8;
@@ -132,6 +163,10 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
                     }
                 }
             }
+        }
+        if !W::DECIDES {
+            // By themselves: then all that a step needs stays in registers.
+            ahead.find_all(&mut awake, false);
         }
         before = after;
     }
