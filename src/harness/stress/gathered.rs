@@ -60,7 +60,9 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
     let (scale, shadow_scale) = (dice.sized(-0.2, 0.7), dice.sized(-0.2, 0.7));
     let kind = dice.below(9);
     let Some(problem) = problem.filter(|problem| !problem.medium().support().is_empty()) else {
-        rows.iter_mut().for_each(|row| row.skip(|| what.clone()));
+        for row in rows {
+            row.skip(|| what.clone());
+        }
         return;
     };
     let support = problem.medium().support();
@@ -99,7 +101,11 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
                 row.see(exact.relative_error(known.relative[i]) / known.error, place);
             }
         }
-        None => rows.iter_mut().for_each(|row| row.skip(place)),
+        None => {
+            for row in rows {
+                row.skip(place);
+            }
+        }
     }
 }
 

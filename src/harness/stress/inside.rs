@@ -337,7 +337,7 @@ impl Line {
         let mut beyond = vec![[Wide::default(), ends[1]]];
         for basis in basis.iter().rev() {
             let [rho, eta] = beyond[beyond.len() - 1];
-            let [of_plus, of_minus, own] = basis.map(|both| both.map(at_end));
+            let [of_plus, of_minus, own] = basis.each_ref().map(|both| both.each_ref().map(at_end));
             let left = |[plus, minus]: [Wide; 2]| plus - rho * minus;
             let scale = left(of_plus);
             beyond.push([-left(of_minus) / scale, (eta - left(own)) / scale]);
@@ -348,14 +348,14 @@ impl Line {
             let both: Both = std::array::from_fn(|way| {
                 std::array::from_fn(|n| (0..3).map(|i| factors[i] * basis[i][way][n]).sum())
             });
-            minus = at_end(both[1]);
+            minus = at_end(&both[1]);
             both
         });
         joined.collect()
     }
 }
 
-fn at_end(series: Series) -> Wide {
+fn at_end(series: &Series) -> Wide {
     series.iter().rev().copied().sum()
 }
 

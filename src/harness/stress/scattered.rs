@@ -65,7 +65,9 @@ fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
         )
     };
     let Some(problem) = lit(sigma, distance, foot, length, albedo) else {
-        kinds.iter_mut().flatten().for_each(|row| row.skip(place));
+        for row in kinds.iter_mut().flatten() {
+            row.skip(place);
+        }
         return;
     };
     let mut case = Case::new(&problem, (sigma, length), [sampling, control], tracking);
@@ -102,17 +104,14 @@ fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
         let place = || format!("{name}, {}", place());
         let [second, fourth, counts] = &mut kinds[usize::from(is_walk)];
         let prediction = found.prediction();
-        match prediction.channels[0].moments {
-            Some(known) => {
-                let exact = central(moments(&values), Wide::from(known.scale));
-                second.see(exact[0].relative_error(known.relative[0]) / known.error, place);
-                fourth.see(exact[1].relative_error(known.relative[2]) / known.error, place);
-            }
+        if let Some(known) = prediction.channels[0].moments {
+            let exact = central(moments(&values), Wide::from(known.scale));
+            second.see(exact[0].relative_error(known.relative[0]) / known.error, place);
+            fourth.see(exact[1].relative_error(known.relative[2]) / known.error, place);
+        } else {
             // A spread that rounding hides is not told.
-            None => {
-                second.skip(place);
-                fourth.skip(place);
-            }
+            second.skip(place);
+            fourth.skip(place);
         }
         match prediction.lookups.zip(lookups) {
             Some((law, lookups)) => counts.see(of_stated(stated(&law), lookups(&values)), place),

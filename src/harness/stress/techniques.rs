@@ -70,6 +70,11 @@ pub struct Case {
     pub chain: Chain,
 }
 
+/// What raw moments are, from the solved chain.
+pub type Moments = dyn Fn(&[Wide]) -> [Wide; 4];
+/// What mean lookups are.
+pub type Lookups = dyn Fn(&[Wide]) -> Wide;
+
 /// What is to be compared: exact raw moments and lookups, from the solved chain.
 pub struct Wanted {
     /// In tables.
@@ -79,9 +84,9 @@ pub struct Wanted {
     /// As theory finds it.
     pub found: Points,
     /// `E[X], …, E[X⁴]`.
-    pub moments: Box<dyn Fn(&[Wide]) -> [Wide; 4]>,
+    pub moments: Box<Moments>,
     /// The mean lookups.
-    pub lookups: Option<Box<dyn Fn(&[Wide]) -> Wide>>,
+    pub lookups: Option<Box<Lookups>>,
 }
 
 fn shadow_losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
@@ -92,7 +97,7 @@ fn shadow_losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
     })
 }
 
-/// σ̂ r, or of delta tracking (σ̂/σ_t)(1 − e^{−σ_t r}).
+/// `σ̂ r`, or of delta tracking `(σ̂/σ_t)(1 − e^{−σ_t r})`.
 fn cast(sigma: f64, tracking: Tracking) -> Vec<(Wide, i32, Wide)> {
     let nothing = Wide::default();
     match tracking {
@@ -207,7 +212,7 @@ impl Case {
         }
         let flown = sampling * self.length;
         let is_free = tracking == Tracking::Exact;
-        let lookups: Box<dyn Fn(&[Wide]) -> Wide> = Box::new(move |_| flown);
+        let lookups: Box<Lookups> = Box::new(move |_| flown);
         Wanted {
             name: "resampled",
             is_walk: true,
