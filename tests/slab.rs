@@ -181,13 +181,10 @@ fn second_moments_are_met_to_their_digits_where_they_are_asked_for() {
     for reference in references().iter().filter(|r| r.id.starts_with("spm_slab/")) {
         for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
             let walk = walk(reference, cosine);
-            let odds = walk.rule.odds(walk.largest_ratio, walk.albedo);
-            let slice = Slice {
-                flown: walk.depth / walk.largest_ratio,
-                straight: odds.transmitted(2),
-                scattered: odds.scattered(2),
-                score: 0.0,
-            };
+            let ratio = walk.largest_ratio;
+            let odds = walk.rule.odds(ratio, walk.albedo);
+            let [straight, scattered] = odds.moments([1.0 - ratio, walk.albedo * ratio], 2);
+            let slice = Slice { flown: walk.depth / ratio, straight, scattered, score: 0.0 };
             let answer = solve(&walk.incidence, &[slice], Resolution::FINE).expect("finite");
             for (known, expected) in [answer.reflected, answer.transmitted].iter().zip(expected) {
                 let error = (known.value - expected).abs();

@@ -17,7 +17,8 @@
 //! ```
 //!
 //! Theory needs the k-th moments of what leaves, `Q_k = q_t((1 − r)/q_t)^k` straight on and
-//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule.
+//! `S_k = q_s(a r/q_s)^k` scattered: `Q_1 = 1 − r` and `S_1 = a r` for every rule. As one chance is what
+//! the other leaves of 1, the smaller one has few digits: moments are made of these means instead.
 //!
 //! Where `0 ≤ r ≤ 1`, terminating is analog; the two differ in what they refuse. `weighted` is
 //! non-terminating with the chances of a = 1: the albedo is left to the weight.
@@ -58,18 +59,19 @@ pub enum Event {
 }
 
 impl Odds {
-    /// `Q_k = q_t((1 − r)/q_t)^k`, the k-th moment of what goes straight on.
+    /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of what goes straight on and
+    /// of what is scattered, given their means `1 − r` and `a r`.
     #[inline]
     #[must_use]
-    pub fn transmitted(&self, k: i32) -> f64 {
-        self.transmit * self.transmit_weight.powi(k)
-    }
-
-    /// `S_k = q_s(a r/q_s)^k`, the k-th moment of what is scattered.
-    #[inline]
-    #[must_use]
-    pub fn scattered(&self, k: i32) -> f64 {
-        self.scatter * self.scatter_weight.powi(k)
+    pub fn moments(&self, [straight, scattered]: [f64; 2], k: i32) -> [f64; 2] {
+        if k == 0 {
+            return [self.transmit, self.scatter];
+        }
+        let more = k - 1;
+        [
+            straight * self.transmit_weight.powi(more),
+            scattered * self.scatter_weight.powi(more),
+        ]
     }
 
     /// The same chances and weights without their signs.
@@ -256,8 +258,14 @@ mod tests {
                 for r in ratios().filter(|&r| holds(rule, r, albedo)) {
                     let odds = rule.odds(r, albedo);
                     let context = format!("{rule:?} at r = {r}, a = {albedo}");
-                    assert!((odds.transmitted(1) - (1.0 - r)).abs() < 1e-14, "{context}");
-                    assert!((odds.scattered(1) - albedo * r).abs() < 1e-14, "{context}");
+                    let means = [1.0 - r, albedo * r];
+                    let found = [
+                        odds.transmit * odds.transmit_weight,
+                        odds.scatter * odds.scatter_weight,
+                    ];
+                    for (found, mean) in found.into_iter().zip(means) {
+                        assert!((found - mean).abs() < 1e-14, "{context}");
+                    }
                     assert!(odds.transmit >= 0.0 && odds.scatter >= 0.0, "{context}");
                     assert!(odds.transmit + odds.scatter <= 1.0 + 1e-15, "{context}");
                 }
@@ -303,10 +311,11 @@ mod tests {
         // S_2 and Q_2 of the terminating rule are those of the non-terminating one over D ≤ 1.
         for albedo in ALBEDOS {
             for r in ratios() {
-                let adaptive = ParticleRule::Adaptive.odds(r, albedo);
-                let other = ParticleRule::NonTerminating.odds(r, albedo);
-                assert!(adaptive.transmitted(2) >= other.transmitted(2) - 1e-15);
-                assert!(adaptive.scattered(2) >= other.scattered(2) - 1e-15);
+                let means = [1.0 - r, albedo * r];
+                let squares = |rule: ParticleRule| rule.odds(r, albedo).moments(means, 2);
+                let adaptive = squares(ParticleRule::Adaptive);
+                let other = squares(ParticleRule::NonTerminating);
+                assert!(adaptive[0] >= other[0] - 1e-15 && adaptive[1] >= other[1] - 1e-15);
             }
         }
     }
@@ -316,6 +325,19 @@ mod tests {
         let odds = ParticleRule::NonTerminating.odds(1.0, 0.0);
         assert_eq!((odds.transmit, odds.scatter), (0.0, 0.0));
         assert_eq!(odds.decide(0.0), Event::Absorbed);
+    }
+
+    #[test]
+    fn moments_of_rare_scattering_keep_their_digits() {
+        // a|r| is 1e-12: as a chance it is what |1 − r|/D leaves of 1.
+        let (albedo, r) = (1e-12, 1.25);
+        let odds = ParticleRule::NonTerminating.odds(r, albedo);
+        let sum = albedo * r + (r - 1.0);
+        for k in 1..5 {
+            let [_, found] = odds.moments([1.0 - r, albedo * r], k);
+            let exact = albedo * r * sum.powi(k - 1);
+            assert!((found / exact - 1.0).abs() < 1e-14, "{k}: {found:e} for {exact:e}");
+        }
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Balls: Peierls' equation against discrete ordinates, a finer solution, and where everything is white.
 //!
 //! In a homogeneous ball `rS(r)`, S the sources, is what it is in a slab of the same radius on both sides of
-//! its middle, odd about it. With the roots k of [`super::slabs`], lengths in mean free paths, an
+//! its middle, odd about it. With the roots k of `ordinates`, lengths in mean free paths, an
 //! environment of radiance 1 makes
 //!
 //! ```text
@@ -11,8 +11,8 @@
 //!
 //! Where nothing is absorbed and the black sphere is as bright as the sky, J = 1 everywhere, whatever σ_t.
 
+use super::ordinates::{directions, roots, solved};
 use super::rods::{of_stated, share};
-use super::slabs::{directions, roots, solved};
 use super::{Dice, Effort, Measure, Row, in_parts};
 use crate::estimators::sphere::BLURRED;
 use crate::numeric::Wide;

@@ -70,19 +70,22 @@ fn trial(dice: &mut Dice, rows: &mut [Row]) {
             }
             continue;
         };
-        let exact = central(raw(&breaks, &values, sampling, is_shared));
+        let raw = raw(&breaks, &values, sampling, is_shared);
+        let exact = central(raw, raw[0]);
         for ((row, found), exact) in rows.iter_mut().zip([relative[0], relative[2]]).zip(exact) {
             row.see(exact.relative_error(found) / error, || place(name));
         }
     }
 }
 
-/// `m₂ − m₁²` and the fourth central moment, in units of the mean.
-fn central([m1, m2, m3, m4]: [Wide; ORDERS]) -> [Wide; 2] {
+/// From raw moments `m₂ − m₁²` and the fourth central moment, in a unit.
+pub(super) fn central([m1, m2, m3, m4]: [Wide; ORDERS], unit: Wide) -> [Wide; 2] {
     let n = |x: f64| Wide::from(x);
-    let square = m1 * m1;
-    let fourth = m4 - n(4.0) * m3 * m1 + n(6.0) * m2 * square - n(3.0) * square * square;
-    [(m2 - square) / square, fourth / (square * square)]
+    let [one, two, three, four] =
+        [m1, m2 / unit, m3 / (unit * unit), m4 / (unit * unit * unit)].map(|moment| moment / unit);
+    let square = one * one;
+    let fourth = four - n(4.0) * three * one + n(6.0) * two * square - n(3.0) * square * square;
+    [two - square, fourth]
 }
 
 /// A power series in t, cut off.

@@ -68,7 +68,7 @@ fn flights(dice: &mut Dice, trials: u32) -> Row {
 }
 
 /// With the error that the check of the lookups takes.
-fn stated(law: &CountLaw) -> Known {
+pub(super) fn stated(law: &CountLaw) -> Known {
     Known::new(law.mean, law.mean * law.error.max(ERROR))
 }
 

@@ -7,11 +7,12 @@
 //! two halves:  R = R₁ + T₁² R₂/(1 − R₁R₂),  T = T₁T₂/(1 − R₁R₂)
 //! ```
 
+use super::collided::central;
 use super::{Dice, Effort, Measure, Row, in_parts, text};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Wide};
 use crate::problems::Rod;
-use crate::problems::rod;
+use crate::problems::rod::{self, Seen};
 use crate::theory::particle::ParticleRule;
 use crate::theory::{Mesh, rod as rods};
 
@@ -88,13 +89,24 @@ pub(super) fn share(dice: &mut Dice) -> f64 {
     }
 }
 
+/// A rod of which what leaves is known.
 pub(super) fn rod_of(depth: f64, albedo: &[f64], forward: f64) -> Option<(Mesh, Rod)> {
+    rod_with(depth, albedo, forward, rod::channels(0, false, None))
+}
+
+/// A rod of length 1, in equal parts of the given albedos.
+pub(super) fn rod_with(
+    depth: f64,
+    albedo: &[f64],
+    forward: f64,
+    channels: Vec<Seen>,
+) -> Option<(Mesh, Rod)> {
     let text = format!("medium.constant.extinction = {depth:e}\nspan = [0, 1]");
     let medium = text::medium(&text)?;
     let cuts: Vec<f64> = (0..=albedo.len()).map(|i| i as f64 / albedo.len() as f64).collect();
     let albedo = Piecewise::steps(&cuts, albedo);
     let forward = Piecewise::constant(forward, medium.span());
-    let rod = Rod::new(medium.clone(), &albedo, &forward, rod::channels(0, false, None));
+    let rod = Rod::new(medium.clone(), &albedo, &forward, channels);
     Some((Mesh::new(medium), rod))
 }
 
@@ -200,22 +212,18 @@ fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
         let raw = rates.map(leaving);
         for (i, channel) in found.channels.iter().take(2).enumerate() {
             let Some(moments) = channel.moments else { continue };
-            let [m, two, three, four] = raw.map(|moment| moment[i]);
-            if m.high < 1e-70 {
+            let raw = raw.map(|moment| moment[i]);
+            if raw[0].high < 1e-70 {
                 second.skip(place);
                 continue;
             }
-            let square = m * m;
-            let variance = (two - square) / square;
+            let [variance, exact] = central(raw, raw[0]);
             second.see(variance.relative_error(moments.relative[0]) / moments.error, place);
             // A moment that grids do not resolve says so: there are no digits to compare.
             if critical(rates[3]) <= 1.002 || !moments.relative[2].is_finite() {
                 fourth.skip(place);
                 continue;
             }
-            let exact = four - m * three * Wide::from(4.0) + square * two * Wide::from(6.0)
-                - square * square * Wide::from(3.0);
-            let exact = exact / (square * square);
             fourth.see(exact.relative_error(moments.relative[2]) / moments.error, place);
         }
     }

@@ -10,6 +10,7 @@
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use super::chains::arsinh;
 use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
 use crate::geometry::{Point, Ray};
 use crate::media::{Control, Piecewise};
@@ -45,6 +46,21 @@ fn radiance(problem: &SingleScattering) -> Known {
     Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
 }
 
+/// A light of power 1 beside a ray through a homogeneous medium that scatters evenly.
+pub(super) fn lit(
+    sigma: f64,
+    distance: f64,
+    foot: f64,
+    length: f64,
+    albedo: f64,
+) -> Option<SingleScattering> {
+    let field = text::volume(&format!("volume.constant.extinction = {sigma:e}"))?;
+    let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length)?;
+    let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
+    let phase = Phase::Isotropic(Isotropic);
+    SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
+}
+
 fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
     let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
     let mut row = Row::new("single scattering, radiance", range, Measure::OfStated, 1.0);
@@ -54,27 +70,13 @@ fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
         let sigma = dice.sized(-4.0, 2.4) / length;
         let (distance, foot) = (dice.sized(-6.0, 1.0), dice.between(-0.3, 1.3) * length);
         let place = || format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
-        let field = text::volume(&format!("volume.constant.extinction = {sigma:e}"));
-        let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length);
-        let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
-        let problem = field.zip(ray).and_then(|(field, ray)| {
-            let phase = Phase::Isotropic(Isotropic);
-            SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
-        });
-        let Some(problem) = problem else {
+        let Some(problem) = lit(sigma, distance, foot, length, albedo) else {
             row.skip(place);
             continue;
         };
         let found = radiance(&problem);
         let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
-        let ends = [Wide::from(0.0), Wide::from(length)].map(|s| {
-            // arsinh, of the size of its argument.
-            let x = (s - foot) / distance;
-            let size = x.abs();
-            let near =
-                (size + size * size / (Wide::ONE + (Wide::ONE + size * size).sqrt())).ln_1p();
-            if x.high < 0.0 { -near } else { near }
-        });
+        let ends = [0.0, length].map(|s| arsinh((Wide::from(s) - foot) / distance));
         let width = ends[1] - ends[0];
         let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
         let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
@@ -110,31 +112,36 @@ const VOLUMES: [&str; 4] = [
     "exponential = { extinction = 1, rate = 0.3, bounds.sphere = { centre = [0, 0, 10], radius = 9 } }",
 ];
 
+/// A ray through a field that varies, and a light beside it.
+pub(super) fn field(dice: &mut Dice) -> (String, Option<SingleScattering>) {
+    let field = VOLUMES[dice.below(VOLUMES.len())];
+    let origin = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), -5.0]);
+    let target = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), 15.0]);
+    let (away, along, turn) =
+        (dice.sized(-3.0, 1.0), dice.between(0.1, 0.9), dice.between(0.0, TAU));
+    let forward = HenyeyGreenstein::new(dice.between(-0.8, 0.8));
+    let phase = forward.map_or(Phase::Isotropic(Isotropic), Phase::HenyeyGreenstein);
+    let what = format!(
+        "{field}, from {origin:?} to {target:?}, D = {away:e} at {along:e}, {turn:e}, {phase:?}"
+    );
+    let ray = Ray::new(origin, target - origin, 26.0);
+    let problem = text::volume(&format!("volume.{field}")).zip(ray).and_then(|(field, ray)| {
+        let side = ray.direction.cross(Point([0.0, 1.0, 0.0])).normalised()?;
+        let up = ray.direction.cross(side);
+        let aside = side * turn.cos() + up * turn.sin();
+        let position = ray.at(26.0 * along) + aside * away;
+        let lamp = Lamp { position, power: 1.0 };
+        SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).ok()
+    });
+    (what, problem)
+}
+
 fn fields(dice: &mut Dice, trials: u32) -> Row {
     let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
     let mut row = Row::new("single scattering, fields", range, Measure::OfStated, 1.0);
     for _ in 0..trials {
-        let field = VOLUMES[dice.below(VOLUMES.len())];
-        let origin = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), -5.0]);
-        let target = Point([dice.between(-3.0, 3.0), dice.between(-3.0, 3.0), 15.0]);
-        let (away, along, turn) =
-            (dice.sized(-3.0, 1.0), dice.between(0.1, 0.9), dice.between(0.0, TAU));
-        let forward = HenyeyGreenstein::new(dice.between(-0.8, 0.8));
-        let phase = forward.map_or(Phase::Isotropic(Isotropic), Phase::HenyeyGreenstein);
-        let place = || {
-            format!(
-                "{field}, from {origin:?} to {target:?}, D = {away:e} at {along:e}, {turn:e}, {phase:?}"
-            )
-        };
-        let ray = Ray::new(origin, target - origin, 26.0);
-        let problem = text::volume(&format!("volume.{field}")).zip(ray).and_then(|(field, ray)| {
-            let side = ray.direction.cross(Point([0.0, 1.0, 0.0])).normalised()?;
-            let up = ray.direction.cross(side);
-            let aside = side * turn.cos() + up * turn.sin();
-            let position = ray.at(26.0 * along) + aside * away;
-            let lamp = Lamp { position, power: 1.0 };
-            SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).ok()
-        });
+        let (what, problem) = field(dice);
+        let place = || what.clone();
         let Some(problem) = problem else {
             row.skip(place);
             continue;
@@ -146,12 +153,10 @@ fn fields(dice: &mut Dice, trials: u32) -> Row {
     row
 }
 
-/// Panels of s that grow away from the light's foot and from both ends, and none of them wide.
-fn graded(problem: &SingleScattering) -> f64 {
-    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
-    let (support, foot) = (medium.support(), problem.foot());
-    let mut ends = medium.breaks();
-    let steps = 320;
+/// The ends of so many panels of s and more, which grow away from the light's foot and from both ends.
+pub(super) fn panels(problem: &SingleScattering, steps: u32) -> Vec<f64> {
+    let (support, foot) = (problem.medium().support(), problem.foot());
+    let mut ends = problem.medium().breaks();
     let step = support.length() / f64::from(steps);
     ends.extend((0..=steps).map(|i| support.from + step * f64::from(i)));
     let mut away = 0.25 * problem.distance();
@@ -169,6 +174,13 @@ fn graded(problem: &SingleScattering) -> f64 {
     ends.retain(|&s| support.contains_inside(s));
     ends.extend([support.from, support.to]);
     ends.sort_by(f64::total_cmp);
+    ends.dedup();
+    ends
+}
+
+fn graded(problem: &SingleScattering) -> f64 {
+    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
+    let support = medium.support();
     let gathered = |s: f64| {
         let before = medium.optical_depth(Span::new(support.from, s)).value;
         let beyond = problem.shadow_medium(s);
@@ -176,7 +188,7 @@ fn graded(problem: &SingleScattering) -> f64 {
         medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()
     };
     let mut sum = Sum::default();
-    for pair in ends.windows(2) {
+    for pair in panels(problem, 320).windows(2) {
         sum.add(rule.integrate(pair[0], pair[1], gathered));
     }
     sum.value()

@@ -45,14 +45,23 @@ pub struct Step {
     pub forward: f64,
     /// What happens at a collision.
     pub odds: Odds,
+    /// `1 − r` and `a r`, the means of what goes straight on and of what is scattered.
+    pub means: [f64; 2],
 }
 
 impl Step {
+    /// `Q_k` and `S_k`.
+    #[inline]
+    #[must_use]
+    pub fn moments(&self, k: i32) -> [f64; 2] {
+        self.odds.moments(self.means, k)
+    }
+
     /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
     #[inline]
     #[must_use]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
-        let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
+        let [q, s] = self.moments(k);
         let backward = 1.0 - self.forward;
         let [plus, minus] = worth;
         [
@@ -65,14 +74,14 @@ impl Step {
     #[inline]
     #[must_use]
     pub fn rates(&self, k: i32) -> [f64; 2] {
-        let (q, s) = (self.odds.transmitted(k), self.odds.scattered(k));
+        let [q, s] = self.moments(k);
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
     }
 
     /// The same of the absolute values, which converge where the moment exists.
     #[inline]
     fn absolute_rates(&self, k: i32) -> [f64; 2] {
-        let (q, s) = (self.odds.transmitted(k).abs(), self.odds.scattered(k).abs());
+        let [q, s] = self.moments(k).map(f64::abs);
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
     }
 }
@@ -162,7 +171,8 @@ impl<'a> Walk<'a> {
         let odds = self.rule.odds(ratio, albedo);
         let absorbed = ratio * (1.0 - albedo);
         let part = self.rod.part(t);
-        Step { end: t, width: 0.0, sampling, absorbed, part, forward, odds }
+        let means = [1.0 - ratio, albedo * ratio];
+        Step { end: t, width: 0.0, sampling, absorbed, part, forward, odds, means }
     }
 
     /// The grid whose steps are so many times shorter than the coarsest grid's.
@@ -250,6 +260,7 @@ impl Grid {
     pub fn raised(&self, by: [f64; 2]) -> Self {
         let absolute = |step: &Step| Step {
             odds: step.odds.absolute(),
+            means: step.means.map(f64::abs),
             absorbed: step.absorbed.abs(),
             sampling: step.sampling.abs(),
             ..*step

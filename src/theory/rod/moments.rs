@@ -155,12 +155,12 @@ pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
 }
 
 fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Worth> {
-    let rates = |step: &Step| [step.sampling * (1.0 - step.odds.transmitted(k)), 0.0];
+    let rates = |step: &Step| [step.sampling * (1.0 - step.moments(k)[0]), 0.0];
     let mut worth = grid.solve(rates, nothing, ends)?;
     for _ in 0..order {
         let source = |i: usize, step: &Step| {
             let [plus, minus] = worth.middle(i);
-            let scattered = step.sampling * step.odds.scattered(k);
+            let scattered = step.sampling * step.moments(k)[1];
             let backward = 1.0 - step.forward;
             [
                 scattered * (step.forward * plus + backward * minus),

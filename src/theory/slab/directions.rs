@@ -8,8 +8,6 @@ use crate::phase::Phase;
 const FAINT: f64 = 1e-17;
 /// The most Legendre moments that are summed.
 const MOST_MOMENTS: usize = 4000;
-/// The fewest directions of a quadrature.
-const FEWEST: usize = 12;
 /// The most: more take seconds.
 const MOST: usize = 144;
 
@@ -93,7 +91,7 @@ fn legendre(x: f64, count: usize) -> Vec<f64> {
 #[must_use]
 pub fn needed(phase: &Phase, faintest: f64) -> usize {
     let last = (0..2 * MOST).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
-    (last / 2 + 1).clamp(FEWEST, MOST)
+    (last / 2 + 1).min(MOST)
 }
 
 /// Whether so many directions can be had.
@@ -137,7 +135,7 @@ mod tests {
     #[test]
     fn sharper_phase_functions_need_more_directions() {
         let of = |g: f64| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("in range"));
-        assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), FEWEST);
+        assert_eq!(needed(&Phase::Isotropic(Isotropic), 1e-12), 1);
         assert!(needed(&of(0.75), 1e-12) < needed(&of(0.9), 1e-12));
         assert_eq!(needed(&of(0.999), 1e-12), MOST);
         assert!(are_enough(&of(0.9), 1e-12) && !are_enough(&of(-0.95), 1e-12));

@@ -26,7 +26,7 @@
 
 use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
-use super::{Answer, Energy, Incidence, Resolution, energy, solve};
+use super::{Answer, Energy, Incidence, Light, Resolution, energies, energy, solve_all};
 use crate::numeric::Known;
 use crate::theory::particle::{Odds, ParticleRule};
 use crate::theory::prediction::Covariance;
@@ -34,6 +34,9 @@ use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// The channels of a draw, in their order.
 pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
+
+/// The powers whose means are found: those of the moments, and the eighth for their tails.
+const POWERS: [i32; 4] = [2, 3, 4, 8];
 
 /// A walk in a slab.
 #[derive(Debug, Clone)]
@@ -58,26 +61,21 @@ impl Walk {
     /// What theory says, given the exact answer.
     #[must_use]
     pub fn predict(&self, truth: &Answer) -> Prediction {
-        let truths = [truth.reflected, truth.transmitted];
-        let raw = [2, 3, 4, 8].map(|k| self.moments(k, truth));
-        let channels: Vec<Channel> = (0..2)
-            .map(|i| channel(CHANNELS[i], truths[i], raw.map(|both| both.map(|both| both[i]))))
-            .collect();
-        let [r, t] = truths.map(|known| known.value);
-        let covariances = raw[0].map(|[second_r, second_t]| {
-            let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
-            Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
-        });
-        Prediction {
-            channels,
-            lookups: self.lookups(),
-            layers: None,
-            random_numbers: None,
-            law: None,
-            covariances: covariances.into_iter().filter(|c| c.variance.is_finite()).collect(),
-            increments: Vec::new(),
-            stable_share: None,
-        }
+        let lights = [self.incidence.light];
+        let raw = POWERS.map(|k| self.moments(k, &lights, std::slice::from_ref(truth)));
+        let lookups = self.lookups(&lights).into_iter().next().flatten();
+        predicted(truth, raw.map(|all| all.map(|all| all[0])), lookups)
+    }
+
+    /// The same for several lights, which share the work.
+    #[must_use]
+    pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
+        let raw = POWERS.map(|k| self.moments(k, lights, truths));
+        let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
+        let of = |((i, truth), law): ((usize, &Answer), Option<CountLaw>)| {
+            predicted(truth, raw.each_ref().map(|all| all.as_ref().map(|all| all[i])), law)
+        };
+        truths.iter().enumerate().zip(laws).map(of).collect()
     }
 
     fn odds(&self, ratio: f64) -> Odds {
@@ -102,67 +100,75 @@ impl Walk {
             Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
         };
         let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
-        may_grow && self.powers(2).is_none()
+        may_grow && self.powers(2, &[self.incidence.light]).is_none()
     }
 
-    /// `E[X_R^k]` and `E[X_T^k]`; `None` where they are infinite.
-    fn powers(&self, k: i32) -> Option<[Known; 2]> {
-        let moments = |odds: Odds| [odds.transmitted(k), odds.scattered(k), 0.0];
+    /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
+    fn powers(&self, k: i32, lights: &[Light]) -> Option<Vec<[Known; 2]>> {
+        let phase = &self.incidence.phase;
+        let moments = |ratio: f64| {
+            let means = [1.0 - ratio, self.albedo * ratio];
+            let [straight, scattered] = self.odds(ratio).moments(means, k);
+            [straight, scattered, 0.0]
+        };
         let layers = |pieces: &[Piece]| -> Vec<Slice> {
-            pieces.iter().map(|piece| piece.slice(|ratio| moments(self.odds(ratio)))).collect()
+            pieces.iter().map(|piece| piece.slice(moments)).collect()
         };
         let exact = |slices: &[Slice]| {
-            let answer = solve(&self.incidence, slices, Resolution::COARSE)?;
-            Some([answer.reflected, answer.transmitted])
+            let answers = solve_all(phase, lights, slices, Resolution::COARSE)?;
+            Some(answers.iter().map(|answer| [answer.reflected, answer.transmitted]).collect())
         };
         if self.is_tracking() {
-            return exact(&[Piece::of(self.depth, 1.0).slice(|ratio| moments(self.odds(ratio)))]);
+            return exact(&[Piece::of(self.depth, 1.0).slice(moments)]);
         }
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
                 // A mean over a layer would hide where light along it grows without end.
                 let grows = |&[_, ratio]: &[f64; 2]| {
-                    let [straight, scattered, _] = moments(self.odds(ratio));
+                    let [straight, scattered, _] = moments(ratio);
                     straight >= 1.0 && scattered > 0.0
                 };
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
                     return None;
                 }
-                let energy = |cut: &Vec<Piece>| -> Option<Energy> {
-                    energy(&self.incidence, &layers(cut), Resolution::LAYERED)
+                let [coarse, fine] = cuts
+                    .each_ref()
+                    .map(|cut| energies(phase, lights, &layers(cut), Resolution::LAYERED));
+                let pairs = coarse?.into_iter().zip(fine?);
+                let both = |(coarse, fine): (Energy, Energy)| {
+                    [
+                        extrapolated(coarse.reflected, fine.reflected),
+                        extrapolated(coarse.transmitted, fine.transmitted),
+                    ]
                 };
-                let [coarse, fine] = [energy(&cuts[0])?, energy(&cuts[1])?];
-                Some([
-                    extrapolated(coarse.reflected, fine.reflected),
-                    extrapolated(coarse.transmitted, fine.transmitted),
-                ])
+                Some(pairs.map(both).collect())
             }
         }
     }
 
     /// The same, infinite where they are; `None` where they are not asked for.
-    fn moments(&self, k: i32, truth: &Answer) -> Option<[Known; 2]> {
+    fn moments(&self, k: i32, lights: &[Light], truths: &[Answer]) -> Option<Vec<[Known; 2]>> {
         let is_graded = matches!(self.pieces, Pieces::Graded(_)) && !self.is_tracking();
         if k > 4 && (is_graded || !self.laws) {
             return None;
         }
         if self.is_tracking() && self.odds(1.0).scatter_weight == 1.0 {
             // Draws are 0 or 1.
-            return Some([truth.reflected, truth.transmitted]);
+            return Some(truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect());
         }
         let infinite = Known::new(f64::INFINITY, f64::INFINITY);
-        Some(self.powers(k).unwrap_or([infinite; 2]))
+        Some(self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]))
     }
 
-    /// The law of the number of collisions without its probabilities; `None` where it is not known, or
-    /// has an infinite variance.
-    fn lookups(&self) -> Option<CountLaw> {
-        let Pieces::Exact(pieces) = &self.pieces else { return None };
+    /// The law of the number of collisions in each light, without its probabilities; `None` where it is not
+    /// known, or has an infinite variance.
+    fn lookups(&self, lights: &[Light]) -> Vec<Option<CountLaw>> {
+        let Pieces::Exact(pieces) = &self.pieces else { return Vec::new() };
         // Along a layer of null collisions only there is no end to them.
         let odds = |ratio: f64| self.odds(ratio);
         if pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds)) {
-            return None;
+            return Vec::new();
         }
         let slices = |z: f64, score: fn(&Odds) -> f64| -> Vec<Slice> {
             let at = |ratio: f64| {
@@ -171,18 +177,50 @@ impl Walk {
             };
             pieces.iter().map(|piece| piece.slice(at)).collect()
         };
-        let mean = solve(&self.incidence, &slices(1.0, |_| 1.0), Resolution::COARSE)?.score;
-        let error = mean.error / mean.value;
-        let mean = mean.value;
         let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
-        let f = |theta: f64| -> Option<f64> {
-            let slices = slices(theta.exp(), ends);
-            let found = energy(&self.incidence, &slices, Resolution::LAYERED)?;
-            Some((found.reflected + found.transmitted + found.score).ln())
+        let law = |(light, answer): (&Light, Answer)| {
+            let Known { value: mean, error } = answer.score;
+            let incidence = Incidence { light: *light, ..self.incidence };
+            let f = |theta: f64| -> Option<f64> {
+                let slices = slices(theta.exp(), ends);
+                let found = energy(&incidence, &slices, Resolution::LAYERED)?;
+                Some((found.reflected + found.transmitted + found.score).ln())
+            };
+            let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
+            let kurtosis = 3.0 + fourth / (variance * variance);
+            let error = error / mean;
+            Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
         };
-        let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
-        let kurtosis = 3.0 + fourth / (variance * variance);
-        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
+        let scored = slices(1.0, |_| 1.0);
+        let answers = solve_all(&self.incidence.phase, lights, &scored, Resolution::COARSE);
+        lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
+    }
+}
+
+/// What raw moments say.
+fn predicted(
+    truth: &Answer,
+    raw: [Option<[Known; 2]>; POWERS.len()],
+    lookups: Option<CountLaw>,
+) -> Prediction {
+    let truths = [truth.reflected, truth.transmitted];
+    let channels: Vec<Channel> = (0..2)
+        .map(|i| channel(CHANNELS[i], truths[i], raw.map(|both| both.map(|both| both[i]))))
+        .collect();
+    let [r, t] = truths.map(|known| known.value);
+    let covariances = raw[0].map(|[second_r, second_t]| {
+        let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
+        Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
+    });
+    Prediction {
+        channels,
+        lookups,
+        layers: None,
+        random_numbers: None,
+        law: None,
+        covariances: covariances.into_iter().filter(|c| c.variance.is_finite()).collect(),
+        increments: Vec::new(),
+        stable_share: None,
     }
 }
 

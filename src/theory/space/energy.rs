@@ -129,7 +129,7 @@ impl Walks {
 impl Extremes {
     fn add(&mut self, rule: ParticleRule, ratio: f64, albedo: f64, splits: bool) {
         let odds = rule.odds(ratio, albedo);
-        let kept = odds.transmitted(2) + odds.scattered(2);
+        let kept: f64 = odds.moments([1.0 - ratio, albedo * ratio], 2).iter().sum();
         let spread = kept - (1.0 - (1.0 - albedo) * ratio).powi(2);
         let split = (1.0 - ratio).powi(2) + (albedo * ratio).powi(2);
         let most = if splits { kept.max(split) } else { kept };

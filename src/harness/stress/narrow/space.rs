@@ -6,6 +6,7 @@
 //!
 //! whose optical depth along a diameter is τ. The walk of pictures of multiple scattering is that of
 //! `sphere, particle` in front of another sky; `lambertian` with splitting is `furnace` with splitting.
+//! A furnace with the non-terminating rule is left out: where σ̂ ≥ σ_t each draw is 1, without noise.
 
 use super::compare::{Stated, Walk, compare_walks, flight};
 use super::place::Place;

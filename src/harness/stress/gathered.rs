@@ -1,0 +1,217 @@
+//! Single scattering in fields that vary: moments at one point and at every collision, by panels of s.
+//!
+//! Theory halves panels of the stretched variable and finds the losses of the way in panels of their own. Here
+//! panels of s double away from the light and from both ends of the ray, losses are sums over the same nodes,
+//! and functionals are summed from the ray's end, as if nothing were lost before:
+//!
+//! ```text
+//! E[X^k] = ∫ p (σ_t S/p)^k e^{−A_k} e^{−B_k} ds,   V_k = ∫ₛ Σⱼ (k over j) σ̂ (σ_t S/σ̂)ʲ e^{−Bⱼ} w^{k−j} V_{k−j} e^{A_{k−j} − A_k} ds
+//! ```
+
+use super::collided::central;
+use super::scattering::{field, panels};
+use super::{Dice, Effort, Measure, Row, in_parts};
+use crate::media::{Control, Medium, Piecewise};
+use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Span, Wide};
+use crate::problems::{Problem, SingleScattering};
+use crate::theory::Mesh;
+use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Tracking, walks};
+use crate::theory::volterra::binomial;
+
+const PARTS: u64 = 16;
+/// Panels of s, at least.
+const STEPS: u32 = 40;
+
+/// All rows.
+#[must_use]
+pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
+    in_parts(PARTS, |part| {
+        let dice = &mut Dice::new(seed, "gathered", part);
+        let range =
+            "four fields, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
+        let mut rows = ["variance", "fourth moment"].map(|what| {
+            Row::new(format!("single scattering in fields, {what}"), range, Measure::OfStated, 1.0)
+        });
+        for _ in 0..effort.of(u32::from(part % 2 == 0), 3) {
+            trial(dice, &mut rows);
+        }
+        rows.to_vec()
+    })
+}
+
+/// What is known at a node.
+struct At {
+    /// `ds` there.
+    weight: f64,
+    /// σ_t, S, and the density by angle.
+    extinction: f64,
+    source: f64,
+    density: f64,
+    /// τ, and A of the walk for k = 0 … 4.
+    depth: f64,
+    losses: [f64; 5],
+    /// `e^{−B}`.
+    shadow: [f64; 5],
+}
+
+fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
+    let (what, problem) = field(dice);
+    let (scale, shadow_scale) = (dice.sized(-0.2, 0.7), dice.sized(-0.2, 0.7));
+    let kind = dice.below(9);
+    let Some(problem) = problem.filter(|problem| !problem.medium().support().is_empty()) else {
+        for row in rows {
+            row.skip(|| what.clone());
+        }
+        return;
+    };
+    let support = problem.medium().support();
+    let mesh = Mesh::new(problem.medium().clone());
+    let largest = mesh.largest(|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
+    let (sampling, most) = (scale * largest, problem.shadow_majorant());
+    let tracking = match kind % 3 {
+        0 => Tracking::Exact,
+        1 => Tracking::Ratio { sampling: shadow_scale * most, control: 0.0 },
+        _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
+    };
+    let flown = Piecewise::constant(sampling, support);
+    let scene = |along| {
+        let camera = Camera::new(&mesh, &flown, &Control::None, along);
+        Scene::new(&problem, camera, tracking, Vec::new())
+    };
+    let density = |node: &Node| problem.equiangular_density(node.s);
+    let gain = |node: &Node| node.extinction * node.source / density(node);
+    let by_angle = |along| {
+        Points::of(&scene(along), &Technique { density: &density, gain: &gain, found: None })
+    };
+    let nodes = nodes(&problem, sampling, tracking);
+    let (name, points, raw) = match kind / 3 {
+        0 => ("by angle, exact", by_angle(Along::Exact), at_point(&nodes, false)),
+        1 => ("by angle, ratio", by_angle(Along::Ratio), at_point(&nodes, true)),
+        _ => {
+            let points = walks::at_collisions(&scene(Along::Ratio));
+            ("at collisions", points, at_collisions(&nodes, sampling))
+        }
+    };
+    let place = || format!("{name}, σ̂ = {sampling:e}, {tracking:?}, {what}");
+    match points.prediction().channels[0].moments {
+        Some(known) => {
+            let exact = central(raw.map(Wide::from), Wide::from(known.scale));
+            for (row, (exact, i)) in rows.iter_mut().zip(exact.into_iter().zip([0, 2])) {
+                row.see(exact.relative_error(known.relative[i]) / known.error, place);
+            }
+        }
+        None => {
+            for row in rows {
+                row.skip(place);
+            }
+        }
+    }
+}
+
+/// All nodes, panel by panel.
+fn nodes(problem: &SingleScattering, sampling: f64, tracking: Tracking) -> Vec<Vec<At>> {
+    let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
+    let from = medium.support().from;
+    let mut passed = [0.0; 5];
+    let panel = |ends: &[f64]| {
+        let width = ends[1] - ends[0];
+        let places: Vec<f64> = rule.nodes.iter().map(|x| ends[0] + width * x).collect();
+        let extinctions = medium.extinctions(&places);
+        let lost = |k: i32, sigma: f64| sampling * (1.0 - (1.0 - sigma / sampling).powi(k));
+        let so_far = |weights: &[f64]| -> [f64; 5] {
+            std::array::from_fn(|k| {
+                let rates =
+                    extinctions.iter().map(|&sigma| lost(i32::try_from(k).unwrap_or(0), sigma));
+                passed[k] + width * weights.iter().zip(rates).map(|(w, rate)| w * rate).sum::<f64>()
+            })
+        };
+        let at = |(i, &s): (usize, &f64)| At {
+            weight: width * rule.weights[i],
+            extinction: extinctions[i],
+            source: problem.source(s),
+            density: problem.equiangular_density(s),
+            depth: medium.optical_depth(Span::new(from, s)).value,
+            losses: so_far(&rule.running[i]),
+            shadow: shadow(problem.shadow_medium(s).as_ref(), tracking, &rule),
+        };
+        let found = places.iter().enumerate().map(at).collect();
+        passed = so_far(&rule.weights);
+        found
+    };
+    panels(problem, STEPS).windows(2).map(panel).collect()
+}
+
+/// `e^{−B}` for k = 0 … 4.
+fn shadow(medium: Option<&Medium>, tracking: Tracking, rule: &GaussLegendre) -> [f64; 5] {
+    let Some(medium) = medium else { return [1.0; 5] };
+    let support = medium.support();
+    let depth = medium.optical_depth(support).value;
+    let mut ends = medium.breaks();
+    ends.retain(|&t| support.contains_inside(t));
+    ends.extend([support.from, support.middle(), support.to]);
+    ends.sort_by(f64::total_cmp);
+    let lost = |sampling: f64, k: i32| -> f64 {
+        let rate = |t: f64| sampling * (1.0 - (1.0 - medium.extinction(t) / sampling).powi(k));
+        ends.windows(2).map(|ends| rule.integrate(ends[0], ends[1], rate)).sum()
+    };
+    [0, 1, 2, 3, 4].map(|k| match tracking {
+        _ if k == 0 => 1.0,
+        Tracking::Ratio { sampling, .. } if k > 1 => (-lost(sampling, k)).exp(),
+        Tracking::Exact => (-f64::from(k) * depth).exp(),
+        _ => (-depth).exp(),
+    })
+}
+
+fn at_point(nodes: &[Vec<At>], walks: bool) -> [f64; 4] {
+    let mut sums = [0.0; 4];
+    for at in nodes.iter().flatten() {
+        let gain = at.extinction * at.source / at.density;
+        for (sum, k) in sums.iter_mut().zip(1..) {
+            let power = usize::try_from(k).unwrap_or(0);
+            let lost = match (walks, k) {
+                (true, 2..) => at.losses[power],
+                (true, _) => at.depth,
+                _ => f64::from(k) * at.depth,
+            };
+            *sum += at.weight * at.density * gain.powi(k) * (-lost).exp() * at.shadow[power];
+        }
+    }
+    sums
+}
+
+fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
+    let rule = GaussLegendre::new(16);
+    // V_0 … V_4 at all nodes.
+    let mut known: Vec<Vec<Vec<f64>>> =
+        vec![nodes.iter().map(|panel| vec![1.0; panel.len()]).collect()];
+    let mut powers = [0.0; 4];
+    for (k, whole) in (1..5).zip(&mut powers) {
+        let mut worth: Vec<Vec<f64>> = Vec::with_capacity(nodes.len());
+        for (p, panel) in nodes.iter().enumerate().rev() {
+            let lost = |at: &At, k: usize| if k == 1 { at.depth } else { at.losses[k] };
+            let rate = |(i, at): (usize, &At)| -> f64 {
+                let (gain, weight) =
+                    (at.extinction * at.source / sampling, 1.0 - at.extinction / sampling);
+                let term = |j: usize| {
+                    let [up, left] = [j, k - j].map(|k| i32::try_from(k).unwrap_or(0));
+                    let apart = (lost(at, k - j) - lost(at, k)).exp();
+                    let scored = gain.powi(up) * at.shadow[j] * weight.powi(left);
+                    binomial(k, j) * scored * apart * known[k - j][p][i]
+                };
+                sampling * (1..=k).map(term).sum::<f64>()
+            };
+            let rates: Vec<f64> = panel.iter().enumerate().map(rate).collect();
+            let width: f64 = panel.iter().map(|at| at.weight).sum();
+            let sum = |weights: &[f64]| -> f64 {
+                width * weights.iter().zip(&rates).map(|(w, rate)| w * rate).sum::<f64>()
+            };
+            let here = sum(&rule.weights);
+            worth.push((0..panel.len()).map(|i| *whole + here - sum(&rule.running[i])).collect());
+            *whole += here;
+        }
+        worth.reverse();
+        known.push(worth);
+    }
+    powers
+}

@@ -1,0 +1,368 @@
+//! Techniques of single scattering in a homogeneous medium, as theory has them and as chains, see `scattered`.
+
+use super::chains::{Chain, Term};
+use crate::numeric::Wide;
+use crate::problems::SingleScattering;
+use crate::theory::single::passage::{added, poisson};
+use crate::theory::single::predict::Found;
+use crate::theory::single::{Along, Node, Points, Scene, Technique, Tracking, walks};
+use crate::theory::volterra::binomial;
+
+/// The orders of the shared walk, from the fewest points to the most, see `theory::single::walks`.
+const ORDERS: [[usize; 4]; 11] = [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [2, 0, 0, 0],
+    [0, 0, 1, 0],
+    [1, 1, 0, 0],
+    [3, 0, 0, 0],
+    [0, 0, 0, 1],
+    [1, 0, 1, 0],
+    [0, 2, 0, 0],
+    [2, 1, 0, 0],
+    [4, 0, 0, 0],
+];
+
+fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
+    numbers.map(Wide::from)
+}
+
+fn power(x: Wide, k: usize) -> Wide {
+    x.powi(u32::try_from(k).unwrap_or(0))
+}
+
+/// A homogeneous medium with its σ̂ and its control, in 32 digits.
+#[derive(Clone, Copy)]
+struct Sampled {
+    sampling: Wide,
+    control: Wide,
+    weight: Wide,
+}
+
+impl Sampled {
+    fn new(sigma: f64, sampling: f64, control: f64) -> Self {
+        let [sigma, sampling, control] = wide([sigma, sampling, control]);
+        Self { sampling, control, weight: Wide::ONE - (sigma - control) / sampling }
+    }
+
+    /// `kσ_c + σ̂(1 − x)`, x what is left of a weight to the power k.
+    fn loss(&self, k: usize, left: Wide) -> Wide {
+        Wide::from(k as f64) * self.control + self.sampling * (Wide::ONE - left)
+    }
+
+    fn signed(&self, k: usize) -> Wide {
+        self.loss(k, power(self.weight, k))
+    }
+}
+
+/// One scene, and the chain that it becomes.
+pub struct Case {
+    sigma: Wide,
+    /// `σ_t c`.
+    scattered: Wide,
+    walk: Sampled,
+    /// B for the powers 0 … 4.
+    shadow: [Wide; 5],
+    /// The mean lookups of a shadow ray: factors, powers of r and exponents of `e^{−br}`.
+    cast: Vec<(Wide, i32, Wide)>,
+    length: Wide,
+    /// What all techniques become.
+    pub chain: Chain,
+}
+
+/// What raw moments are, from the solved chain.
+pub type Moments = dyn Fn(&[Wide]) -> [Wide; 4];
+/// What mean lookups are.
+pub type Lookups = dyn Fn(&[Wide]) -> Wide;
+
+/// What is to be compared: exact raw moments and lookups, from the solved chain.
+pub struct Wanted {
+    /// In tables.
+    pub name: &'static str,
+    /// Whether it is a walk that scatters at many points.
+    pub is_walk: bool,
+    /// As theory finds it.
+    pub found: Points,
+    /// `E[X], …, E[X⁴]`.
+    pub moments: Box<Moments>,
+    /// The mean lookups.
+    pub lookups: Option<Box<Lookups>>,
+}
+
+fn shadow_losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
+    std::array::from_fn(|k| match tracking {
+        Tracking::Exact => Wide::from(sigma) * Wide::from(k as f64),
+        Tracking::Ratio { sampling, control } => Sampled::new(sigma, sampling, control).signed(k),
+        Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
+    })
+}
+
+/// `σ̂ r`, or of delta tracking `(σ̂/σ_t)(1 − e^{−σ_t r})`.
+fn cast(sigma: f64, tracking: Tracking) -> Vec<(Wide, i32, Wide)> {
+    let nothing = Wide::default();
+    match tracking {
+        Tracking::Exact => Vec::new(),
+        Tracking::Ratio { sampling, .. } => vec![(Wide::from(sampling), 1, nothing)],
+        Tracking::Delta { sampling } => {
+            let ratio = Wide::from(sampling) / Wide::from(sigma);
+            vec![(ratio, 0, nothing), (-ratio, 0, Wide::from(sigma))]
+        }
+    }
+}
+
+impl Case {
+    /// Of a length, σ̂ and a control along the ray, and shadow rays.
+    pub fn new(
+        problem: &SingleScattering,
+        (sigma, length): (f64, f64),
+        [sampling, control]: [f64; 2],
+        tracking: Tracking,
+    ) -> Self {
+        let scale = Wide::from(problem.albedo()) / (Wide::PI * Wide::PI).scaled(4);
+        Self {
+            sigma: Wide::from(sigma),
+            scattered: scale * Wide::from(sigma),
+            walk: Sampled::new(sigma, sampling, control),
+            shadow: shadow_losses(sigma, tracking),
+            cast: cast(sigma, tracking),
+            length: Wide::from(length),
+            chain: Chain::new(problem.distance(), problem.foot(), length),
+        }
+    }
+
+    fn term(&mut self, factor: Wide, (power, loss): (i32, Wide), of: Option<usize>) -> Term {
+        Term { factor, kernel: self.chain.kernel(power, loss), of }
+    }
+
+    fn add(&mut self, rate: Wide, factor: Wide, kernel: (i32, Wide), of: Option<usize>) -> usize {
+        let term = self.term(factor, kernel, of);
+        self.chain.add(rate, vec![term])
+    }
+
+    /// The mean lookups of shadow rays from points of density `f rⁿ e^{−as}`.
+    fn shadows(&mut self, rate: Wide, factor: Wide, power: i32) -> usize {
+        let cast = self.cast.clone();
+        let term = |(share, more, loss)| self.term(factor * share, (power + more, loss), None);
+        let terms = cast.into_iter().map(term).collect();
+        self.chain.add(rate, terms)
+    }
+
+    /// At every collision.
+    pub fn at_collisions(&mut self, scene: &Scene) -> Wanted {
+        let Sampled { sampling, weight, .. } = self.walk;
+        let gain = self.scattered / sampling;
+        let mut known: Vec<usize> = Vec::new();
+        for k in 1..5 {
+            let terms = (1..=k).map(|j| {
+                let factor = Wide::from(binomial(k, j)) * power(weight, k - j) * power(gain, j);
+                let lower = (j < k).then(|| known[k - j - 1]);
+                let kernel = (-2 * i32::try_from(j).unwrap_or(0), self.shadow[j]);
+                self.term(sampling * factor, kernel, lower)
+            });
+            let terms = terms.collect();
+            known.push(self.chain.add(self.walk.signed(k), terms));
+        }
+        let cast = self.shadows(Wide::default(), sampling, 0);
+        let flown = sampling * self.length;
+        Wanted {
+            name: "at collisions",
+            is_walk: true,
+            found: walks::at_collisions(scene),
+            moments: Box::new(move |at| std::array::from_fn(|k| at[known[k]])),
+            lookups: Some(Box::new(move |at| flown + at[cast])),
+        }
+    }
+
+    /// At one of all collisions.
+    pub fn resampled(&mut self, scene: &Scene, tracking: Tracking) -> Wanted {
+        let Sampled { sampling, weight, .. } = self.walk;
+        let (gain, size) = (self.scattered / sampling, weight.abs());
+        let nothing = Wide::default();
+        let ways = |j: usize, n: usize| {
+            sampling * Wide::from(binomial(j, n)) * power(size, j - n) * power(gain, n)
+        };
+        let of_power = |n: usize| -2 * i32::try_from(n).unwrap_or(0);
+        let mut f: Vec<usize> = Vec::new();
+        for j in 1..4 {
+            let terms = (1..=j).map(|n| {
+                let lower = (n < j).then(|| f[j - n - 1]);
+                self.term(ways(j, n), (of_power(n), nothing), lower)
+            });
+            let terms = terms.collect();
+            f.push(self.chain.add(self.walk.loss(j, power(size, j)), terms));
+        }
+        let mut last = Vec::new();
+        for k in 1..5 {
+            let sign = if k % 2 == 1 { weight } else { size };
+            let mut g: Vec<usize> = Vec::new();
+            for j in 0..k {
+                let mut terms = Vec::new();
+                for n in 0..=j {
+                    let own = (of_power(n + 1), self.shadow[k]);
+                    let lower = (n < j).then(|| f[j - n - 1]);
+                    terms.push(self.term(ways(j, n) * gain, own, lower));
+                    if n > 0 {
+                        let later = (of_power(n), nothing);
+                        terms.push(self.term(ways(j, n) * sign, later, Some(g[j - n])));
+                    }
+                }
+                g.push(self.chain.add(self.walk.loss(j + 1, power(size, j) * sign), terms));
+            }
+            last.push(g[k - 1]);
+        }
+        let flown = sampling * self.length;
+        let is_free = tracking == Tracking::Exact;
+        let lookups: Box<Lookups> = Box::new(move |_| flown);
+        Wanted {
+            name: "resampled",
+            is_walk: true,
+            found: walks::resampled(scene, is_free),
+            moments: Box::new(move |at| std::array::from_fn(|k| at[last[k]])),
+            lookups: is_free.then_some(lookups),
+        }
+    }
+
+    /// At points that share a walk.
+    pub fn at_points(&mut self, scene: &Scene, problem: &SingleScattering, count: usize) -> Wanted {
+        let density = |node: &Node| problem.equiangular_density(node.s);
+        let found = walks::at_points(scene, count, &density);
+        let mut known: Vec<usize> = Vec::new();
+        for order in ORDERS {
+            let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
+            let terms = (1..5).filter(|&m| order[m - 1] > 0).map(|m| {
+                let mut lower = order;
+                lower[m - 1] -= 1;
+                let rest = ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
+                self.term(Wide::from(order[m - 1] as f64), (-2, self.shadow[m]), rest)
+            });
+            let terms = terms.collect();
+            known.push(self.chain.add(self.walk.signed(degree), terms));
+        }
+        let (none, scattered) = (Wide::default(), self.scattered);
+        let norm = self.add(none, Wide::ONE, (-2, none), None);
+        let cast = self.shadows(none, Wide::ONE, -2);
+        let flown = self.walk.sampling * self.length;
+        let n = count as f64;
+        let moments = move |at: &[Wide]| {
+            let of: Vec<Wide> = ORDERS
+                .iter()
+                .zip(&known)
+                .map(|(order, &index)| {
+                    let points: usize = order.iter().sum();
+                    let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
+                    at[index] * power(scattered, degree) * power(at[norm], degree - points)
+                })
+                .collect();
+            let [one, two, three, four, triple, six] = wide([
+                n,
+                n * (n - 1.0),
+                n * (n - 1.0) * (n - 2.0),
+                n * (n - 1.0) * (n - 2.0) * (n - 3.0),
+                3.0,
+                6.0,
+            ]);
+            let third = one * of[3] + triple * two * of[4] + three * of[5];
+            let fourth = one * of[6]
+                + two * (of[7].scaled(2) + triple * of[8])
+                + six * three * of[9]
+                + four * of[10];
+            [one * of[0], one * of[1] + two * of[2], third, fourth]
+                .into_iter()
+                .zip(1..)
+                .map(|(sum, k)| sum / one.powi(k))
+                .collect::<Vec<_>>()
+        };
+        Wanted {
+            name: "shared walk",
+            is_walk: true,
+            found,
+            moments: Box::new(move |at| {
+                let all = moments(at);
+                std::array::from_fn(|k| all[k])
+            }),
+            lookups: Some(Box::new(move |at| {
+                flown + Wide::from(n) * (Wide::ONE + at[cast] / at[norm])
+            })),
+        }
+    }
+    /// Of delta tracking.
+    pub fn found(&mut self, scene: &Scene) -> Wanted {
+        let sigma = self.sigma;
+        let (sampling, length) = (self.walk.sampling, self.length);
+        let nulls = |s: f64| (sampling - sigma).value() * s;
+        let technique = Technique {
+            density: &|node| node.extinction * node.transmittance,
+            gain: &|node| node.source,
+            found: Some(Found {
+                at: &|node| added(added([1.0; 5], poisson(nulls(node.s))), node.shadow.lookups),
+                none: {
+                    let left = (-(sigma * length).value()).exp();
+                    poisson(nulls(length.value())).map(|moment| left * moment)
+                },
+            }),
+        };
+        let gain = self.scattered / sigma;
+        let known = [1, 2, 3, 4].map(|k| {
+            let kernel = (-2 * i32::try_from(k).unwrap_or(0), self.shadow[k]);
+            self.add(sigma, sigma * power(gain, k), kernel, None)
+        });
+        let cast = self.shadows(sigma, sigma, 0);
+        let walked = -(-sigma * length).exp_m1() * sampling / sigma;
+        Wanted {
+            name: "delta tracking",
+            is_walk: false,
+            found: Points::of(scene, &technique),
+            moments: Box::new(move |at| known.map(|index| at[index])),
+            lookups: Some(Box::new(move |at| walked + at[cast])),
+        }
+    }
+
+    /// At a point of the density `rⁿ e^{−as}` over its integral, which `density` holds.
+    pub fn at_point(
+        &mut self,
+        (name, scene, along): (&'static str, &Scene, Along),
+        density: &dyn Fn(&Node) -> f64,
+        (n, a): (i32, Wide),
+    ) -> Wanted {
+        let gain = |node: &Node| node.extinction * node.source / density(node);
+        let found = Points::of(scene, &Technique { density, gain: &gain, found: None });
+        let none = Wide::default();
+        let before = |k: usize, case: &Self| match along {
+            Along::Exact => case.sigma * Wide::from(k as f64),
+            Along::Ratio => case.walk.signed(k),
+            Along::Delta => case.sigma,
+        };
+        let scattered = self.scattered;
+        let norm = self.add(a, Wide::ONE, (n, none), None);
+        let known = [1, 2, 3, 4].map(|k: usize| {
+            let whole = i32::try_from(k).unwrap_or(0);
+            let rate = before(k, self) + a - Wide::from(k as f64) * a;
+            let kernel = (n - whole * (2 + n), self.shadow[k]);
+            self.add(rate, power(scattered, k), kernel, None)
+        });
+        // σ̂ s, or of delta tracking (σ̂/σ_t)(1 − e^{−σ_t s}); what comes through casts a shadow ray.
+        let through = if along == Along::Delta { self.sigma } else { none };
+        let walked =
+            (along == Along::Ratio).then(|| self.add(a, self.walk.sampling, (0, none), Some(norm)));
+        let left = self.add(a + through, Wide::ONE, (n, none), None);
+        let cast = self.shadows(a + through, Wide::ONE, n);
+        let ratio = self.walk.sampling / self.sigma;
+        Wanted {
+            name,
+            is_walk: false,
+            found,
+            moments: Box::new(move |at| {
+                let mut scale = Wide::ONE;
+                known.map(|index| {
+                    let moment = at[index] * scale;
+                    scale = scale * at[norm];
+                    moment
+                })
+            }),
+            lookups: Some(Box::new(move |at| {
+                let walked = walked.map_or(ratio * (at[norm] - at[left]), |walked| at[walked]);
+                Wide::ONE + (walked + at[cast]) / at[norm]
+            })),
+        }
+    }
+}

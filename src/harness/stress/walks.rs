@@ -1,0 +1,314 @@
+//! Walks in slabs: moments and lookups against discrete ordinates, thinner layers and Peierls' equation.
+//!
+//! The k-th moments of a walk are what leaves another slab, whose albedo may exceed 1. Where r is one number
+//! and light is scattered evenly, discrete ordinates in 32 digits know it, and whether it is finite, see
+//! `ordinates`; where r varies, Peierls' equation, see `peierls`. Other phase functions in layers of other r
+//! are solved again with half as many directions again and a thinner first layer.
+//!
+//! ```text
+//! E[X^k]:  ∫σ̂(1 − Q_k) thick, of the albedo S_k/(1 − Q_k)
+//! E[M] = (1 − R₀ − T₀)/(1 − Q₀ − S₀),  R₀ and T₀ those of k = 0
+//! ```
+
+use super::collided::central;
+use super::costs::stated;
+use super::ordinates::Ordinates;
+use super::peierls::Peierls;
+use super::rods::{moments_of, of_stated};
+use super::slabs::{lights, phase};
+use super::{Dice, Effort, Measure, Row, in_parts, text};
+use crate::media::Piecewise;
+use crate::numeric::{Known, Wide};
+use crate::phase::{Phase, isotropic::Isotropic};
+use crate::problems::slab::{Incidence, Light};
+use crate::theory::particle::ParticleRule;
+use crate::theory::slab::layer::Slice;
+use crate::theory::slab::{self, Answer, Energy, Piece, Pieces, Resolution, Walk};
+use crate::theory::{Mesh, Moments};
+
+const PARTS: u64 = 16;
+/// Directions of the ordinates.
+const ORDINATES: usize = 48;
+/// An albedo so near to 1 is taken so far below it: at 1 two solutions are one.
+const WHITE: f64 = 1e-14;
+/// Half as many directions again as moments take, and a first layer of a hundredth.
+const FINER: Resolution =
+    Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
+/// Fainter light is not resolved to 1e-4, and refused.
+const FAINT: f64 = 1e-9;
+
+/// All rows.
+#[must_use]
+pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
+    in_parts(PARTS, |part| {
+        let dice = &mut Dice::new(seed, "walks", part);
+        let some = |every: u64, full: u32| effort.of(u32::from(part % every == 0), full);
+        let mut rows = even(dice, some(4, 3));
+        rows.extend(finer(dice, some(8, 2)));
+        rows.extend(graded(dice, some(8, 1)));
+        rows
+    })
+}
+
+/// The rows of one kind of slab.
+struct Kinds {
+    second: Row,
+    fourth: Row,
+}
+
+impl Kinds {
+    fn new(range: &str) -> Self {
+        let row = |what: &str| {
+            Row::new(format!("{what} of walks in a slab"), range, Measure::OfStated, 1.0)
+        };
+        Self { second: row("variance"), fourth: row("fourth moment") }
+    }
+
+    fn skip(&mut self, place: impl Fn() -> String) {
+        self.second.skip(&place);
+        self.fourth.skip(&place);
+    }
+
+    /// One channel; `raw` has no more moments than are finite.
+    fn see(&mut self, found: Option<Moments>, raw: &[Wide], place: &dyn Fn() -> String) {
+        let Some(Moments { scale, relative, error }) = found.filter(|_| raw.len() >= 2) else {
+            return self.skip(place);
+        };
+        let none = Wide::from(f64::NAN);
+        let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(none));
+        let [variance, fourth] = central(four, Wide::from(scale));
+        self.second.see(variance.relative_error(relative[0]) / error, place);
+        if raw.len() == 4 && relative[2].is_finite() {
+            self.fourth.see(fourth.relative_error(relative[2]) / error, place);
+        } else {
+            self.fourth.skip(place);
+        }
+    }
+}
+
+fn albedo(dice: &mut Dice) -> f64 {
+    match dice.below(6) {
+        0 => 1.0 - dice.sized(-12.0, -1.0),
+        1 => dice.sized(-2.0, -0.5),
+        _ => dice.between(0.05, 1.0),
+    }
+}
+
+/// An albedo that is not 1.
+fn below_one(albedo: Wide) -> Wide {
+    let is_white = (Wide::ONE - albedo).high.abs() < WHITE;
+    if is_white { Wide::ONE - Wide::from(WHITE) } else { albedo }
+}
+
+/// A rule that exists for ratios up to one.
+fn rule(dice: &mut Dice, most: f64) -> ParticleRule {
+    use ParticleRule::{NonTerminating, Terminating, Weighted};
+    let rules = [NonTerminating, Weighted, Terminating];
+    rules[dice.below(if most <= 1.0 { 3 } else { 2 })]
+}
+
+/// What leaves in all lights.
+type Leaving = Vec<[Wide; 2]>;
+
+/// Compares a walk in all lights with what leaves the slabs of its moments, of which the first infinite one
+/// and those beyond are not there, and the walk's lookups with others.
+fn compare(
+    (kinds, lookups): (&mut Kinds, &mut Row),
+    walk: &Walk,
+    lights: &[Light],
+    exact: &[Leaving],
+    collisions: Option<&[Wide]>,
+    what: &str,
+) {
+    let truths: Vec<Answer> = exact.first().map_or_else(Vec::new, |all| {
+        let known = |x: Wide| Known::new(x.value(), f64::EPSILON * x.value());
+        let answer = |both: &[Wide; 2]| {
+            let [reflected, transmitted] = both.map(known);
+            Answer { reflected, transmitted, score: Known::exact(0.0) }
+        };
+        all.iter().map(answer).collect()
+    });
+    let all = walk.predict_all(lights, &truths);
+    for (i, (light, found)) in lights.iter().zip(all).enumerate() {
+        let place = || format!("{what}, {light:?}");
+        if truths[i].reflected.value.min(truths[i].transmitted.value) < FAINT {
+            kinds.skip(place);
+            lookups.skip(place);
+            continue;
+        }
+        for (channel, side) in found.channels.iter().zip(0..) {
+            let raw: Vec<Wide> = exact.iter().map(|all| all[i][side]).collect();
+            kinds.see(channel.moments, &raw, &|| format!("{}, {}", channel.name, place()));
+        }
+        match found.lookups.zip(collisions) {
+            Some((law, exact)) => lookups.see(of_stated(stated(&law), exact[i]), place),
+            None => lookups.skip(place),
+        }
+    }
+}
+
+/// One ratio, isotropic scattering: discrete ordinates.
+fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
+    let range = "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
+    let mut kinds = Kinds::new(range);
+    let mut lookups = Row::new("lookups of walks in a slab", range, Measure::OfStated, 1.0);
+    let mut diverging = Row::new("diverging variances in slabs, wrong", range, Measure::Count, 0.0);
+    for _ in 0..trials {
+        let (depth, albedo, ratio) = (dice.sized(-3.0, 1.48), albedo(dice), dice.sized(-1.0, 0.5));
+        let (rule, lights) = (rule(dice, ratio), &lights(dice));
+        let (phase, flown) = (Phase::Isotropic(Isotropic), depth / ratio);
+        let walk = Walk {
+            incidence: Incidence { light: Light::Diffuse, phase },
+            albedo,
+            rule,
+            pieces: Pieces::Exact(vec![Piece::of(flown, ratio)]),
+            largest_ratio: ratio,
+            depth,
+            laws: false,
+        };
+        let what = format!("{rule:?}, τ = {depth:e}, r = {ratio:e}, a = {albedo:e}");
+        let of_power = |k: u32, longer: f64| {
+            let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k);
+            let lost = Wide::ONE - q;
+            let albedo = below_one(s / lost);
+            let slab = || {
+                let depth = Wide::from(flown * longer) * lost;
+                Ordinates::new(depth, albedo, ORDINATES).filter(Ordinates::is_positive)
+            };
+            if lost.high > 0.0 { slab() } else { None }
+        };
+        let exact: Vec<Ordinates> = (1..=4).map_while(|k| of_power(k, 1.0)).collect();
+        // Within two thousandths of the critical depth either answer is right.
+        let [before, beyond] = match exact.get(1) {
+            Some(slab) if !slab.swings() => [true; 2],
+            _ => [0.998, 1.002].map(|longer| of_power(2, longer).is_some()),
+        };
+        if before == beyond {
+            diverging.count(walk.diverges() == before, || what.clone());
+        }
+        let exact: Vec<Leaving> = exact
+            .iter()
+            .map(|slab| lights.iter().map(|&light| slab.energy(light)).collect())
+            .collect();
+        let [q, s] = moments_of(rule, Wide::from(ratio), albedo, 0);
+        let ends = Wide::ONE - q - s;
+        let ends = if ends.high.abs() < 1e-13 { (Wide::ONE - q) * Wide::from(WHITE) } else { ends };
+        let collisions = of_power(0, 1.0).map(|slab| -> Vec<Wide> {
+            let left = |&light: &Light| slab.energy(light).into_iter().sum::<Wide>();
+            lights.iter().map(|light| (Wide::ONE - left(light)) / ends).collect()
+        });
+        let rows = (&mut kinds, &mut lookups);
+        compare(rows, &walk, lights, &exact, collisions.as_deref(), &what);
+    }
+    vec![kinds.second, kinds.fourth, lookups, diverging]
+}
+
+/// Layers of other ratios and other phase functions: the same slabs with more directions.
+fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
+    let range = "1 … 3 layers, |g| to 0.7, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
+    let mut kinds = Kinds::new(range);
+    let mut lookups = Row::new("lookups of walks in a slab", range, Measure::OfStated, 1.0);
+    for _ in 0..trials {
+        let (depth, albedo) = (dice.sized(-3.0, 1.48), albedo(dice));
+        let ratios: Vec<f64> = (0..=dice.below(3)).map(|_| dice.sized(-1.0, 0.3)).collect();
+        let most = ratios.iter().copied().fold(0.0, f64::max);
+        let (rule, phase, lights) = (rule(dice, most), phase(dice), &lights(dice));
+        let thin = depth / ratios.len() as f64;
+        let walk = Walk {
+            incidence: Incidence { light: Light::Diffuse, phase },
+            albedo,
+            rule,
+            pieces: Pieces::Exact(ratios.iter().map(|&r| Piece::of(thin / r, r)).collect()),
+            largest_ratio: most,
+            depth,
+            laws: false,
+        };
+        let what = format!("{rule:?}, τ = {depth:e}, r = {ratios:?}, a = {albedo:e}, {phase:?}");
+        let of_power = |k: u32| {
+            let slice = |&ratio: &f64| {
+                let [straight, scattered] =
+                    moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+                Slice { flown: thin / ratio, straight, scattered, score: 1.0 }
+            };
+            let slices: Vec<Slice> = ratios.iter().map(slice).collect();
+            slab::energies(&phase, lights, &slices, FINER)
+        };
+        let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
+        let exact: Vec<Leaving> =
+            (1..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect()).collect();
+        let collisions = of_power(0)
+            .map(|all| all.iter().map(|energy| Wide::from(energy.score)).collect::<Vec<_>>());
+        let rows = (&mut kinds, &mut lookups);
+        compare(rows, &walk, lights, &exact, collisions.as_deref(), &what);
+    }
+    vec![kinds.second, kinds.fourth, lookups]
+}
+
+/// r that varies: Peierls' equation.
+fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
+    let range =
+        "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
+    let mut kinds = Kinds::new(range);
+    // Lookups are not predicted here.
+    let mut none = Row::new("", "", Measure::Count, 0.0);
+    for _ in 0..trials {
+        let (albedo, most) = (albedo(dice), dice.between(0.2, 1.4));
+        // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
+        let weighted = most > 1.0 && dice.below(2) == 0;
+        let rule = if weighted { ParticleRule::Weighted } else { ParticleRule::NonTerminating };
+        let cuts = 1 + dice.below(3);
+        let knots: Vec<f64> = (0..=cuts).map(|i| i as f64 / cuts as f64).collect();
+        let sampling = dice.sized(-2.0, 0.7) / most;
+        let mut values: Vec<f64> =
+            (0..=cuts).map(|_| sampling * most * dice.between(0.0, 1.0)).collect();
+        let highest = dice.below(cuts + 1);
+        values[highest] = sampling * most;
+        let lights = &lights(dice);
+        let text = format!(
+            "medium.piecewise-linear = {{ knots = {knots:?}, values = {values:?} }}\nspan = [0, 1]"
+        );
+        let what = format!("{rule:?}, a = {albedo:e}, σ̂ = {sampling:e}, {knots:?}, {values:?}");
+        let Some(medium) = text::medium(&text) else {
+            kinds.skip(|| what.clone());
+            continue;
+        };
+        let mesh = Mesh::new(medium);
+        let (flown, extinction) =
+            (Piecewise::constant(sampling, mesh.support()), Piecewise::lines(&knots, &values));
+        let phase = Phase::Isotropic(Isotropic);
+        let walk = Walk {
+            incidence: Incidence { light: Light::Diffuse, phase },
+            albedo,
+            rule,
+            pieces: Pieces::new(&mesh, &flown),
+            largest_ratio: most,
+            depth: mesh.optical_depth().value,
+            laws: false,
+        };
+        // Where r passes 1 its moments have kinks.
+        let mut breaks = knots.clone();
+        for (knots, values) in knots.windows(2).zip(values.windows(2)) {
+            let share = (sampling - values[0]) / (values[1] - values[0]);
+            if share > 0.0 && share < 1.0 {
+                breaks.push(knots[0] + share * (knots[1] - knots[0]));
+            }
+        }
+        let of_power = |k: u32| {
+            let rates = |x: f64| {
+                let ratio = extinction.value(x) / sampling;
+                let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+                [sampling * (1.0 - q), sampling * s]
+            };
+            let grows = (0..=200).any(|i| rates(f64::from(i) / 200.0)[0] <= 0.0);
+            if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
+        };
+        let leaving = |both: &[f64; 2]| both.map(Wide::from);
+        let truth =
+            Ordinates::new(Wide::from(walk.depth), below_one(Wide::from(albedo)), ORDINATES);
+        let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
+        let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect());
+        let exact: Vec<Leaving> = truth.into_iter().chain(higher).collect();
+        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
+    }
+    vec![kinds.second, kinds.fourth]
+}
