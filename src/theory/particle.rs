@@ -68,10 +68,7 @@ impl Odds {
             return [self.transmit, self.scatter];
         }
         let more = k - 1;
-        [
-            straight * self.transmit_weight.powi(more),
-            scattered * self.scatter_weight.powi(more),
-        ]
+        [straight * self.transmit_weight.powi(more), scattered * self.scatter_weight.powi(more)]
     }
 
     /// The same chances and weights without their signs.
@@ -259,10 +256,8 @@ mod tests {
                     let odds = rule.odds(r, albedo);
                     let context = format!("{rule:?} at r = {r}, a = {albedo}");
                     let means = [1.0 - r, albedo * r];
-                    let found = [
-                        odds.transmit * odds.transmit_weight,
-                        odds.scatter * odds.scatter_weight,
-                    ];
+                    let found =
+                        [odds.transmit * odds.transmit_weight, odds.scatter * odds.scatter_weight];
                     for (found, mean) in found.into_iter().zip(means) {
                         assert!((found - mean).abs() < 1e-14, "{context}");
                     }
