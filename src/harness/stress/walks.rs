@@ -69,19 +69,20 @@ impl Kinds {
         self.fourth.skip(&place);
     }
 
-    /// One channel; `raw` has no more moments than are finite.
+    /// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to
+    /// where they become so either may be right.
     fn see(&mut self, found: Option<Moments>, raw: &[Wide], place: &dyn Fn() -> String) {
-        let Some(Moments { scale, relative, error }) = found.filter(|_| raw.len() >= 2) else {
-            return self.skip(place);
-        };
+        let Some(Moments { scale, relative, error }) = found else { return self.skip(place) };
         let none = Wide::from(f64::NAN);
         let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(none));
-        let [variance, fourth] = central(four, Wide::from(scale));
-        self.second.see(variance.relative_error(relative[0]) / error, place);
-        if raw.len() == 4 && relative[2].is_finite() {
-            self.fourth.see(fourth.relative_error(relative[2]) / error, place);
-        } else {
-            self.fourth.skip(place);
+        let exact = central(four, Wide::from(scale));
+        let rows = [(&mut self.second, 2, relative[0]), (&mut self.fourth, 4, relative[2])];
+        for ((row, needed, found), exact) in rows.into_iter().zip(exact) {
+            match (raw.len() >= needed, found.is_finite()) {
+                (true, true) => row.see(exact.relative_error(found) / error, place),
+                (false, false) => row.see(0.0, place),
+                _ => row.skip(place),
+            }
         }
     }
 }
