@@ -37,7 +37,7 @@ pub struct Classes {
     /// [`NEAR`] that are no number: nothing reaches those.
     ends: Vec<f64>,
     /// How many classes.
-    classes: usize,
+    total: usize,
     /// Equal cells from the first end to the last but one: how many ends surely lie before each.
     guide: Vec<u16>,
     /// Where the cells begin.
@@ -69,7 +69,7 @@ impl Classes {
         let cells = CELLS * ends.len();
         let width = length / cells.max(1) as f64;
         ends.push(escape);
-        let classes = ends.len();
+        let total = ends.len();
         // A distance that rounding puts into the next cell still finds its class ahead.
         let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
         let passed = |cell| ends.partition_point(|&end| end < before(cell));
@@ -78,7 +78,7 @@ impl Classes {
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
         let (guide, last) = (guide.collect(), (cells + 1) as f64);
         ends.extend([f64::NAN; NEAR]);
-        Self { guide, first, last, scale, ends, classes, escapes }
+        Self { ends, total, guide, first, last, scale, escapes }
     }
 
     /// The cell of a distance.
@@ -113,17 +113,17 @@ impl Classes {
 
     /// How many classes, escape not counted.
     pub(super) fn len(&self) -> usize {
-        self.classes
+        self.total
     }
 
     /// Counts draws: the classes in order, then the rays that escape.
     pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
         let values = &draws.values[0];
-        if self.classes <= FEW {
+        if self.total <= FEW {
             // All draws of a row against one end after the other, so that no branch hangs on chance.
             for values in values.chunks(ROW) {
                 let mut reached = values.len();
-                for (sum, &end) in sums.iter_mut().zip(&self.ends[..self.classes]) {
+                for (sum, &end) in sums.iter_mut().zip(&self.ends[..self.total]) {
                     let beyond = in_fused_code(
                         #[inline(always)]
                         || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
@@ -131,7 +131,7 @@ impl Classes {
                     *sum += (reached - beyond) as f64;
                     reached = beyond;
                 }
-                sums[self.classes] += reached as f64;
+                sums[self.total] += reached as f64;
             }
             return;
         }
