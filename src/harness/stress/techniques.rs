@@ -8,21 +8,6 @@ use crate::theory::single::predict::Found;
 use crate::theory::single::{Along, Node, Points, Scene, Technique, Tracking, walks};
 use crate::theory::volterra::binomial;
 
-/// The orders of the shared walk, from the fewest points to the most, see `theory::single::walks`.
-const ORDERS: [[usize; 4]; 11] = [
-    [1, 0, 0, 0],
-    [0, 1, 0, 0],
-    [2, 0, 0, 0],
-    [0, 0, 1, 0],
-    [1, 1, 0, 0],
-    [3, 0, 0, 0],
-    [0, 0, 0, 1],
-    [1, 0, 1, 0],
-    [0, 2, 0, 0],
-    [2, 1, 0, 0],
-    [4, 0, 0, 0],
-];
-
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)
 }
@@ -227,12 +212,12 @@ impl Case {
         let density = |node: &Node| problem.equiangular_density(node.s);
         let found = walks::at_points(scene, count, &density);
         let mut known: Vec<usize> = Vec::new();
-        for order in ORDERS {
+        for order in walks::ORDERS {
             let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
             let terms = (1..5).filter(|&m| order[m - 1] > 0).map(|m| {
                 let mut lower = order;
                 lower[m - 1] -= 1;
-                let rest = ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
+                let rest = walks::ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
                 self.term(Wide::from(order[m - 1] as f64), (-2, self.shadow[m]), rest)
             });
             let terms = terms.collect();
@@ -244,7 +229,7 @@ impl Case {
         let flown = self.walk.sampling * self.length;
         let n = count as f64;
         let moments = move |at: &[Wide]| {
-            let of: Vec<Wide> = ORDERS
+            let of: Vec<Wide> = walks::ORDERS
                 .iter()
                 .zip(&known)
                 .map(|(order, &index)| {

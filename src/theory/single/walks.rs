@@ -13,6 +13,21 @@ use super::predict::{LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use crate::numeric::Span;
 
+/// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
+pub const ORDERS: [[usize; 4]; 11] = [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [2, 0, 0, 0],
+    [0, 0, 1, 0],
+    [1, 1, 0, 0],
+    [3, 0, 0, 0],
+    [0, 0, 0, 1],
+    [1, 0, 1, 0],
+    [0, 2, 0, 0],
+    [2, 1, 0, 0],
+    [4, 0, 0, 0],
+];
+
 const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 0.0, 0.0, 0.0, 0.0],
     [1.0, 1.0, 0.0, 0.0, 0.0],
@@ -188,20 +203,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         let chain = Chain::new(scene, panels);
         // E[A₁^{n₁} A₂^{n₂} …] with A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds, by total degree.
         let mut known: Vec<([usize; 4], Solved)> = Vec::new();
-        let orders = [
-            [1, 0, 0, 0],
-            [0, 1, 0, 0],
-            [2, 0, 0, 0],
-            [0, 0, 1, 0],
-            [1, 1, 0, 0],
-            [3, 0, 0, 0],
-            [0, 0, 0, 1],
-            [1, 0, 1, 0],
-            [0, 2, 0, 0],
-            [2, 1, 0, 0],
-            [4, 0, 0, 0],
-        ];
-        for order in orders {
+        for order in ORDERS {
             let degree: usize = order.iter().enumerate().map(|(i, n)| (i + 1) * n).sum();
             let solved = chain.solve(&|losses| losses.signed[degree], &|at, p, i| {
                 let term = |m: usize| {
