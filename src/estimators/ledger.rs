@@ -13,10 +13,10 @@ use crate::rng::{LANES, PACKS};
 /// Steps between two searches; what a lane did in them makes a word.
 pub const STEPS: usize = 64;
 
-/// What is noted of a step: three numbers of each lane, before the step's outcome.
+/// What is noted of a step: two numbers of each lane, before the step's outcome.
 #[derive(Clone, Copy, Default)]
 #[repr(align(64))]
-pub struct Row(pub [[f64; WIDTH]; 3]);
+pub struct Row(pub [[f64; WIDTH]; 2]);
 
 /// What makes draws of rows.
 pub trait Reader {

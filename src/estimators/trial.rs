@@ -14,7 +14,7 @@ use crate::rng::{Address, Lanes, Streams};
 use crate::theory::Prediction;
 
 /// A buffer of draws: one array per channel, one for the lookups, one for the defects.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct DrawBuffer {
     /// `values[channel][draw]`.
     pub values: Vec<Vec<f64>>,
@@ -42,6 +42,11 @@ impl DrawBuffer {
     #[must_use]
     pub fn length(channels: usize) -> usize {
         (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
+    }
+
+    /// For draws of so many channels from now on.
+    pub fn set_channels(&mut self, channels: usize) {
+        self.values.resize_with(channels, Vec::new);
     }
 
     /// Removes the draws.

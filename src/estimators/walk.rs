@@ -79,13 +79,11 @@ impl<L: Lane> Books<L> {
         self.handed_over = self.handed_over + share;
         self.turnover = self.turnover + share.size();
     }
-}
 
-impl Books {
     /// What is missing at the end, relative to all that was booked; rounding in a correct walk.
     #[inline(always)]
     #[must_use]
-    pub fn defect(&self, weight: f64) -> f64 {
-        (weight + self.handed_over - self.begin).abs() / self.turnover
+    pub fn defect(&self, weight: L) -> L {
+        (weight + self.handed_over - self.begin).size() / self.turnover
     }
 }

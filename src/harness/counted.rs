@@ -4,7 +4,10 @@
 //! experiments take far fewer values than there are draws. What a question asks of them is then asked
 //! once for each value.
 
+use std::cell::OnceCell;
+
 use super::checks::Observe;
+use super::checks::distances::Classes;
 use crate::estimators::DrawBuffer;
 use crate::stats::{Census, Tally};
 
@@ -16,6 +19,8 @@ pub struct Counted<'a> {
     pub values: Vec<Option<Census<f64>>>,
     /// The numbers of lookups, where they are few.
     pub lookups: Option<Census<u32>>,
+    /// How many draws are in each class of the experiment's distances, once somebody has asked.
+    distances: OnceCell<Vec<f64>>,
 }
 
 impl<'a> Counted<'a> {
@@ -23,7 +28,8 @@ impl<'a> Counted<'a> {
     #[must_use]
     pub fn new(draws: &'a DrawBuffer) -> Self {
         let values = draws.values.iter().map(|values| Census::<f64>::of(values)).collect();
-        Self { draws, values, lookups: Census::<u32>::of(&draws.lookups) }
+        let lookups = Census::<u32>::of(&draws.lookups);
+        Self { draws, values, lookups, distances: OnceCell::new() }
     }
 
     /// Replaces `y` by what is observed of each value, and answers how often each comes; `None` where
@@ -47,6 +53,12 @@ impl<'a> Counted<'a> {
                 None
             }
         }
+    }
+
+    /// Adds how many draws are in each class of the experiment's distances: the same for all that ask.
+    pub fn add_distances(&self, classes: &Classes, sums: &mut [f64]) {
+        let counts = self.distances.get_or_init(|| classes.count(self.draws));
+        sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 
     /// The tally of a channel.

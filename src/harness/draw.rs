@@ -4,6 +4,8 @@
 //! absorbs each buffer while it is in the second-level cache. P-values and z-scores see only the
 //! draws below the plan's fixed number.
 
+use std::cell::RefCell;
+
 use cpu_time::ThreadTime;
 use fearless_simd::Level;
 
@@ -89,13 +91,38 @@ fn fill_together(drawings: &mut [&mut Drawing]) {
         // The same for all: they find them at the same address.
         places = Some(drawing.streams.places());
         let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
-        let request = Request { counts, count, buffer: &mut drawing.buffer };
+        let request = Request { counts, count, buffer: &mut drawing.room.buffer };
         drawing.ready.experiment.walkers(request)
     });
     let mut walkers: Vec<Box<dyn Walkers + '_>> = walkers.collect();
     let mut requests: Vec<&mut dyn Walkers> = walkers.iter_mut().map(|w| &mut **w as _).collect();
     if let Some(places) = places {
         leader.experiment.draw_layers(Level::new(), &places, &mut requests);
+    }
+}
+
+/// Room for draws and for what a question makes of them.
+#[derive(Default)]
+struct Room {
+    buffer: DrawBuffer,
+    y: Vec<f64>,
+}
+
+thread_local! {
+    /// What the blocks before have left to the thread: so much memory, asked for anew, would cost a block as
+    /// much time as some of its questions.
+    static ROOMS: RefCell<Vec<Room>> = const { RefCell::new(Vec::new()) };
+}
+
+impl Room {
+    fn take(channels: usize) -> Self {
+        let mut room: Self = ROOMS.with_borrow_mut(Vec::pop).unwrap_or_default();
+        room.buffer.set_channels(channels);
+        room
+    }
+
+    fn leave(self) {
+        ROOMS.with_borrow_mut(|rooms| rooms.push(self));
     }
 }
 
@@ -106,7 +133,7 @@ struct Drawing<'p> {
     streams: Streams,
     /// How many draws the buffer takes.
     length: u64,
-    buffer: DrawBuffer,
+    room: Room,
     absorbers: Vec<Absorber>,
     tallies: Vec<Tally>,
     lookups: Tally,
@@ -114,7 +141,6 @@ struct Drawing<'p> {
     start: u64,
     at: u64,
     end: u64,
-    y: Vec<f64>,
 }
 
 impl<'p> Drawing<'p> {
@@ -128,14 +154,13 @@ impl<'p> Drawing<'p> {
             ready,
             streams: planned.streams(block),
             length: DrawBuffer::length(channels) as u64,
-            buffer: DrawBuffer::new(channels),
+            room: Room::take(channels),
             absorbers: planned.questions.iter().map(|q| Absorber::new(&q.kind)).collect(),
             tallies: vec![Tally::default(); channels],
             lookups: Tally::default(),
             start,
             at: start,
             end: (start + BLOCK).min(planned.horizon),
-            y: Vec::new(),
         })
     }
 
@@ -153,17 +178,18 @@ impl<'p> Drawing<'p> {
 
     fn fill(&mut self) {
         let count = self.count();
-        self.ready.experiment.fill(&mut self.streams, count, &mut self.buffer);
+        self.ready.experiment.fill(&mut self.streams, count, &mut self.room.buffer);
     }
 
     /// Every question absorbs the buffer.
     fn absorb(&mut self) {
         let (count, is_fixed) = (self.count(), self.is_fixed());
-        let draws = Counted::new(&self.buffer);
+        let Room { buffer, y } = &mut self.room;
+        let draws = Counted::new(buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
         for (question, absorber) in self.planned.questions.iter().zip(&mut self.absorbers) {
-            absorber.absorb(&question.kind, &draws, first, is_fixed, &mut self.y);
+            absorber.absorb(&question.kind, &draws, first, is_fixed, y);
         }
         if is_fixed {
             let prediction = &self.ready.prediction;
@@ -183,6 +209,7 @@ impl<'p> Drawing<'p> {
         let questions = self.planned.questions.iter().zip(self.absorbers);
         let answers = questions.map(|(q, absorber)| absorber.answer(&q.kind, fixed)).collect();
         let Self { tallies, lookups, .. } = self;
+        self.room.leave();
         Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
     }
 }

@@ -46,30 +46,30 @@ impl<M: Extinction> Task for Decomposition<'_, '_, M> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { sampling, support, control, survivor, medium, request } = self;
+        let sampling = self.sampling;
+        if let Some(even) = sampling.even() {
+            self.along(simd, Even::new(simd, even));
+        } else {
+            self.along(simd, Pieces::new(simd, sampling));
+        }
+    }
+}
+
+impl<M: Extinction> Decomposition<'_, '_, M> {
+    #[inline(always)]
+    fn along<S: Simd, C: Course<S> + Copy>(self, simd: S, course: C) {
+        let Self { support, control, survivor, medium, request, .. } = self;
         let from = f64x8::splat(simd, support.from);
         let path = f64x8::splat(simd, 1.0 / control);
         let control = f64x8::splat(simd, control);
-        let begins = mask64x8::splat(simd, true);
+        let (begins, flown) = (mask64x8::splat(simd, true), from);
         let reader = Survivors { end: support.to, survivor };
-        let flown = from;
-        if let Some(even) = sampling.even() {
-            let course = Even::new(simd, even);
-            run(
-                simd,
-                #[inline(always)]
-                || Residuals { medium, control, path, from, course, begins, flown, reader },
-                request,
-            );
-        } else {
-            let course = Pieces::new(simd, sampling);
-            run(
-                simd,
-                #[inline(always)]
-                || Residuals { medium, control, path, from, course, begins, flown, reader },
-                request,
-            );
-        }
+        run(
+            simd,
+            #[inline(always)]
+            || Residuals { medium, control, path, from, course, begins, flown, reader },
+            request,
+        );
     }
 }
 

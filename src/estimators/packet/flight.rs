@@ -42,29 +42,27 @@ impl<M: Extinction> Task for Flight<'_, '_, M> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { sampling, ray, medium, request } = self;
-        let from = f64x8::splat(simd, sampling.begin().t);
+        let sampling = self.sampling;
         if let Some(even) = sampling.even() {
-            fly(simd, Flights { medium, ray, from, course: Even::new(simd, even) }, request);
+            self.along(simd, Even::new(simd, even));
         } else {
-            fly(simd, Flights { medium, ray, from, course: Pieces::new(simd, sampling) }, request);
+            self.along(simd, Pieces::new(simd, sampling));
         }
     }
 }
 
-#[inline(always)]
-fn fly<S: Simd, M: Extinction, C: Course<S> + Copy>(
-    simd: S,
-    flights: Flights<S, M, C>,
-    request: Request,
-) {
-    let Flights { medium, ray, from, course } = flights;
-    run(
-        simd,
-        #[inline(always)]
-        || Flights { medium, ray, from, course },
-        request,
-    );
+impl<M: Extinction> Flight<'_, '_, M> {
+    #[inline(always)]
+    fn along<S: Simd, C: Course<S> + Copy>(self, simd: S, course: C) {
+        let Self { sampling, ray, medium, request } = self;
+        let from = f64x8::splat(simd, sampling.begin().t);
+        run(
+            simd,
+            #[inline(always)]
+            || Flights { medium, ray, from, course },
+            request,
+        );
+    }
 }
 
 /// The walks of free flights.

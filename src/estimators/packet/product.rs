@@ -173,7 +173,7 @@ where
 
     #[inline(always)]
     fn reader(&self) -> Weights {
-        Weights { begin: self.site.begin }
+        Weights
     }
 
     #[inline(always)]
@@ -188,8 +188,7 @@ where
         };
         let (weight, books) = (self.weight, self.books);
         weight.store_slice(&mut row.0[0]);
-        books.handed_over.store_slice(&mut row.0[1]);
-        books.turnover.store_slice(&mut row.0[2]);
+        books.defect(weight).store_slice(&mut row.0[1]);
         let (fresh, mut booked) = (Books::open(books.begin), books);
         booked.hand_over(weight, self.site.rule.due(ratio, outcome.survival));
         self.weight = Lane::select(goes_on, weight * outcome.weight, fresh.begin);
@@ -200,17 +199,13 @@ where
     }
 }
 
-/// Reads weights and books.
-struct Weights {
-    begin: f64,
-}
+/// Reads weights and what their books lack.
+struct Weights;
 
 impl Reader for Weights {
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
-        let [weights, handed_over, turnover] = &row.0;
-        let (handed_over, turnover) = (handed_over[lane], turnover[lane]);
-        let books = Books { begin: self.begin, handed_over, turnover };
-        (if escaped { weights[lane] } else { 0.0 }, books.defect(weights[lane]))
+        let [weights, defects] = &row.0;
+        (if escaped { weights[lane] } else { 0.0 }, defects[lane])
     }
 }

@@ -27,7 +27,7 @@ impl Law for Empirical {
     }
 
     fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
-        self.0.count(draws.draws, sums);
+        draws.add_distances(&self.0, sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
@@ -37,7 +37,7 @@ impl Law for Empirical {
 
 impl Check for Depth {
     fn questions(&self, subject: &Subject) -> Vec<Ask> {
-        let classes = Classes::of(subject, usize::MAX).filter(|_| !subject.expect_biased);
+        let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
         let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
         kind.map(|kind| Ask::whole("the tails of the distances", kind)).into_iter().collect()
     }

@@ -4,6 +4,8 @@
 //! ```text
 //! P(s ≤ t) = 1 − T(t),  P(s = S) = T(S)
 //! ```
+//!
+//! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
 
 use super::{Ask, Check, Kind, Law, Subject};
 use crate::estimators::DrawBuffer;
@@ -25,8 +27,8 @@ const INTEGERS: f64 = 4_503_599_627_370_496.0;
 const ROW: usize = 512;
 /// Ends that a distance is compared with at once.
 const NEAR: usize = 3;
-/// So few ends need no guide.
-const FEW: usize = 32;
+/// Counts are kept fourfold, so that one need not wait for the last to be stored.
+const FOLD: usize = 4;
 
 /// The check of the distances.
 pub struct Distances;
@@ -51,15 +53,13 @@ pub struct Classes {
 }
 
 impl Classes {
-    /// `wanted` classes, or as many as theory has where that is less.
+    /// As many as theory has.
     #[must_use]
-    pub fn of(subject: &Subject, wanted: usize) -> Option<Self> {
+    pub fn of(subject: &Subject) -> Option<Self> {
         let Some(theory::Law::Distances { bins, end, escape, .. }) = &subject.prediction.law else {
             return None;
         };
-        let step = (bins.len() + 1) / wanted.min(bins.len() + 1);
-        let ends: Vec<f64> = bins.iter().skip(step - 1).step_by(step).copied().collect();
-        Some(Self::new(ends, *end, *escape))
+        Some(Self::new(bins.clone(), *end, *escape))
     }
 
     /// Of the ends of all classes but the last.
@@ -116,59 +116,60 @@ impl Classes {
         self.total
     }
 
-    /// Counts draws: the classes in order, then the rays that escape.
-    pub fn count(&self, draws: &DrawBuffer, sums: &mut [f64]) {
-        let values = &draws.values[0];
-        if self.total <= FEW {
-            // All draws of a row against one end after the other, so that no branch hangs on chance.
-            for values in values.chunks(ROW) {
-                let mut reached = values.len();
-                for (sum, &end) in sums.iter_mut().zip(&self.ends[..self.total]) {
-                    let beyond = in_fused_code(
-                        #[inline(always)]
-                        || values.iter().map(|&s| usize::from(s >= end)).sum::<usize>(),
-                    );
-                    *sum += (reached - beyond) as f64;
-                    reached = beyond;
-                }
-                sums[self.total] += reached as f64;
-            }
-            return;
-        }
+    /// How many draws are in each class, in order, and of the rays that escape.
+    #[must_use]
+    pub fn count(&self, draws: &DrawBuffer) -> Vec<f64> {
+        let mut counts = vec![[0_u32; FOLD]; self.total + 1];
         // The cells of a row at once: that has no branches and no lists.
         let mut cells = [0; ROW];
-        for values in values.chunks(ROW) {
+        for values in draws.values[0].chunks(ROW) {
             in_fused_code(
                 #[inline(always)]
                 || cells.iter_mut().zip(values).for_each(|(cell, &s)| *cell = self.cell(s)),
             );
-            for (&s, &cell) in values.iter().zip(&cells) {
-                sums[self.class(s, cell)] += 1.0;
+            for (fold, (&s, &cell)) in values.iter().zip(&cells).enumerate() {
+                counts[self.class(s, cell)][fold % FOLD] += 1;
             }
         }
+        counts.into_iter().map(|counts| f64::from(counts.iter().sum::<u32>())).collect()
     }
 }
 
-impl Law for Classes {
+/// The bins, each so many classes.
+struct Bins {
+    classes: Classes,
+    size: usize,
+}
+
+impl Law for Bins {
     fn size(&self) -> usize {
-        self.len() + 1
+        self.classes.len() + 1
     }
 
     fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
-        self.count(draws.draws, sums);
+        draws.add_distances(&self.classes, sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
-        let mut probability = vec![(1.0 - self.escapes) / self.len() as f64; self.len()];
-        probability.push(self.escapes);
-        chi_square::p_value(sums, &probability)
+        let (sums, escaped) = sums.split_at(self.classes.len());
+        let share = (1.0 - self.classes.escapes) / self.classes.len() as f64;
+        let bins = sums.chunks(self.size);
+        let mut counts: Vec<f64> = bins.clone().map(|bin| bin.iter().sum()).collect();
+        let mut probability: Vec<f64> = bins.map(|bin| share * bin.len() as f64).collect();
+        counts.extend(escaped);
+        probability.push(self.classes.escapes);
+        chi_square::p_value(&counts, &probability)
     }
 }
 
 impl Check for Distances {
     fn questions(&self, subject: &Subject) -> Vec<Ask> {
-        let classes = Classes::of(subject, BINS).filter(|_| !subject.expect_biased);
-        let kind = classes.map(|classes| Kind::Law(Box::new(classes)));
+        let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
+        let bins = classes.map(|classes| {
+            let size = (classes.len() / BINS).max(1);
+            Bins { classes, size }
+        });
+        let kind = bins.map(|bins| Kind::Law(Box::new(bins)));
         kind.map(|kind| Ask::whole("the law of the distances", kind)).into_iter().collect()
     }
 }
@@ -178,20 +179,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn few_classes_and_many_count_alike() {
+    fn every_draw_is_counted_in_its_class() {
         let mut draws = DrawBuffer::new(1);
         draws.values[0] = (0..4096).map(|i| f64::from(i * i % 1009) * 0.005).collect();
         let ends: Vec<f64> = (1..64).map(|i| 0.05 * f64::from(i)).collect();
-        let few: Vec<f64> = ends.iter().skip(1).step_by(2).copied().collect();
-        let (fine, coarse) = (Classes::new(ends, 4.5, 0.1), Classes::new(few, 4.5, 0.1));
-        let (mut many, mut few) = (vec![0.0; 65], vec![0.0; 33]);
-        fine.count(&draws, &mut many);
-        coarse.count(&draws, &mut few);
-        assert_eq!(few.iter().sum::<f64>(), 4096.0);
-        assert_eq!(few[32], many[64]);
-        for (class, count) in few[..32].iter().enumerate() {
-            assert_eq!(*count, many[2 * class] + many[2 * class + 1], "class {class}");
+        let classes = Classes::new(ends.clone(), 4.5, 0.1);
+        let mut expected = vec![0.0; 65];
+        for s in &draws.values[0] {
+            expected[ends.iter().chain(&[4.5]).filter(|&end| end <= s).count()] += 1.0;
         }
+        assert_eq!(classes.count(&draws), expected);
+    }
+
+    #[test]
+    fn bins_are_made_of_classes() {
+        let classes = Classes::new((1..64).map(f64::from).collect(), 64.0, 0.36);
+        let bins = Bins { size: classes.len() / 16, classes };
+        let mut sums = vec![1000.0; 65];
+        sums[64] = 36_000.0;
+        let p = |sums: &[f64]| bins.p_value(sums, 1e5);
+        assert!(p(&sums).is_some_and(|p| p > 0.999), "{:?}", p(&sums));
+        // What lies within a bin is not seen, what lies in another one is.
+        (sums[4], sums[7]) = (0.0, 2000.0);
+        assert!(p(&sums).is_some_and(|p| p > 0.999));
+        (sums[8], sums[7]) = (3000.0, 0.0);
+        assert!(p(&sums).is_some_and(|p| p < 1e-9));
     }
 
     #[test]
