@@ -156,7 +156,7 @@ impl Fault for FirstSkipped {
     }
 }
 
-/// One generator's numbers for all buffers of a block.
+/// One generator's numbers from the beginning, again and again.
 #[derive(Clone, Copy)]
 pub struct BuffersReplayed;
 

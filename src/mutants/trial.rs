@@ -6,9 +6,12 @@ use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::{Stream, Streams};
 
+/// The draws between two beginnings of a generator that starts again.
+pub const PERIOD: usize = 1024;
+
 /// A way to make draws, right or wrong.
 pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
-    /// Whether all buffers of a block begin with the same random numbers, which is wrong.
+    /// Whether every [`PERIOD`] draws begin with the same random numbers, which is wrong.
     const REPLAYS: bool = false;
 
     /// Prepares what it works on, once per experiment.
@@ -37,13 +40,15 @@ struct Trial<P, D> {
 impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
-        let mut copy = streams.clone();
-        let streams = if D::REPLAYS { &mut copy } else { streams };
+        let begin = streams.clone();
         let medium = self.setup.problem.medium();
         in_fused_code(
             #[inline(always)]
             || {
-                for _ in 0..count {
+                for number in 0..count {
+                    if D::REPLAYS && number % PERIOD == 0 {
+                        streams.clone_from(&begin);
+                    }
                     let draw = self.draws.draw(&self.setup, medium, streams.of_next_draw());
                     buffer.push(&draw);
                 }

@@ -15,8 +15,10 @@ use crate::theory::Mesh;
 
 /// Panels of 16 nodes on each ray, for what theory expects of its draws.
 const PANELS: usize = 16;
-/// A pixel of every so many columns and rows makes a pilot draw.
+/// A pixel of every so many columns and rows makes pilot draws.
 const PILOTS_EVERY: usize = 2;
+/// So many pilot draws even in the smallest picture: their mean is what a draw costs to a few hundredths.
+const LEAST_PILOTS: u64 = 2048;
 
 /// More draws at a pixel than this are a mistake in the picture.
 const MOST_DRAWS: f64 = 1e7;
@@ -184,9 +186,11 @@ impl<P: Subject> Scene<P> {
         }
         let is_pilot = [column, row].iter().all(|at| at % PILOTS_EVERY == 0);
         let address = Address { block: number as u64, ..listed.addresses[0] };
-        let lookups = is_pilot.then(|| Self::drawn(seen, written, setup, 1, address).lookups);
+        let pixels: usize = self.view.size.iter().map(|size| size.div_ceil(PILOTS_EVERY)).product();
+        let draws = LEAST_PILOTS.div_ceil(pixels as u64);
+        let lookups = is_pilot.then(|| Self::drawn(seen, written, setup, draws, address).lookups);
         let pilots = lookups.unwrap_or(0);
-        let lookups = lookups.map(|lookups| lookups as f64);
+        let lookups = lookups.map(|lookups| lookups as f64 / draws as f64);
         Ok(Forecast { lookups, variance: None, bias: 0.0, leads, pilots })
     }
 
