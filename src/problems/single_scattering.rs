@@ -73,6 +73,8 @@ struct Light {
     distance: f64,
     /// The angles, seen from the light and measured from its foot, of the ends of the support.
     angles: Span,
+    /// The angle between them.
+    width: f64,
 }
 
 impl SingleScattering {
@@ -93,9 +95,17 @@ impl SingleScattering {
         let medium = Medium::new(profile, ray.span(), support);
         let Lamp { position, power } = lamp;
         let [foot, distance] = lamp.seen_from(&ray)?;
-        let angle = |s: f64| elementary::atan((s - foot) / distance);
-        let angles = Span::new(angle(support.from), angle(support.to));
-        let light = Light { position, power, foot, distance, angles };
+        let ends = [support.from - foot, support.to - foot];
+        let angle = |along: f64| elementary::atan(along / distance);
+        let angles = Span::new(angle(ends[0]), angle(ends[1]));
+        let width = if ends[0] * ends[1] > 0.0 {
+            // Of a light beyond either end both angles are near a right one.
+            let apart = distance * support.length();
+            elementary::atan(apart / (distance * distance + ends[0] * ends[1]))
+        } else {
+            angles.length()
+        };
+        let light = Light { position, power, foot, distance, angles, width };
         let radiance = OnceLock::new();
         Ok(Self { volume, ray, medium, light, albedo, phase, radiance })
     }
@@ -132,7 +142,13 @@ impl SingleScattering {
     /// The squared distance of `p(s)` from the light.
     #[inline(always)]
     fn square(&self, s: f64) -> f64 {
-        let (along, across) = (s - self.light.foot, self.light.distance);
+        self.square_beyond(s - self.light.foot)
+    }
+
+    /// The same of the point so far beyond the foot.
+    #[inline(always)]
+    fn square_beyond(&self, along: f64) -> f64 {
+        let across = self.light.distance;
         along * along + across * across
     }
 
@@ -179,7 +195,33 @@ impl SingleScattering {
     #[inline(always)]
     #[must_use]
     pub fn equiangular_density(&self, s: f64) -> f64 {
-        self.light.distance / (self.light.angles.length() * self.square(s))
+        self.equiangular_density_beyond(s - self.light.foot)
+    }
+
+    /// The same at the point so far beyond the foot: next to the light `s` has lost the digits of its
+    /// distance from there.
+    #[inline(always)]
+    #[must_use]
+    pub fn equiangular_density_beyond(&self, along: f64) -> f64 {
+        self.light.distance / (self.light.width * self.square_beyond(along))
+    }
+
+    /// `a p(cos θ) Φ/(4π r²)` at the point so far beyond the foot, as [`source`](Self::source), and by how much
+    /// rounding may change it, relative to itself.
+    ///
+    /// ```text
+    /// ε (4 + |d ln p/d cos θ|)
+    /// ```
+    #[must_use]
+    pub fn source_beyond(&self, along: f64) -> Known {
+        const STEP: f64 = 1e-7;
+        let square = self.square_beyond(along);
+        let cosine = (-along / square.sqrt()).clamp(-1.0, 1.0);
+        let phase = self.phase.value(cosine);
+        let beside = self.phase.value(if cosine > 0.0 { cosine - STEP } else { cosine + STEP });
+        let steep = if phase > 0.0 { (phase - beside).abs() / (STEP * phase) } else { 0.0 };
+        let source = self.albedo * phase * self.light.power / (4.0 * PI * square);
+        Known::new(source, f64::EPSILON * (4.0 + steep))
     }
 
     /// The ray from `p(s)` to the light, and its stretch within the bounds of the volume; `None`

@@ -34,14 +34,13 @@
 //! | H-function | [`mod@infinite`] | trapezoidal rule, 32 digits | 1,540 |
 //! | `∫σ_t dV` | [`contents`] | closed forms, 32 digits; rules exact in cells | 2,080; 1,020 |
 //! | radiance of single scattering | [`scattering`] | 32 digits; panels of distance | 1,270; 1,010 |
-//! | single scattering: moments of one point, of walks | [`scattered`] | power series, 32 digits | 530; 570 |
-//! | single scattering: lookups | [`scattered`] | power series, 32 digits | 490 |
-//! | single scattering: moments in fields | [`gathered`] | panels of distance | 100 |
+//! | single scattering: moments of one point, of walks | [`scattered`] | power series, 32 digits | 590; 630 |
+//! | single scattering: lookups | [`scattered`] | power series, 32 digits | 580 |
+//! | single scattering: moments in fields | [`gathered`] | panels of distance | 290 |
 //! | 1, in a furnace | – | nothing is computed | – |
 //!
-//! Not among them: moments of walks in slabs of sharper phase functions than g = 0.7; in fields that vary,
-//! those of single scattering by one walk for several points, or with controls; and optical depths where chords
-//! are cut by the eye, as in pictures.
+//! Not among them: moments of walks in slabs of sharper phase functions than g = 0.7; and optical depths where
+//! chords are cut by the eye, as in pictures.
 //!
 //! Random parameters come from addresses of their own, so that a run finds the same numbers on every
 //! machine that rounds alike, whatever its threads.
