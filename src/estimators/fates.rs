@@ -1,52 +1,46 @@
-//! What becomes of order-free walks at a pack of collisions.
+//! What becomes of order-free walks at two packs of collisions.
 
 use std::ops::Range;
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Simd, f64x8};
 
-use super::rules::Collision;
-use crate::numeric::Lane;
-use crate::numeric::pack::WIDTH;
+use super::rules::{Collision, Met};
+use crate::numeric::twin::PAIR;
+use crate::numeric::{Lane, Twin};
 
-/// The bits of a whole pack.
-const ALL: u64 = (1 << WIDTH) - 1;
+/// The bits of a pair of packs.
+const ALL: u64 = (1 << PAIR) - 1;
 
-/// What the walks of a pack meet.
+/// Two packs.
+type Packs<S> = Twin<f64x8<S>>;
+
+/// What the walks of two packs meet.
 pub struct Collisions<S: Simd> {
-    /// `σ_t − σ_c`.
-    pub residual: f64x8<S>,
-    /// `1/σ̂`.
-    pub mean_free_path: f64x8<S>,
+    /// The medium, and how often it is looked at.
+    pub met: Met<Packs<S>>,
     /// Numbers in `[0, 1)`, not looked at where chance does not decide.
-    pub decision: f64x8<S>,
+    pub decision: Packs<S>,
 }
 
 /// What becomes of them.
 struct Fates<S: Simd> {
-    weight: f64x8<S>,
+    weight: Packs<S>,
     /// Who survives, as bits.
     survived: u64,
-    /// Whose ratio is a number.
-    known: mask64x8<S>,
 }
 
 impl<S: Simd> Collisions<S> {
-    /// By a rule, of walks that come with these weights. A ratio that is no number makes a draw none, and
-    /// where weights change its walk survives to show it.
+    /// By a rule, of walks that come with these weights. One whose residual is no number survives, and where
+    /// weights change it shows.
     #[inline(always)]
-    fn decide<R: Collision>(&self, rule: &R, weight: f64x8<S>) -> Fates<S> {
-        let ratio = self.residual * self.mean_free_path;
-        let known = ratio.at_most(ratio);
-        let weighed = rule.weigh(weight, self.residual, self.mean_free_path);
+    fn decide<R: Collision>(&self, rule: &R, weight: Packs<S>) -> Fates<S> {
+        let weighed = rule.weigh(weight, &self.met);
         if !R::DECIDES {
-            return Fates { weight: weighed, survived: ALL, known };
+            return Fates { weight: weighed, survived: ALL };
         }
-        let survives = rule.survives(ratio, self.decision);
-        if !R::WEIGHS {
-            return Fates { weight: weighed, survived: survives.to_bitmask(), known };
-        }
-        let survived = (survives | !known).to_bitmask();
-        Fates { weight: Lane::select(known, weighed, ratio), survived, known }
+        let survived = ALL & !rule.kills(&self.met, self.decision).to_bitmask();
+        let residual = self.met.residual;
+        Fates { weight: Lane::select(residual.at_most(residual), weighed, residual), survived }
     }
 }
 
@@ -59,7 +53,7 @@ pub struct Flock<'a> {
 }
 
 impl Flock<'_> {
-    /// So many walks, the first of which is number `first`, meet their collisions, pack by pack.
+    /// So many walks, the first of which is number `first`, meet their collisions, two packs at a time.
     #[inline(always)]
     pub fn meet<S: Simd, R: Collision>(
         &mut self,
@@ -69,20 +63,24 @@ impl Flock<'_> {
         count: usize,
         mut collisions: impl FnMut(usize) -> Collisions<S>,
     ) {
-        let whole = count / WIDTH * WIDTH;
-        let mut known = mask64x8::splat(simd, true);
-        for from in (0..whole).step_by(WIDTH) {
-            known &= self.meet_pack(simd, rule, first + from, &collisions(from));
+        let whole = count / PAIR * PAIR;
+        let mut sum = Packs::splat(simd, 0.0);
+        for from in (0..whole).step_by(PAIR) {
+            let collisions = collisions(from);
+            sum = sum + collisions.met.residual;
+            self.meet_packs(simd, rule, first + from, &collisions);
         }
-        let mut unknown = !known.all_true();
+        let mut is_unknown = is_none(sum) != 0;
         if whole < count {
-            unknown |=
-                self.meet_last(simd, rule, first + whole..first + count, &collisions(whole)) != 0;
+            let collisions = collisions(whole);
+            let there = (1 << (count - whole)) - 1;
+            is_unknown |= is_none(collisions.met.residual) & there != 0;
+            self.meet_last(simd, rule, first + whole..first + count, &collisions);
         }
-        // Weights that stay say nothing of ratios that are no number: one survivor does.
+        // Weights that stay say nothing of residuals that are no numbers: one survivor does.
         if R::DECIDES
             && !R::WEIGHS
-            && unknown
+            && is_unknown
             && let Some(weight) = self.weights.first_mut()
         {
             *weight = f64::NAN;
@@ -90,37 +88,37 @@ impl Flock<'_> {
         }
     }
 
-    /// Answers whose ratio is a number.
     #[inline(always)]
-    fn meet_pack<S: Simd, R: Collision>(
+    fn meet_packs<S: Simd, R: Collision>(
         &mut self,
         simd: S,
         rule: &R,
         from: usize,
         collisions: &Collisions<S>,
-    ) -> mask64x8<S> {
+    ) {
         if R::DECIDES && !R::WEIGHS {
             // They have the weight that they began with.
-            let fates = collisions.decide(rule, f64x8::splat(simd, 1.0));
+            let fates = collisions.decide(rule, Packs::splat(simd, 1.0));
             self.survivors += fates.survived.count_ones() as usize;
-            return fates.known;
+            return;
         }
-        let Some(places) = self.weights.get_mut(from..from + WIDTH) else {
-            return mask64x8::splat(simd, false);
+        let Some((places, _)) =
+            self.weights.get_mut(from..).and_then(|rest| rest.split_first_chunk_mut())
+        else {
+            return;
         };
-        let fates = collisions.decide(rule, f64x8::from_slice(simd, places));
+        let fates = collisions.decide(rule, Packs::from_slice(simd, places));
         if R::DECIDES {
-            let mut pack = [0.0; WIDTH];
-            fates.weight.store_slice(&mut pack);
-            self.keep(&pack, fates.survived);
+            let mut pair = [0.0; PAIR];
+            fates.weight.store_slice(&mut pair);
+            self.keep(&pair, fates.survived);
         } else {
             fates.weight.store_slice(places);
-            self.survivors += WIDTH;
+            self.survivors += PAIR;
         }
-        fates.known
     }
 
-    /// The last of them do not fill a pack. Answers whose ratio is no number, as bits.
+    /// The last of them do not fill two packs.
     #[inline(always)]
     fn meet_last<S: Simd, R: Collision>(
         &mut self,
@@ -128,21 +126,20 @@ impl Flock<'_> {
         rule: &R,
         walks: Range<usize>,
         collisions: &Collisions<S>,
-    ) -> u64 {
-        let mut pack = [0.0; WIDTH];
+    ) {
+        let mut pair = [0.0; PAIR];
         let last = &self.weights[walks];
-        pack[..last.len()].copy_from_slice(last);
+        pair[..last.len()].copy_from_slice(last);
         let there = (1 << last.len()) - 1;
-        let fates = collisions.decide(rule, f64x8::from_slice(simd, &pack));
-        fates.weight.store_slice(&mut pack);
-        self.keep(&pack, fates.survived & there);
-        (!fates.known).to_bitmask() & there
+        let fates = collisions.decide(rule, Packs::from_slice(simd, &pair));
+        fates.weight.store_slice(&mut pair);
+        self.keep(&pair, fates.survived & there);
     }
 
-    /// Writes the survivors of a pack behind those before them.
+    /// Writes the survivors of two packs behind those before them.
     #[inline(always)]
-    fn keep(&mut self, pack: &[f64; WIDTH], survived: u64) {
-        for (lane, &weight) in pack.iter().enumerate() {
+    fn keep(&mut self, pair: &[f64; PAIR], survived: u64) {
+        for (lane, &weight) in pair.iter().enumerate() {
             // Each is written over by the next one that survives.
             if let Some(place) = self.weights.get_mut(self.survivors) {
                 *place = weight;
@@ -150,6 +147,12 @@ impl Flock<'_> {
             self.survivors += (survived >> lane & 1) as usize;
         }
     }
+}
+
+/// Which elements are no numbers, as bits.
+#[inline(always)]
+fn is_none<S: Simd>(packs: Packs<S>) -> u64 {
+    ALL & !packs.at_most(packs).to_bitmask()
 }
 
 #[cfg(test)]
@@ -160,28 +163,34 @@ mod tests {
     use crate::estimators::rules::{Null, Single, Weight};
     use crate::numeric::pack::{Task, on};
 
-    /// Twenty walks of weight 1 at collisions with ratio ¼, but for one; the number ½ decides.
-    struct Twenty<R>(R, usize, f64);
+    const COUNT: usize = 2 * PAIR + 5;
 
-    impl<R: Collision> Task for Twenty<R> {
+    /// Walks of weight 1 at collisions with ratio ¼, but for one; the number ½ decides.
+    struct Meeting<R>(R, usize, f64);
+
+    impl<R: Collision> Task for Meeting<R> {
         type Output = Vec<f64>;
 
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Vec<f64> {
             let Self(rule, odd, value) = self;
-            let mut weights = [1.0; 20];
+            let mut weights = [1.0; COUNT];
             let mut flock = Flock { weights: &mut weights, survivors: 0 };
             flock.meet(
                 simd,
                 &rule,
                 0,
-                20,
+                COUNT,
                 #[inline(always)]
                 |from| {
                     let at = |lane| if from + lane == odd { value } else { 0.5 };
-                    let residual = f64x8::from_slice(simd, &std::array::from_fn::<_, WIDTH, _>(at));
-                    let half = f64x8::splat(simd, 0.5);
-                    Collisions { residual, mean_free_path: half, decision: half }
+                    let residual = Packs::from_slice(simd, &std::array::from_fn(at));
+                    let half = Packs::splat(simd, 0.5);
+                    let sampling = Packs::splat(simd, 2.0);
+                    Collisions {
+                        met: Met { residual, sampling, mean_free_path: half },
+                        decision: half,
+                    }
                 },
             );
             flock.weights[..flock.survivors].to_vec()
@@ -191,13 +200,13 @@ mod tests {
     #[test]
     fn walks_are_weighed_and_killed_by_their_ratio() {
         for level in [Level::new(), Level::baseline()] {
-            for odd in [3, 17] {
-                let mut weighed = [0.75; 20];
+            for odd in [3, COUNT - 2] {
+                let mut weighed = [0.75; COUNT];
                 weighed[odd] = -1.0;
-                assert_eq!(on(level, Twenty(Weight, odd, 4.0)), weighed);
-                assert_eq!(on(level, Twenty(Null, odd, 4.0)), [1.0; 19]);
-                let single = on(level, Twenty(Single::Clamped, odd, 4.0));
-                assert_eq!((single.len(), single.iter().sum::<f64>()), (20, 18.0));
+                assert_eq!(on(level, Meeting(Weight, odd, 4.0)), weighed);
+                assert_eq!(on(level, Meeting(Null, odd, 4.0)), [1.0; COUNT - 1]);
+                let single = on(level, Meeting(Single::Clamped, odd, 4.0));
+                assert_eq!((single.len(), single.iter().sum::<f64>()), (COUNT, COUNT as f64 - 2.0));
             }
         }
     }
@@ -206,10 +215,10 @@ mod tests {
     fn a_ratio_that_is_no_number_shows() {
         let shows = |weights: Vec<f64>| weights.iter().any(|weight| weight.is_nan());
         for level in [Level::new(), Level::baseline()] {
-            for odd in [0, 13, 19] {
-                assert!(shows(on(level, Twenty(Null, odd, f64::NAN))));
-                assert!(shows(on(level, Twenty(Weight, odd, f64::NAN))));
-                assert!(shows(on(level, Twenty(Single::Clamped, odd, f64::NAN))));
+            for odd in [0, 13, COUNT - 1] {
+                assert!(shows(on(level, Meeting(Null, odd, f64::NAN))));
+                assert!(shows(on(level, Meeting(Weight, odd, f64::NAN))));
+                assert!(shows(on(level, Meeting(Single::Clamped, odd, f64::NAN))));
             }
         }
     }

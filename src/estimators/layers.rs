@@ -30,7 +30,9 @@ use fearless_simd::{Level, Simd, SimdBase, u64x8};
 
 use super::walkers::{Streams, Walkers};
 use crate::media::{Extinction, FreeFlight, Medium, Placement, Visitor};
+use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::twin::PAIR;
 use crate::rng::{Lanes, Xoshiro};
 
 /// Collisions that are looked up together: their numbers stay in the first-level cache.
@@ -43,24 +45,18 @@ pub struct Sites {
     pub t: [f64; BATCH],
     /// `σ_t` there.
     pub extinction: [f64; BATCH],
-    /// `1/σ̂` there, where σ̂ varies.
-    pub mean_free_path: [f64; BATCH],
+    /// `σ̂` there, where it varies.
+    pub sampling: [f64; BATCH],
     /// The numbers in `[0, 1)` that decide what becomes of the walks.
     pub decision: [f64; BATCH],
-    /// How many there are, in whole packs.
+    /// How many there are, in whole pairs of packs.
     pub length: usize,
 }
 
 impl Sites {
     fn empty() -> Box<Self> {
         let none = [0.0; BATCH];
-        Box::new(Self {
-            t: none,
-            extinction: none,
-            mean_free_path: none,
-            decision: none,
-            length: 0,
-        })
+        Box::new(Self { t: none, extinction: none, sampling: none, decision: none, length: 0 })
     }
 }
 
@@ -95,7 +91,7 @@ pub fn draw(
         if !is_done {
             let sites = sites.get_or_insert_with(Sites::empty);
             for first in (0..most).step_by(BATCH) {
-                sites.length = BATCH.min((most - first).next_multiple_of(WIDTH));
+                sites.length = BATCH.min((most - first).next_multiple_of(PAIR));
                 let (chance, sites) = (&mut chance, &mut **sites);
                 medium.profile().visit(Visit { level, placement, chance, sites });
                 if decides {
@@ -140,18 +136,24 @@ impl<M: Extinction> Task for LookUp<'_, M> {
     fn run<S: Simd>(self, simd: S) {
         let Visit { placement, chance, sites, .. } = self.visit;
         let mut stream: Xoshiro<u64x8<S>> = chance.awake(simd);
-        let varies = placement.mean_free_path().is_none();
-        for from in (0..sites.length).step_by(WIDTH) {
-            let place = from..from + WIDTH;
-            let (t, mean_free_path) = placement.at(stream.uniform());
-            t.store_slice(&mut sites.t[place.clone()]);
+        let varies = placement.single_value().is_none();
+        let [all_t, all_sampling, all_extinction] =
+            [&mut sites.t, &mut sites.sampling, &mut sites.extinction].map(pairs);
+        for number in 0..sites.length / PAIR {
+            let (t, sampling) = placement.at(Twin(stream.uniform(), stream.uniform()));
+            t.store_slice(&mut all_t[number]);
             if varies {
-                mean_free_path.store_slice(&mut sites.mean_free_path[place.clone()]);
+                sampling.store_slice(&mut all_sampling[number]);
             }
-            self.medium.extinction(t).store_slice(&mut sites.extinction[place]);
+            self.medium.extinction(t).store_slice(&mut all_extinction[number]);
         }
         *chance = stream.at_rest();
     }
+}
+
+#[inline(always)]
+fn pairs(row: &mut [f64; BATCH]) -> &mut [[f64; PAIR]] {
+    row.as_chunks_mut().0
 }
 
 struct Decide<'a> {

@@ -1,4 +1,4 @@
-//! What eight walks side by side leave behind, and the draws that are made of it.
+//! What packs of walks side by side leave behind, and the draws that are made of it.
 //!
 //! Steps have no branches: each notes a row of numbers and who ended in it. After [`STEPS`] of them
 //! the notes are searched, lane by lane, and every walk that ended becomes the next draw of its lane.
@@ -8,7 +8,7 @@ use fearless_simd::{Simd, SimdBase, SimdMask, u8x64};
 
 use super::DrawBuffer;
 use crate::numeric::pack::WIDTH;
-use crate::rng::LANES;
+use crate::rng::{LANES, PACKS};
 
 /// Steps between two searches; what a lane did in them makes a word.
 pub const STEPS: usize = 64;
@@ -40,19 +40,8 @@ struct Quota {
     began: u32,
 }
 
-/// The draws so far.
-pub struct Ledger<'a> {
-    quotas: [Quota; WIDTH],
-    /// How many lanes have draws left.
-    open: usize,
-    /// The number of the first step of the rows.
-    first: u32,
-    values: &'a mut [f64],
-    lookups: &'a mut [u32],
-    defects: &'a mut [f64],
-}
-
-/// Who ended in [`STEPS`] steps, and who of them escaped: the lanes of a step are the bits of its byte.
+/// Who ended in [`STEPS`] steps of a pack, and who of them escaped: the lanes of a step are the bits of its
+/// byte.
 pub struct Notes {
     /// Who ended.
     pub ended: [u8; STEPS],
@@ -91,41 +80,63 @@ pub struct Endings {
     escaped: u64,
 }
 
+/// What a pack has to do and has done.
+#[derive(Clone, Copy, Default)]
+struct Account {
+    quotas: [Quota; WIDTH],
+    /// How many lanes have draws left.
+    open: usize,
+    /// The number of the first step of the rows.
+    first: u32,
+}
+
+/// The draws so far.
+pub struct Ledger<'a> {
+    accounts: [Account; PACKS],
+    values: &'a mut [f64],
+    lookups: &'a mut [u32],
+    defects: &'a mut [f64],
+}
+
 impl<'a> Ledger<'a> {
     /// Room for so many draws, of which the first comes from the lane whose turn it is; `None`
     /// where a draw has no channel.
     pub fn open(count: usize, turn: usize, buffer: &'a mut DrawBuffer) -> Option<Self> {
         let (values, lookups, defects) = buffer.one_channel(count)?;
-        let mut quotas = [Quota::default(); WIDTH];
-        for (lane, quota) in quotas.iter_mut().enumerate() {
-            quota.place = (lane + LANES - turn) % LANES;
+        let mut accounts = [Account::default(); PACKS];
+        for lane in 0..LANES {
+            let account = &mut accounts[lane / WIDTH];
+            let place = (lane + LANES - turn) % LANES;
+            account.quotas[lane % WIDTH].place = place;
+            account.open += usize::from(place < count);
         }
-        let open = quotas.iter().filter(|quota| quota.place < count).count();
-        Some(Self { quotas, open, first: 0, values, lookups, defects })
+        Some(Self { accounts, values, lookups, defects })
     }
 
-    /// Whether some lane has draws left.
+    /// Whether some lane of a pack has draws left.
     #[must_use]
-    pub fn is_open(&self) -> bool {
-        self.open > 0
+    pub fn is_open(&self, pack: usize) -> bool {
+        self.accounts[pack].open > 0
     }
 
-    /// Makes draws of the walks that ended. Answers for each lane after how many of the steps it
+    /// Makes draws of the walks of a pack that ended. Answers for each lane after how many of the steps it
     /// had made its last draw, or 0.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation)] // at most STEPS
     pub fn collect<R: Reader>(
         &mut self,
+        pack: usize,
         reader: &R,
         rows: &[Row; STEPS],
         endings: &[Endings; WIDTH],
     ) -> [usize; WIDTH] {
         let mut over = [0; WIDTH];
+        let Account { quotas, open, first } = &mut self.accounts[pack];
         // All of one length, which the loop then knows.
         let count = self.values.len().min(self.lookups.len()).min(self.defects.len());
         let (values, lookups) = (&mut self.values[..count], &mut self.lookups[..count]);
         let defects = &mut self.defects[..count];
-        for (lane, (quota, ending)) in self.quotas.iter_mut().zip(endings).enumerate() {
+        for (lane, (quota, ending)) in quotas.iter_mut().zip(endings).enumerate() {
             let Quota { mut place, mut began } = *quota;
             let mut ended = ending.ended;
             // A lane that has made its draws walks on for nothing.
@@ -135,20 +146,20 @@ impl<'a> Ledger<'a> {
                 let has_escaped = ending.escaped >> step & 1 == 1;
                 let row = &rows[step as usize];
                 (values[place], defects[place]) = reader.draw(row, lane, has_escaped);
-                let now = self.first.wrapping_add(step);
+                let now = first.wrapping_add(step);
                 let before = reader.lookups(row, lane, now.wrapping_sub(began));
                 // The step that leaves looks at nothing.
                 lookups[place] = before + u32::from(!has_escaped);
                 began = now.wrapping_add(1);
                 place += LANES;
                 if place >= count {
-                    self.open -= 1;
+                    *open -= 1;
                     over[lane] = step as usize + 1;
                 }
             }
             *quota = Quota { place, began };
         }
-        self.first = self.first.wrapping_add(STEPS as u32);
+        *first = first.wrapping_add(STEPS as u32);
         over
     }
 }

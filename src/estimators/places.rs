@@ -1,4 +1,4 @@
-//! Where the draws of eight walks side by side go.
+//! Where the draws of eight walks side by side go: those of one pack of streams.
 //!
 //! A walk that ends begins anew at once, so that no lane waits, and every lane makes a number of draws
 //! that was fixed beforehand. A lane that has made them walks on until the others have; its stream
@@ -34,11 +34,11 @@ pub struct Place {
 }
 
 impl Places {
-    /// So many draws, of which the first comes from the lane whose turn it is.
+    /// Those of a pack among so many draws, of which the first comes from the lane whose turn it is.
     #[must_use]
-    pub fn new(count: usize, turn: usize) -> Self {
+    pub fn new(count: usize, turn: usize, pack: usize) -> Self {
         let mut next = [0; WIDTH];
-        for (lane, draw) in next.iter_mut().enumerate() {
+        for (lane, draw) in (pack * WIDTH..).zip(&mut next) {
             *draw = (lane + LANES - turn) % LANES;
         }
         let open = next.iter().filter(|&&draw| draw < count).count();
@@ -82,12 +82,13 @@ impl Places {
     }
 }
 
-/// Leaves the streams of some lanes, as bits, where they stand now.
+/// Leaves the streams of some lanes of a pack, as bits, where they stand now.
 #[inline(always)]
-pub fn leave<S: Simd>(streams: &mut Streams, which: u64, now: Xoshiro<u64x8<S>>) {
+pub fn leave<S: Simd>(streams: &mut Streams, pack: usize, which: u64, now: Xoshiro<u64x8<S>>) {
     if which != 0 {
         let now = now.at_rest().apart();
-        for (lane, (stream, now)) in streams.lanes.iter_mut().zip(now).enumerate() {
+        let lanes = &mut streams.lanes[pack * WIDTH..];
+        for (lane, (stream, now)) in lanes.iter_mut().zip(now).enumerate() {
             if which >> lane & 1 == 1 {
                 *stream = now;
             }
@@ -98,29 +99,35 @@ pub fn leave<S: Simd>(streams: &mut Streams, which: u64, now: Xoshiro<u64x8<S>>)
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::rng::PACKS;
 
     #[test]
     fn every_draw_has_one_place_and_lanes_take_turns() {
-        for (count, turn) in [(1, 0), (5, 6), (8, 3), (21, 7)] {
-            let mut places = Places::new(count, turn);
-            let (mut lanes, mut over) = (vec![None; count], 0);
-            while places.are_open() {
+        for (count, turn) in [(1, 0), (5, 14), (16, 3), (45, 7)] {
+            let mut lanes = vec![None; count];
+            for pack in 0..PACKS {
+                let (mut places, mut over) = (Places::new(count, turn, pack), 0);
                 // Lanes end in every second step.
-                over |= places.fill(0b0101_0101, |place| {
-                    assert_eq!(
-                        (lanes[place.draw].replace(place.lane), place.steps),
-                        (None, place.steps & 1)
-                    );
-                });
-                places.step();
-                over |= places.fill(0b1010_1010, |place| {
-                    assert_eq!(lanes[place.draw].replace(place.lane), None);
-                });
-                places.step();
+                for ended in [0b0101_0101, 0b1010_1010].into_iter().cycle() {
+                    if !places.are_open() {
+                        break;
+                    }
+                    over |= places.fill(ended, |place| {
+                        assert_eq!(
+                            place.steps,
+                            u32::from(place.draw >= LANES || ended == 0b1010_1010)
+                        );
+                        let lane = pack * WIDTH + place.lane;
+                        assert_eq!(lanes[place.draw].replace(lane), None);
+                    });
+                    places.step();
+                }
+                let mine = |lane: usize| lane / WIDTH == pack;
+                let open = (0..count.min(LANES)).filter(|draw| mine((turn + draw) % LANES));
+                assert_eq!(over.count_ones() as usize, open.count());
             }
             let expected = (0..count).map(|draw| Some((turn + draw) % LANES));
             assert!(lanes.into_iter().eq(expected), "{count} from {turn}");
-            assert_eq!(over.count_ones() as usize, count.min(LANES));
         }
     }
 }

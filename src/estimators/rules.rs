@@ -11,6 +11,26 @@
 use crate::numeric::Lane;
 use crate::theory::{Outcome, Rule};
 
+/// What a particle meets at a tentative collision.
+#[derive(Debug, Clone, Copy)]
+pub struct Met<L> {
+    /// `σ_t − σ_c`.
+    pub residual: L,
+    /// `σ̂`.
+    pub sampling: L,
+    /// `1/σ̂`.
+    pub mean_free_path: L,
+}
+
+impl<L: Lane> Met<L> {
+    /// `r = (σ_t − σ_c)/σ̂`.
+    #[inline(always)]
+    #[must_use]
+    pub fn ratio(&self) -> L {
+        self.residual * self.mean_free_path
+    }
+}
+
 /// A rule as one formula for every lane type: theory and kernels ask the same.
 pub trait Collision: Rule + Copy + 'static {
     /// Whether chance decides: then every step of a walk takes a number for it.
@@ -23,19 +43,19 @@ pub trait Collision: Rule + Copy + 'static {
     #[must_use]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
 
-    /// Whether a particle goes on by a number in `[0, 1)`; one whose ratio is no number does not.
+    /// Whether a particle ends by a number in `[0, 1)`; one whose ratio is no number goes on to show it.
     #[inline(always)]
     #[must_use]
-    fn survives<L: Lane>(&self, ratio: L, number: L) -> L::Mask {
-        number.below(self.at(ratio).survival)
+    fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
+        self.at(met.ratio()).survival.at_most(number)
     }
 
-    /// The weight after a collision with ratio `r = (σ_t − σ_c)/σ̂`, from the one before it, by the residual
-    /// extinction and the mean free path `1/σ̂`: of order-free walks, whose draws no others have to equal.
+    /// The weight after a collision, from the one before it: of order-free walks, whose draws no others have
+    /// to equal.
     #[inline(always)]
     #[must_use]
-    fn weigh<L: Lane>(&self, weight: L, residual: L, mean_free_path: L) -> L {
-        weight * self.at(residual * mean_free_path).weight
+    fn weigh<L: Lane>(&self, weight: L, met: &Met<L>) -> L {
+        weight * self.at(met.ratio()).weight
     }
 
     /// `(1 − r)/q`: the factor that a survivor ought to have.
@@ -61,8 +81,8 @@ impl Collision for Weight {
 
     /// `w − (σ_t − σ_c) w/σ̂`, which waits less for the extinction than `w(1 − r)`.
     #[inline(always)]
-    fn weigh<L: Lane>(&self, weight: L, residual: L, mean_free_path: L) -> L {
-        (-residual).times_plus(weight * mean_free_path, weight)
+    fn weigh<L: Lane>(&self, weight: L, met: &Met<L>) -> L {
+        (-met.residual).times_plus(weight * met.mean_free_path, weight)
     }
 
     #[inline(always)]
@@ -102,10 +122,10 @@ impl Collision for Null {
         Outcome { survival, death, weight: one, loss: zero }
     }
 
-    /// No number is below 0 or above 1: the cut changes nothing.
+    /// `(1 − u) σ̂ ≤ σ_t − σ_c`, of which the left side does not wait for the lookup.
     #[inline(always)]
-    fn survives<L: Lane>(&self, ratio: L, number: L) -> L::Mask {
-        number.below(ratio.each(1.0) - ratio)
+    fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
+        number.times_plus(-met.sampling, met.sampling).at_most(met.residual)
     }
 
     /// A survivor's q is `1 − r` or, where that is cut, 1: no division is needed.
@@ -266,13 +286,22 @@ mod tests {
 
     #[test]
     fn null_collisions_are_decided_as_their_chance_says() {
-        for step in -40..60 {
-            let r = 0.05 * f64::from(step);
-            for number in [0.0, 1e-17, 0.3, 0.7, 1.0 - 0.5 * f64::EPSILON] {
-                assert_eq!(Null.survives(r, number), number < Null.at(r).survival, "{r}, {number}");
+        for sampling in [1.0, 0.3, 1e-9, 1e9] {
+            let met =
+                |r: f64| Met { residual: r * sampling, sampling, mean_free_path: 1.0 / sampling };
+            for step in -40..60 {
+                let r = 0.05 * f64::from(step);
+                for number in [0.0, 1e-17, 0.33, 0.77, 1.0 - 0.5 * f64::EPSILON] {
+                    let killed = number >= Null.at(r).survival;
+                    assert_eq!(Null.kills(&met(r), number), killed, "{r}, {number}");
+                }
             }
+            // Whatever rounding does, nothing survives at r = 1, and nothing ends at r = 0.
+            for number in [0.0, 0.1, 1.0 - 0.5 * f64::EPSILON] {
+                assert!(Null.kills(&met(1.0), number) && !Null.kills(&met(0.0), number));
+            }
+            assert!(!Null.kills(&met(f64::NAN), 0.0) && Null.kills(&met(f64::INFINITY), 0.0));
         }
-        assert!(!Null.survives(f64::NAN, 0.0) && !Null.survives(f64::INFINITY, 0.0));
     }
 
     #[test]

@@ -25,17 +25,23 @@ pub struct DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// How many draws a buffer holds: small enough for the second-level cache, and so many that
-    /// the lanes of a packet seldom wait for the slowest.
-    pub const LENGTH: usize = 4096;
+    /// How many draws of one channel a buffer holds: small enough for the second-level cache, and so many
+    /// that the lanes of a packet seldom wait for the slowest.
+    pub const LENGTH: usize = 16_384;
+
+    /// The fewest, however many channels.
+    const LEAST: usize = Self::LENGTH / 4;
 
     /// An empty buffer for draws of the given number of channels.
     #[must_use]
     pub fn new(channels: usize) -> Self {
-        let values = vec![Vec::with_capacity(Self::LENGTH); channels];
-        let (lookups, defects) =
-            (Vec::with_capacity(Self::LENGTH), Vec::with_capacity(Self::LENGTH));
-        Self { values, lookups, defects }
+        Self { values: vec![Vec::new(); channels], lookups: Vec::new(), defects: Vec::new() }
+    }
+
+    /// How many draws of so many channels a buffer is to be filled with.
+    #[must_use]
+    pub fn length(channels: usize) -> usize {
+        (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
     }
 
     /// Removes the draws.

@@ -17,7 +17,7 @@
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
 //! ```
 
-use super::rules::Collision;
+use super::rules::{Collision, Met};
 use super::{Draw, Setup};
 use crate::media::Extinction;
 use crate::numeric::Lane;
@@ -41,9 +41,9 @@ pub fn product<P, M: Extinction, R: Collision>(
         let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
         let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
         lookups += 1;
-        let ratio = residual * (1.0 / sampling);
-        let outcome = rule.at(ratio);
-        if R::DECIDES && number >= outcome.survival {
+        let met = Met { residual, sampling, mean_free_path: 1.0 / sampling };
+        let (ratio, outcome) = (met.ratio(), rule.at(met.ratio()));
+        if R::DECIDES && rule.kills(&met, number) {
             return Draw { value: [0.0], lookups, defect: books.defect(weight) };
         }
         books.hand_over(weight, rule.due(ratio, outcome.survival));

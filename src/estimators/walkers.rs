@@ -1,15 +1,16 @@
 //! The walks of one order-free request: what becomes of them at the collisions of [`super::layers`].
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, u64x8};
+use fearless_simd::{Level, Simd, f64x8, u64x8};
 use rand_distr::{Binomial, Distribution};
 
 use super::fates::{Collisions, Flock};
 use super::layers::{BATCH, Sites};
-use super::rules::Collision;
+use super::rules::{Collision, Met};
 use super::{DrawBuffer, Setup};
 use crate::media::{Control, Extinction, FreeFlight, Medium, Placement, Visitor};
-use crate::numeric::Lane;
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::{self, Task};
+use crate::numeric::twin::PAIR;
+use crate::numeric::{Lane, Twin};
 use crate::problems::Problem;
 use crate::rng::xoshiro::SCALE;
 use crate::rng::{Lanes, Stream, Xoshiro};
@@ -77,8 +78,8 @@ struct Walks<'a, R> {
     control: &'a Control,
     /// `σ_c` at the collisions of a batch, written once where it has one value; `None` before the first.
     subtracted: Option<Box<[f64; BATCH]>>,
-    /// `1/σ̂`, where it has one value.
-    mean_free_path: Option<f64>,
+    /// `σ̂`, where it has one value.
+    sampling: Option<f64>,
     hazards: Hazards,
     counts: &'a mut Stream,
     /// The weights; those of the walks on their way come first.
@@ -100,7 +101,7 @@ impl<'a, R: Collision> Walks<'a, R> {
             rule,
             control: &setup.control,
             subtracted: None,
-            mean_free_path: placement.mean_free_path(),
+            sampling: placement.single_value(),
             hazards: Hazards::new(placement.depth()),
             counts,
             weights,
@@ -148,7 +149,7 @@ impl<R: Collision> Walkers for Walks<'_, R> {
             rule: &self.rule,
             sites,
             subtracted,
-            mean_free_path: self.mean_free_path,
+            sampling: self.sampling,
             flock: Flock { weights: &mut self.weights[..self.walking], survivors: self.survivors },
             first,
             count,
@@ -163,7 +164,7 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         placement: &Placement,
         streams: Streams,
     ) -> bool {
-        let (Some([from, length, mean_free_path]), Some(subtracted)) =
+        let (Some([from, length, sampling]), Some(subtracted)) =
             (placement.plain(), self.control.single_value())
         else {
             return false;
@@ -174,7 +175,7 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         }
         let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
         let (rule, places) = (&self.rule, [from, unit]);
-        let layer = Layer { rule, level, places, mean_free_path, subtracted, streams, flock };
+        let layer = Layer { rule, level, places, sampling, subtracted, streams, flock };
         let survivors = medium.profile().visit(layer);
         self.survivors = survivors.unwrap_or_default();
         survivors.is_some()
@@ -192,15 +193,16 @@ struct Batch<'a, R> {
     rule: &'a R,
     sites: &'a Sites,
     subtracted: &'a [f64; BATCH],
-    mean_free_path: Option<f64>,
+    sampling: Option<f64>,
     flock: Flock<'a>,
     first: usize,
     count: usize,
 }
 
 #[inline(always)]
-fn eight<S: Simd>(simd: S, row: &[f64; BATCH], from: usize) -> f64x8<S> {
-    f64x8::from_slice(simd, &row[from..from + WIDTH])
+fn pair<S: Simd>(simd: S, row: &[f64; BATCH], number: usize) -> Twin<f64x8<S>> {
+    let (pairs, _) = row.as_chunks();
+    Twin::from_slice(simd, &pairs[number])
 }
 
 impl<R: Collision> Task for Batch<'_, R> {
@@ -209,8 +211,10 @@ impl<R: Collision> Task for Batch<'_, R> {
     /// Answers how many have survived, with those before.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> usize {
-        let Self { rule, sites, subtracted, mean_free_path, mut flock, first, count } = self;
-        let path = f64x8::splat(simd, mean_free_path.unwrap_or_default());
+        let Self { rule, sites, subtracted, sampling: single, mut flock, first, count } = self;
+        let one = Twin::splat(simd, 1.0);
+        let sampling = Twin::splat(simd, single.unwrap_or(1.0));
+        let mean_free_path = one / sampling;
         flock.meet(
             simd,
             rule,
@@ -218,17 +222,16 @@ impl<R: Collision> Task for Batch<'_, R> {
             count,
             #[inline(always)]
             |from| {
-                let mean_free_path = if mean_free_path.is_some() {
-                    path
+                let number = from / PAIR;
+                let residual =
+                    pair(simd, &sites.extinction, number) - pair(simd, subtracted, number);
+                let met = if single.is_some() {
+                    Met { residual, sampling, mean_free_path }
                 } else {
-                    eight(simd, &sites.mean_free_path, from)
+                    let sampling = pair(simd, &sites.sampling, number);
+                    Met { residual, sampling, mean_free_path: one / sampling }
                 };
-                let residual = eight(simd, &sites.extinction, from) - eight(simd, subtracted, from);
-                Collisions {
-                    residual,
-                    mean_free_path,
-                    decision: eight(simd, &sites.decision, from),
-                }
+                Collisions { met, decision: pair(simd, &sites.decision, number) }
             },
         );
         flock.survivors
@@ -241,7 +244,7 @@ struct Layer<'a, R> {
     level: Level,
     /// Where they may be: from here on, in steps of so much.
     places: [f64; 2],
-    mean_free_path: f64,
+    sampling: f64,
     subtracted: f64,
     streams: Streams<'a>,
     flock: Flock<'a>,
@@ -266,22 +269,16 @@ impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
     /// Answers how many have survived.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> usize {
-        let Layer {
-            rule,
-            places: [from, unit],
-            mean_free_path,
-            subtracted,
-            streams,
-            mut flock,
-            ..
-        } = self.layer;
+        let Layer { rule, places: [from, unit], sampling, subtracted, streams, mut flock, .. } =
+            self.layer;
         let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
         let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
-        let [from, unit, mean_free_path, subtracted] =
-            [from, unit, mean_free_path, subtracted].map(|value| f64x8::splat(simd, value));
+        let [from, unit, sampling, mean_free_path, subtracted] =
+            [from, unit, sampling, 1.0 / sampling, subtracted].map(|x| Twin::splat(simd, x));
         let count = flock.weights.len();
-        // Found while the lookup before is made: a shorter chain, of which more are under way at once.
-        let mut next = [places.integer().times_plus(unit, from), decisions.uniform()];
+        // Found while the lookups before are made: a shorter chain, of which more are under way at once.
+        let mut next =
+            (integers(&mut places).times_plus(unit, from), integers(&mut decisions) * SCALE);
         flock.meet(
             simd,
             rule,
@@ -289,17 +286,23 @@ impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
             count,
             #[inline(always)]
             |_| {
-                let [t, decision] = next;
-                next[0] = places.integer().times_plus(unit, from);
+                let (t, decision) = next;
+                next.0 = integers(&mut places).times_plus(unit, from);
                 if R::DECIDES {
-                    next[1] = decisions.uniform();
+                    next.1 = integers(&mut decisions) * SCALE;
                 }
                 let residual = self.medium.extinction(t) - subtracted;
-                Collisions { residual, mean_free_path, decision }
+                Collisions { met: Met { residual, sampling, mean_free_path }, decision }
             },
         );
         flock.survivors
     }
+}
+
+/// The next two packs of numbers, uniform among the integers below `2^53`.
+#[inline(always)]
+fn integers<S: Simd>(streams: &mut Xoshiro<u64x8<S>>) -> Twin<f64x8<S>> {
+    Twin(streams.integer(), streams.integer())
 }
 
 /// How likely a walk with so many collisions has no more of them.

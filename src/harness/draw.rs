@@ -104,6 +104,8 @@ struct Drawing<'p> {
     planned: &'p Planned,
     ready: &'p Ready,
     streams: Streams,
+    /// How many draws the buffer takes.
+    length: u64,
     buffer: DrawBuffer,
     absorbers: Vec<Absorber>,
     tallies: Vec<Tally>,
@@ -125,6 +127,7 @@ impl<'p> Drawing<'p> {
             planned,
             ready,
             streams: planned.streams(block),
+            length: DrawBuffer::length(channels) as u64,
             buffer: DrawBuffer::new(channels),
             absorbers: planned.questions.iter().map(|q| Absorber::new(&q.kind)).collect(),
             tallies: vec![Tally::default(); channels],
@@ -145,7 +148,7 @@ impl<'p> Drawing<'p> {
     #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
     fn count(&self) -> usize {
         let until = if self.is_fixed() { self.end.min(self.planned.fixed) } else { self.end };
-        until.saturating_sub(self.at).min(DrawBuffer::LENGTH as u64) as usize
+        until.saturating_sub(self.at).min(self.length) as usize
     }
 
     fn fill(&mut self) {

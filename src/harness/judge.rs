@@ -141,8 +141,8 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         seed: plan.options.seed,
         alpha: plan.options.alpha,
         streams:
-            "xoshiro256++ by address (seed, experiment, block, lane), seeded by PCG XSL RR 128/64; \
-                  draw j of a block from lane j mod 8, order-free draws from branches of the lanes"
+            "xoshiro256+ by address (seed, experiment, block, lane), seeded by PCG XSL RR 128/64; \
+                  draw j of a block from lane j mod 16, order-free draws from branches of the lanes"
                 .to_owned(),
         gate,
         cut_by_time: false,

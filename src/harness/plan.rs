@@ -344,7 +344,7 @@ impl Planned {
         let mut buffer = DrawBuffer::new(channels);
         let mut values = vec![Vec::with_capacity(PILOT_DRAWS); channels];
         while values.iter().any(|values| values.len() < PILOT_DRAWS) {
-            ready.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
+            ready.experiment.fill(&mut streams, DrawBuffer::length(channels), &mut buffer);
             values.iter_mut().zip(&buffer.values).for_each(|(all, new)| all.extend(new));
         }
         values.iter().map(|values| Pilot::of(values)).collect()

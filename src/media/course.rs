@@ -17,6 +17,9 @@ pub trait Course<S: Simd> {
     /// The distances reached.
     fn reached(&self) -> f64x8<S>;
 
+    /// `σ̂` there.
+    fn sampling(&self) -> f64x8<S>;
+
     /// The mean free paths `1/σ̂` there.
     fn mean_free_path(&self) -> f64x8<S>;
 
@@ -30,6 +33,7 @@ pub struct Even<'a, S: Simd> {
     field: &'a even::Even,
     begin: f64x8<S>,
     end: f64x8<S>,
+    rate: f64x8<S>,
     path: f64x8<S>,
     way: f64x8<S>,
 }
@@ -42,7 +46,8 @@ impl<'a, S: Simd> Even<'a, S> {
         let begin = f64x8::splat(simd, field.from);
         let end = f64x8::splat(simd, field.to);
         let path = f64x8::splat(simd, 1.0 / field.value);
-        Self { field, begin, end, path, way: begin }
+        let rate = f64x8::splat(simd, field.value);
+        Self { field, begin, end, rate, path, way: begin }
     }
 }
 
@@ -56,6 +61,11 @@ impl<S: Simd> Course<S> for Even<'_, S> {
     #[inline(always)]
     fn reached(&self) -> f64x8<S> {
         self.field.spread(self.way)
+    }
+
+    #[inline(always)]
+    fn sampling(&self) -> f64x8<S> {
+        self.rate
     }
 
     #[inline(always)]
@@ -166,6 +176,11 @@ impl<S: Simd> Course<S> for Pieces<'_, S> {
     #[inline(always)]
     fn reached(&self) -> f64x8<S> {
         self.t
+    }
+
+    #[inline(always)]
+    fn sampling(&self) -> f64x8<S> {
+        self.here()
     }
 
     #[inline(always)]

@@ -19,7 +19,7 @@ pub struct Placement<'a> {
 #[derive(Debug, Clone)]
 enum Shape<'a> {
     /// One value, but for gaps; the length of the way, so rounded that no place is beyond its end.
-    Even { even: &'a Even, length: f64, mean_free_path: f64 },
+    Even { even: &'a Even, length: f64 },
     /// The piece that holds an optical depth; its knot, first value and slope, and the depth before.
     Pieces { search: Search, rows: Vec<Row>, field: &'a Piecewise },
 }
@@ -30,8 +30,7 @@ impl<'a> Placement<'a> {
     pub fn new(field: &'a Piecewise) -> Self {
         let depth = field.depth[field.depth.len() - 1];
         let shape = if let Some(even) = field.even() {
-            let mean_free_path = 1.0 / even.value;
-            Shape::Even { even, length: within(even.from, even.to), mean_free_path }
+            Shape::Even { even, length: within(even.from, even.to) }
         } else {
             let row = |i: usize| {
                 let columns = [field.knots[i], field.left[i], field.slope[i], field.depth[i]];
@@ -51,38 +50,38 @@ impl<'a> Placement<'a> {
         self.depth
     }
 
-    /// `1/σ̂`, where σ̂ has one value.
+    /// σ̂, where it has one value.
     #[inline(always)]
     #[must_use]
-    pub fn mean_free_path(&self) -> Option<f64> {
+    pub fn single_value(&self) -> Option<f64> {
         match self.shape {
-            Shape::Even { mean_free_path, .. } => Some(mean_free_path),
+            Shape::Even { even, .. } => Some(even.value),
             Shape::Pieces { .. } => None,
         }
     }
 
-    /// Where σ̂ has one value without gaps: `[from, length, 1/σ̂]`, and a number u lies at `from + u·length`,
+    /// Where σ̂ has one value without gaps: `[from, length, σ̂]`, and a number u lies at `from + u·length`,
     /// as in [`Placement::at`].
     #[must_use]
     pub fn plain(&self) -> Option<[f64; 3]> {
         match self.shape {
-            Shape::Even { even, length, mean_free_path } if even.gaps.is_empty() => {
-                Some([even.from, length, mean_free_path])
+            Shape::Even { even, length } if even.gaps.is_empty() => {
+                Some([even.from, length, even.value])
             }
             _ => None,
         }
     }
 
-    /// The distance for a number in `[0, 1)`, and the mean free path `1/σ̂` there.
+    /// The distance for a number in `[0, 1)`, and σ̂ there.
     ///
     /// Within a piece, `y₀ s + k s²/2 = d` as in [`Piecewise::fly`], and `σ̂ = √(y₀² + 2kd)`.
     #[inline(always)]
     #[must_use]
     pub fn at<L: Lane>(&self, uniform: L) -> (L, L) {
         match &self.shape {
-            &Shape::Even { even, length, mean_free_path } => {
+            &Shape::Even { even, length } => {
                 let way = uniform.times_plus(uniform.each(length), uniform.each(even.from));
-                (even.spread(way), way.each(mean_free_path))
+                (even.spread(way), way.each(even.value))
             }
             Shape::Pieces { search, rows, field } => {
                 let depth = uniform * self.depth;
@@ -92,7 +91,7 @@ impl<'a> Placement<'a> {
                 let here = (left * left + slope * 2.0 * depth).or_more(least).root();
                 let end = depth.each(field.knots[field.left.len()]);
                 let t = knot + depth * 2.0 / (left + here);
-                (t.or_less(end), depth.each(1.0) / here)
+                (t.or_less(end), here)
             }
         }
     }
@@ -153,10 +152,10 @@ mod tests {
             assert!((placement.depth() - whole).abs() <= 1e-14 * whole);
             for step in 0..1000 {
                 let uniform = (f64::from(step) + 0.37) / 1000.0;
-                let (t, mean_free_path) = placement.at(uniform);
+                let (t, sampling) = placement.at(uniform);
                 let flown = field.free_flight(support, uniform * whole).expect("before the end");
                 assert!((t - flown).abs() < 1e-13, "{t} and {flown}");
-                assert!((1.0 / mean_free_path - field.value(t)).abs() < 1e-12, "at {t}");
+                assert!((sampling - field.value(t)).abs() < 1e-12, "at {t}");
             }
         }
     }

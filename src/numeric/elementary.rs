@@ -87,12 +87,22 @@ const COS_PI: [f64; 8] = [
 /// `Σ cₙ xⁿ`: pairs of terms, and Horner's rule in x² for the pairs. Half as long a chain as Horner's rule
 /// in x for one more multiplication; the order of operations, so every bit, is fixed by this page.
 #[inline(always)]
-fn polynomial<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
+pub fn by_pairs<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
     let square = x * x;
     let last = (N - 1) / 2;
     let mut sum = pair(last, x, c);
     for i in (0..last).rev() {
         sum = sum.times_plus(square, pair(i, x, c));
+    }
+    sum
+}
+
+/// `Σ cₙ xⁿ` by Horner's rule, for lanes that do not wait.
+#[inline(always)]
+pub fn horner<L: Lane, const N: usize>(x: L, c: &[f64; N]) -> L {
+    let mut sum = x.each(c[N - 1]);
+    for i in (0..N - 1).rev() {
+        sum = sum.times_plus(x, x.each(c[i]));
     }
     sum
 }
@@ -116,7 +126,7 @@ pub fn ln<L: Lane>(x: L) -> L {
     let s = (m - 1.0) / (m + 1.0);
     let z = s * s;
     // 2s + s·z·p keeps the rounding of the correction far below that of 2s.
-    let near = (s * z).times_plus(polynomial(z, &LN), s + s);
+    let near = (s * z).times_plus(z.polynomial(&LN), s + s);
     k.times_plus(x.each(std::f64::consts::LN_2), near)
 }
 
@@ -134,7 +144,7 @@ pub fn exp<L: Lane>(x: L) -> L {
     let f = k.times_plus(x.each(-LN_2_HIGH), within);
     let f = k.times_plus(x.each(-LN_2_LOW), f);
     let one = x.each(1.0);
-    let p = polynomial(f, &EXP).times_plus(f * f, f) + one;
+    let p = f.polynomial(&EXP).times_plus(f * f, f) + one;
     // 2^k in two steps: k = 1024 has no double of its own.
     let half = (k * 0.5).nearest();
     let power = p * half.power_of_two() * (k - half).power_of_two();
@@ -161,7 +171,7 @@ fn reduce_by_pi<L: Lane>(x: L) -> (L, L) {
 pub fn cos<L: Lane>(x: L) -> L {
     let (f, k) = reduce_by_pi(x);
     let z = f * f;
-    polynomial(z, &COS).times_plus(z, x.each(1.0)).alternate(k)
+    z.polynomial(&COS).times_plus(z, x.each(1.0)).alternate(k)
 }
 
 /// `sin x` for `|x| < 1e9` radians.
@@ -174,7 +184,7 @@ pub fn cos<L: Lane>(x: L) -> L {
 pub fn sin<L: Lane>(x: L) -> L {
     let (f, k) = reduce_by_pi(x);
     let z = f * f;
-    (f * z).times_plus(polynomial(z, &SIN), f).alternate(k)
+    (f * z).times_plus(z.polynomial(&SIN), f).alternate(k)
 }
 
 /// `|cos πx|` for `|x| < 2^51` half turns: the reduction is exact, and the sign is not asked for.
@@ -187,7 +197,7 @@ pub fn sin<L: Lane>(x: L) -> L {
 pub fn cos_pi_size<L: Lane>(x: L) -> L {
     let f = x - x.nearest();
     let z = f * f;
-    polynomial(z, &COS_PI).times_plus(z, x.each(1.0))
+    z.polynomial(&COS_PI).times_plus(z, x.each(1.0))
 }
 
 /// `atan x` in radians, for every finite x.

@@ -58,6 +58,13 @@ pub trait Lane:
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
+    /// `Σ cₙ selfⁿ`.
+    #[inline(always)]
+    #[must_use]
+    fn polynomial<const N: usize>(self, c: &[f64; N]) -> Self {
+        elementary::by_pairs(self, c)
+    }
+
     /// `√self`.
     #[must_use]
     fn root(self) -> Self;

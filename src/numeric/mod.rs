@@ -13,10 +13,12 @@ pub mod quadrature;
 pub mod roots;
 pub mod single;
 pub mod sum;
+pub mod twin;
 pub mod words;
 
 pub use double_double::Wide;
 pub use known::{Known, Span};
 pub use lane::{Lane, Row};
 pub use narrow::Narrow;
+pub use twin::Twin;
 pub use words::Words32;

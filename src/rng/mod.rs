@@ -18,12 +18,15 @@ use crate::numeric::{Lane, pack::WIDTH};
 
 pub use xoshiro::{Lanes, Xoshiro};
 
-/// The generator of one stream of draws: xoshiro256++.
+/// The generator of one stream of draws: xoshiro256+.
 pub type Stream = Xoshiro<u64>;
 
-/// The streams of a block. Eight doubles fill a register of AVX-512, and two such packs side by
-/// side were no faster than one.
-pub const LANES: usize = WIDTH;
+/// The packs of streams of a block: a step of a walk waits for the one before it, and the steps of a second
+/// pack fill that time.
+pub const PACKS: usize = 2;
+
+/// The streams of a block.
+pub const LANES: usize = PACKS * WIDTH;
 
 /// Where a stream is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -107,11 +110,18 @@ impl Streams {
         &mut self.lanes[lane]
     }
 
-    /// The places of the next request of order-free draws: the streams as they stand. Each goes on
-    /// by one word.
+    /// The streams, pack by pack.
+    #[must_use]
+    pub fn packs(&self) -> [Lanes; PACKS] {
+        let (packs, _) = self.lanes.as_chunks();
+        std::array::from_fn(|pack| Lanes::of(&packs[pack]))
+    }
+
+    /// The places of the next request of order-free draws: the first pack of streams as it stands. Each of
+    /// these goes on by one word.
     pub fn places(&mut self) -> Lanes {
-        let places = Lanes::of(&self.lanes);
-        for lane in &mut self.lanes {
+        let [places, ..] = self.packs();
+        for lane in &mut self.lanes[..WIDTH] {
             lane.word();
         }
         places
@@ -123,8 +133,8 @@ impl Streams {
         const WORDS: usize = 64;
         std::iter::repeat_with(move || self.places()).flat_map(|places| {
             (0..BRANCHES).flat_map(move |number| {
-                let lanes = places.branch(Level::new(), number).apart();
-                Self { lanes, turn: 0, counts: lanes[0] }.words().take(WORDS)
+                let mut lanes = places.branch(Level::new(), number).apart();
+                (0..WORDS).map(move |n| lanes[n % WIDTH].word())
             })
         })
     }

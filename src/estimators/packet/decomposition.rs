@@ -1,7 +1,7 @@
 //! The packet kernel of decomposition tracking.
 //!
 //! Specification: draw j is, bit for bit, the draw that the page `transmittance/decomposition` makes from
-//! stream j mod 8. The first step of each walk is the control's flight, which looks at nothing.
+//! stream j mod 16. The first step of each walk is the control's flight, which looks at nothing.
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
@@ -52,20 +52,21 @@ impl<M: Extinction> Task for Decomposition<'_, '_, M> {
         let control = f64x8::splat(simd, control);
         let begins = mask64x8::splat(simd, true);
         let reader = Survivors { end: support.to, survivor };
+        let flown = from;
         if let Some(even) = sampling.even() {
             let course = Even::new(simd, even);
-            let flown = from;
             run(
                 simd,
-                Residuals { medium, control, path, from, course, begins, flown, reader },
+                #[inline(always)]
+                || Residuals { medium, control, path, from, course, begins, flown, reader },
                 request,
             );
         } else {
             let course = Pieces::new(simd, sampling);
-            let flown = from;
             run(
                 simd,
-                Residuals { medium, control, path, from, course, begins, flown, reader },
+                #[inline(always)]
+                || Residuals { medium, control, path, from, course, begins, flown, reader },
                 request,
             );
         }

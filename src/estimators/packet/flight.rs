@@ -1,7 +1,7 @@
 //! The packet kernel of free flights by Woodcock tracking.
 //!
 //! Specification: draw j is, bit for bit, the draw that the page `free_flight/woodcock` makes from
-//! stream j mod 8.
+//! stream j mod 16.
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
@@ -45,13 +45,26 @@ impl<M: Extinction> Task for Flight<'_, '_, M> {
         let Self { sampling, ray, medium, request } = self;
         let from = f64x8::splat(simd, sampling.begin().t);
         if let Some(even) = sampling.even() {
-            let course = Even::new(simd, even);
-            run(simd, Flights { medium, ray, from, course }, request);
+            fly(simd, Flights { medium, ray, from, course: Even::new(simd, even) }, request);
         } else {
-            let course = Pieces::new(simd, sampling);
-            run(simd, Flights { medium, ray, from, course }, request);
+            fly(simd, Flights { medium, ray, from, course: Pieces::new(simd, sampling) }, request);
         }
     }
+}
+
+#[inline(always)]
+fn fly<S: Simd, M: Extinction, C: Course<S> + Copy>(
+    simd: S,
+    flights: Flights<S, M, C>,
+    request: Request,
+) {
+    let Flights { medium, ray, from, course } = flights;
+    run(
+        simd,
+        #[inline(always)]
+        || Flights { medium, ray, from, course },
+        request,
+    );
 }
 
 /// The walks of free flights.

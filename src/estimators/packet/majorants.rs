@@ -1,7 +1,7 @@
 //! The packet kernel of local-majorant tracking.
 //!
 //! Specification: draw j is, bit for bit, the draw that the page `transmittance/local_majorant` makes from
-//! stream j mod 8. A step is a flight within a segment: no lane waits for those that cross several.
+//! stream j mod 16. A step is a flight within a segment: no lane waits for those that cross several.
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
@@ -52,7 +52,8 @@ impl<M: Extinction> Task for Local<'_, '_, M> {
         let (segment, looked) = (first, first);
         run(
             simd,
-            Hops { segments, last, survivor, medium, segment, t, end, path, looked },
+            #[inline(always)]
+            || Hops { segments, last, survivor, medium, segment, t, end, path, looked },
             request,
         );
     }

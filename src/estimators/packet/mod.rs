@@ -1,6 +1,6 @@
-//! Eight draws side by side: what packet kernels share.
+//! Packs of eight draws side by side: what packet kernels share.
 //!
-//! Specification of each: draw j is, bit for bit, the draw that its page makes from stream j mod 8.
+//! Specification of each: draw j is, bit for bit, the draw that its page makes from stream j mod 16.
 //!
 //! Each lane walks its own walk. A walk that ends begins anew at once, so that no lane waits, and
 //! every lane makes a number of draws that was fixed beforehand: to stop when enough draws are done
@@ -8,6 +8,9 @@
 //! [`STEPS`] of them the rows are searched for walks that ended, and those become draws. A lane that
 //! has made its draws walks on until the others have; its stream is then set back to where its last
 //! draw left it.
+//!
+//! A block has two packs of streams. On hardware with registers for both their steps alternate: a step
+//! waits for the one before it, and those of the other pack fill the time.
 
 pub mod decomposition;
 pub mod flight;
@@ -21,8 +24,8 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 use super::DrawBuffer;
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use crate::media::{Control, Extinction, Piecewise};
-use crate::numeric::pack::WIDTH;
-use crate::rng::{LANES, Lanes, Streams, Xoshiro};
+use crate::numeric::pack::{self, WIDTH};
+use crate::rng::{LANES, Lanes, PACKS, Stream, Streams, Xoshiro};
 
 pub use decomposition::decomposition;
 pub use flight::flight;
@@ -119,6 +122,12 @@ trait Walks<S: Simd> {
 
     /// One step of each; walks that end begin anew.
     fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends;
+
+    /// Whether all that happened so far is what these walks are made for.
+    #[inline(always)]
+    fn are_sound(&self) -> bool {
+        true
+    }
 }
 
 #[inline(always)]
@@ -126,36 +135,56 @@ fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
     Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
 }
 
-/// Walks until every lane has made its draws; answers where the walks stand then.
-#[inline(always)]
-#[allow(clippy::cast_possible_truncation)] // eight bits of a mask
-fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
-    let Request { streams, count, buffer } = request;
-    let Some(mut ledger) = Ledger::open(count, streams.turn, buffer) else { return walks };
-    let reader = walks.reader();
-    let mut awake = Lanes::of(&streams.lanes).awake(simd);
-    let words = if W::DECIDES { 2 } else { 1 };
-    let mut rows = [Row::default(); STEPS];
-    let (mut before, mut ahead) = (awake, Ahead::new(simd));
-    ahead.find_all(&mut awake, W::DECIDES);
-    while ledger.is_open() {
-        let after = awake;
-        let mut notes = Notes::empty();
-        for (step, row) in rows.iter_mut().enumerate() {
-            let now = if W::DECIDES {
-                // A step waits for the one before: logarithms, which wait for nothing, fill the time.
-                ahead.exchange(step, &mut awake)
-            } else {
-                Numbers { depth: ahead.depths[step], decision: ahead.depths[step] }
-            };
-            let ends = walks.step(now, row);
-            notes.ended[step] = ends.ended as u8;
-            notes.escaped[step] = ends.escaped as u8;
-        }
-        let over = ledger.collect(&reader, &rows, &notes.by_lanes(simd));
+/// What a pack of walks does in [`STEPS`] steps. The walks and their streams are not part of it: beside
+/// arrays that are looked at by number a compiler would not keep them in registers.
+struct Window<S: Simd> {
+    ahead: Ahead<S>,
+    rows: [Row; STEPS],
+    notes: Notes,
+    /// Where the streams were when it began.
+    before: Xoshiro<u64x8<S>>,
+}
+
+impl<S: Simd> Window<S> {
+    /// The first of walks whose streams are here.
+    #[inline(always)]
+    fn open(simd: S, streams: &mut Xoshiro<u64x8<S>>, decides: bool) -> Self {
+        let (before, mut ahead) = (*streams, Ahead::new(simd));
+        ahead.find_all(streams, decides);
+        Self { ahead, rows: [Row::default(); STEPS], notes: Notes::empty(), before }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
+    fn step<W: Walks<S>>(&mut self, step: usize, walks: &mut W, streams: &mut Xoshiro<u64x8<S>>) {
+        let now = if W::DECIDES {
+            // A step waits for the one before: logarithms, which wait for nothing, fill the time.
+            self.ahead.exchange(step, streams)
+        } else {
+            Numbers { depth: self.ahead.depths[step], decision: self.ahead.depths[step] }
+        };
+        let ends = walks.step(now, &mut self.rows[step]);
+        self.notes.ended[step] = ends.ended as u8;
+        self.notes.escaped[step] = ends.escaped as u8;
+    }
+
+    /// Makes draws of the walks of a pack that ended, and begins the next window, for which the streams were
+    /// here. A lane that has made its draws leaves its stream where the last one left it.
+    #[inline(always)]
+    fn turn<R: Reader>(
+        &mut self,
+        simd: S,
+        pack: usize,
+        next: Xoshiro<u64x8<S>>,
+        draws: &mut Draws<R>,
+        words: usize,
+    ) {
+        let endings = self.notes.by_lanes(simd);
+        let over = draws.ledger.collect(pack, &draws.reader, &self.rows, &endings);
         if over != [0; WIDTH] {
-            let before = before.at_rest().apart();
-            for ((stream, before), steps) in streams.lanes.iter_mut().zip(before).zip(over) {
+            let before = self.before.at_rest().apart();
+            let left = &mut draws.lanes[pack * WIDTH..];
+            for ((stream, before), steps) in left.iter_mut().zip(before).zip(over) {
                 if steps > 0 {
                     *stream = before;
                     for _ in 0..steps * words {
@@ -164,12 +193,80 @@ fn run<S: Simd, W: Walks<S>>(simd: S, mut walks: W, request: Request) -> W {
                 }
             }
         }
-        if !W::DECIDES {
-            // By themselves: then all that a step needs stays in registers.
-            ahead.find_all(&mut awake, false);
-        }
-        before = after;
+        self.before = next;
     }
+}
+
+/// Where the draws and their streams go.
+struct Draws<'a, R> {
+    ledger: Ledger<'a>,
+    reader: R,
+    lanes: &'a mut [Stream; LANES],
+}
+
+/// Walks until every lane has made its draws; answers whether they are of use, see [`Walks::are_sound`].
+#[inline(always)]
+fn run<S: Simd, W: Walks<S>>(simd: S, begin: impl Fn() -> W, request: Request) -> bool {
+    let Request { streams, count, buffer } = request;
+    let Some(ledger) = Ledger::open(count, streams.turn, buffer) else { return true };
+    let packs = streams.packs();
     streams.turn = (streams.turn + count) % LANES;
-    walks
+    let draws = Draws { ledger, reader: begin().reader(), lanes: &mut streams.lanes };
+    if W::DECIDES && pack::is_widest(simd) {
+        in_turn(simd, begin, &packs, draws)
+    } else {
+        one_after_the_other(simd, begin, &packs, draws)
+    }
+}
+
+/// The steps of the packs alternate.
+#[inline(always)]
+fn in_turn<S: Simd, W: Walks<S>>(
+    simd: S,
+    begin: impl Fn() -> W,
+    [first, second]: &[Lanes; PACKS],
+    mut draws: Draws<W::Reader>,
+) -> bool {
+    let (mut walks, mut others) = (begin(), begin());
+    let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
+    let mut window = Window::open(simd, &mut streams, W::DECIDES);
+    let mut other_window = Window::open(simd, &mut other_streams, W::DECIDES);
+    while draws.ledger.is_open(0) || draws.ledger.is_open(1) {
+        let (next, other_next) = (streams, other_streams);
+        for step in 0..STEPS {
+            window.step(step, &mut walks, &mut streams);
+            other_window.step(step, &mut others, &mut other_streams);
+        }
+        window.turn(simd, 0, next, &mut draws, 2);
+        other_window.turn(simd, 1, other_next, &mut draws, 2);
+    }
+    walks.are_sound() && others.are_sound()
+}
+
+/// A pack makes all its draws before the next one begins.
+#[inline(always)]
+fn one_after_the_other<S: Simd, W: Walks<S>>(
+    simd: S,
+    begin: impl Fn() -> W,
+    packs: &[Lanes; PACKS],
+    mut draws: Draws<W::Reader>,
+) -> bool {
+    let mut are_sound = true;
+    for (pack, lanes) in packs.iter().enumerate() {
+        let (mut walks, mut streams) = (begin(), lanes.awake(simd));
+        let mut window = Window::open(simd, &mut streams, W::DECIDES);
+        while draws.ledger.is_open(pack) {
+            let next = streams;
+            for step in 0..STEPS {
+                window.step(step, &mut walks, &mut streams);
+            }
+            window.turn(simd, pack, next, &mut draws, if W::DECIDES { 2 } else { 1 });
+            if !W::DECIDES {
+                // By themselves: then all that a step needs stays in registers.
+                window.ahead.find_all(&mut streams, false);
+            }
+        }
+        are_sound &= walks.are_sound();
+    }
+    are_sound
 }

@@ -1,7 +1,7 @@
 //! The packet kernel of the product walk.
 //!
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::walk::product`] makes from
-//! stream j mod 8.
+//! stream j mod 16.
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
@@ -9,7 +9,7 @@ use super::survival::Survivals;
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
-use crate::estimators::rules::Collision;
+use crate::estimators::rules::{Collision, Met};
 use crate::estimators::walk::Books;
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Extinction, Piecewise};
@@ -72,14 +72,25 @@ fn walk<S: Simd, M: Extinction, R: Collision, C: Course<S> + Copy>(
     if R::DECIDES && !R::WEIGHS {
         let before = streams.clone();
         let request = Request { streams: &mut *streams, count, buffer: &mut *buffer };
-        if run(simd, Survivals::new(site, course), request).are_balanced() {
+        let is_done = run(
+            simd,
+            #[inline(always)]
+            || Survivals::new(site, course),
+            request,
+        );
+        if is_done {
             return;
         }
         *streams = before;
     }
     let weight = f64x8::splat(simd, site.begin);
     let books = Books::open(weight);
-    run(simd, Products { site, course, weight, books }, Request { streams, count, buffer });
+    run(
+        simd,
+        #[inline(always)]
+        || Products { site, course, weight, books },
+        Request { streams, count, buffer },
+    );
 }
 
 /// σ_c as the walks ask for it.
@@ -133,11 +144,12 @@ impl<S: Simd, M, R> Site<'_, S, M, R> {
 }
 
 impl<S: Simd, M: Extinction, R> Site<'_, S, M, R> {
-    /// The ratios at the places reached. Beyond the end they mean nothing, and nobody asks for them.
+    /// What is met at the places reached. Beyond the end it means nothing, and nobody asks for it.
     #[inline(always)]
-    pub(super) fn ratio<C: Course<S>>(&self, course: &C) -> f64x8<S> {
+    pub(super) fn met<C: Course<S>>(&self, course: &C) -> Met<f64x8<S>> {
         let t = course.reached();
-        (self.medium.extinction(t) - self.control.at(t)) * course.mean_free_path()
+        let residual = self.medium.extinction(t) - self.control.at(t);
+        Met { residual, sampling: course.sampling(), mean_free_path: course.mean_free_path() }
     }
 }
 
@@ -167,11 +179,10 @@ where
     #[inline(always)]
     fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
         let inside = self.course.fly(numbers.depth);
-        let ratio = self.site.ratio(&self.course);
-        let outcome = self.site.rule.at(ratio);
+        let met = self.site.met(&self.course);
+        let (ratio, outcome) = (met.ratio(), self.site.rule.at(met.ratio()));
         let goes_on = if R::DECIDES {
-            let killed = outcome.survival.at_most(numbers.decision);
-            inside & !killed
+            inside & !self.site.rule.kills(&met, numbers.decision)
         } else {
             inside
         };

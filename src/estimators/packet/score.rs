@@ -1,7 +1,7 @@
 //! The packet kernel of the walk that next-flight estimators share.
 //!
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::scoring::walk`] makes from
-//! stream j mod 8.
+//! stream j mod 16.
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
@@ -49,8 +49,12 @@ impl<M: Extinction, H: Share> Task for Scored<'_, '_, M, H> {
         let rate = f64x8::splat(simd, sampling.value);
         let fresh = Score::open(share.of((end - from) * rate));
         let course = Even::new(simd, sampling);
-        let walks = Scores { share, medium, unit, from, end, rate, course, fresh, score: fresh };
-        run(simd, walks, request);
+        run(
+            simd,
+            #[inline(always)]
+            || Scores { share, medium, unit, from, end, rate, course, fresh, score: fresh },
+            request,
+        );
     }
 }
 

@@ -31,12 +31,6 @@ impl<'a, S: Simd, M, R, C> Survivals<'a, S, M, R, C> {
         let zero = site.zero();
         Self { site, course, balanced: zero.at_most(zero) }
     }
-
-    /// Whether books would have shown nothing.
-    #[inline(always)]
-    pub(super) fn are_balanced(&self) -> bool {
-        self.balanced.all_true()
-    }
 }
 
 impl<S, M, R, C> Walks<S> for Survivals<'_, S, M, R, C>
@@ -58,12 +52,18 @@ where
     #[inline(always)]
     fn step(&mut self, numbers: Numbers<S>, _: &mut Row) -> Ends {
         let inside = self.course.fly(numbers.depth);
-        let ratio = self.site.ratio(&self.course);
-        let (zero, one) = (ratio.each(0.0), ratio.each(1.0));
-        self.balanced &= !inside | (zero.at_most(ratio) & ratio.at_most(one));
-        let goes_on = inside & self.site.rule.survives(ratio, numbers.decision);
+        let met = self.site.met(&self.course);
+        let (zero, residual) = (met.residual.each(0.0), met.residual);
+        self.balanced &= !inside | (zero.at_most(residual) & residual.at_most(met.sampling));
+        let goes_on = inside & !self.site.rule.kills(&met, numbers.decision);
         self.course.restart(!goes_on);
         ends(inside, goes_on)
+    }
+
+    /// Whether books would have shown nothing.
+    #[inline(always)]
+    fn are_sound(&self) -> bool {
+        self.balanced.all_true()
     }
 }
 

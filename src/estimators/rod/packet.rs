@@ -2,7 +2,7 @@
 //! [`ParticleRule`] and a σ̂ of one value.
 //!
 //! Specification: draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream
-//! j mod 8.
+//! j mod 16.
 //!
 //! A step has no branches: who is scattered, turns round or ends is a mask. The number of a new
 //! direction is drawn for all; the streams of those that are not scattered stay where they were.
@@ -19,7 +19,7 @@ use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Rod;
 use crate::problems::rod::{MOST_PARTS, Seen};
-use crate::rng::{LANES, Lanes};
+use crate::rng::LANES;
 use crate::theory::ParticleRule;
 
 /// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
@@ -56,53 +56,55 @@ impl<M: Extinction> Task for Walks<'_, '_, M> {
         let (end, path) = (begin.each(sampling.to), begin.each(1.0 / sampling.value));
         let (zero, one) = (begin.each(0.0), begin.each(1.0));
         let parts = Parts::of(rod, path);
-        let (mut way, mut is_forward) = (begin, mask64x8::splat(simd, true));
-        let (mut weight, mut order) = (one, zero);
-        let (mut absorbed, mut flux) = (zero, [zero; MOST_PARTS]);
-        let mut numbers = Lanes::of(&streams.lanes).awake(simd);
-        let mut places = Places::new(count, streams.turn);
         buffer.make_room(count);
-        while places.are_open() {
-            let (depth, number) = (-numbers.ln_uniform(), numbers.uniform());
-            way = Lane::select(is_forward, depth, -depth).times_plus(path, way);
-            let inside = (is_forward & way.below(end)) | (!is_forward & begin.below(way));
-            // Beyond both ends there is no field to look at.
-            let t = Lane::select(inside, sampling.spread(way), begin);
-            let ratio = medium.extinction(t) * path;
-            let albedo = rod.albedo().value(t);
-            let taken = weight * ratio * (one - albedo);
-            absorbed = Lane::select(inside, absorbed + taken, absorbed);
-            parts.score(t, inside, weight, &mut flux);
-            let odds = rule.odds(ratio, albedo);
-            let is_scattered = inside & number.below(odds.scatter);
-            let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
-            let goes_on = is_scattered | is_passed;
-            let ended = (!goes_on).to_bitmask();
-            if ended != 0 {
-                let (inside, is_forward) = (inside.to_bitmask(), is_forward.to_bitmask());
-                let mut ends = Ends { inside, is_forward, ..Ends::default() };
-                weight.store_slice(&mut ends.weight);
-                order.store_slice(&mut ends.order);
-                absorbed.store_slice(&mut ends.absorbed);
-                for (end, flux) in ends.flux.iter_mut().zip(flux) {
-                    flux.store_slice(end);
+        for (pack, lanes) in streams.packs().iter().enumerate() {
+            let (mut way, mut is_forward) = (begin, mask64x8::splat(simd, true));
+            let (mut weight, mut order) = (one, zero);
+            let (mut absorbed, mut flux) = (zero, [zero; MOST_PARTS]);
+            let mut numbers = lanes.awake(simd);
+            let mut places = Places::new(count, streams.turn, pack);
+            while places.are_open() {
+                let (depth, number) = (-numbers.ln_uniform(), numbers.uniform());
+                way = Lane::select(is_forward, depth, -depth).times_plus(path, way);
+                let inside = (is_forward & way.below(end)) | (!is_forward & begin.below(way));
+                // Beyond both ends there is no field to look at.
+                let t = Lane::select(inside, sampling.spread(way), begin);
+                let ratio = medium.extinction(t) * path;
+                let albedo = rod.albedo().value(t);
+                let taken = weight * ratio * (one - albedo);
+                absorbed = Lane::select(inside, absorbed + taken, absorbed);
+                parts.score(t, inside, weight, &mut flux);
+                let odds = rule.odds(ratio, albedo);
+                let is_scattered = inside & number.below(odds.scatter);
+                let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
+                let goes_on = is_scattered | is_passed;
+                let ended = (!goes_on).to_bitmask();
+                if ended != 0 {
+                    let (inside, is_forward) = (inside.to_bitmask(), is_forward.to_bitmask());
+                    let mut ends = Ends { inside, is_forward, ..Ends::default() };
+                    weight.store_slice(&mut ends.weight);
+                    order.store_slice(&mut ends.order);
+                    absorbed.store_slice(&mut ends.absorbed);
+                    for (end, flux) in ends.flux.iter_mut().zip(flux) {
+                        flux.store_slice(end);
+                    }
+                    let over = ends.collect(&mut places, ended, rod, buffer);
+                    places::leave(streams, pack, over, numbers);
                 }
-                let over = ends.collect(&mut places, ended, rod, buffer);
-                places::leave(streams, over, numbers);
+                places.step();
+                let direction = numbers.uniform_where(is_scattered);
+                let turns = is_scattered & !direction.below(rod.forward().value(t));
+                is_forward = (is_forward ^ turns) | !goes_on;
+                let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+                weight = Lane::select(goes_on, weight * factor, one);
+                order = Lane::select(is_scattered, order + 1.0, order);
+                order = Lane::select(goes_on, order, zero);
+                absorbed = Lane::select(goes_on, absorbed, zero);
+                for flux in &mut flux {
+                    *flux = Lane::select(goes_on, *flux, zero);
+                }
+                way = Lane::select(goes_on, way, begin);
             }
-            places.step();
-            let direction = numbers.uniform_where(is_scattered);
-            let turns = is_scattered & !direction.below(rod.forward().value(t));
-            is_forward = (is_forward ^ turns) | !goes_on;
-            let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
-            weight = Lane::select(goes_on, weight * factor, one);
-            order = Lane::select(is_scattered, order + 1.0, order);
-            order = Lane::select(goes_on, order, zero);
-            absorbed = Lane::select(goes_on, absorbed, zero);
-            for flux in &mut flux {
-                *flux = Lane::select(goes_on, *flux, zero);
-            }
-            way = Lane::select(goes_on, way, begin);
         }
         streams.turn = (streams.turn + count) % LANES;
     }

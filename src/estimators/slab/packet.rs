@@ -2,7 +2,7 @@
 //! [`ParticleRule`] and a σ̂ of one value.
 //!
 //! Specification: draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream
-//! j mod 8.
+//! j mod 16.
 //!
 //! A step has no branches: who is scattered or ends is a mask. The numbers of a new direction are drawn
 //! for all; the streams of those that are not scattered stay where they were.
@@ -23,7 +23,7 @@ use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
 use crate::problems::Slab;
 use crate::problems::slab::Light;
-use crate::rng::{LANES, Lanes, Xoshiro};
+use crate::rng::{LANES, Xoshiro};
 use crate::theory::ParticleRule;
 
 /// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
@@ -61,46 +61,48 @@ impl<M: Extinction> Task for Walks<'_, '_, M> {
         let (end, path) = (begin.each(sampling.to), begin.each(1.0 / sampling.value));
         let (zero, one) = (begin.each(0.0), begin.each(1.0));
         let albedo = begin.each(slab.albedo());
-        let mut numbers = Lanes::of(&streams.lanes).awake(simd);
-        let (mut way, mut weight) = (begin, one);
-        let mut cosine = entering(incidence.light, &mut numbers, zero.at_most(one), one);
-        let mut places = Places::new(count, streams.turn);
         buffer.make_room(count);
-        while places.are_open() {
-            let (length, number) = (-numbers.ln_uniform(), numbers.uniform());
-            let depth = length * cosine.size();
-            let is_down = zero.below(cosine);
-            way = Lane::select(is_down, depth, -depth).times_plus(path, way);
-            let inside = (is_down & way.below(end)) | (!is_down & begin.below(way));
-            // Above and below there is no field to look at.
-            let t = Lane::select(inside, sampling.spread(way), begin);
-            let odds = rule.odds(medium.extinction(t) * path, albedo);
-            let is_scattered = inside & number.below(odds.scatter);
-            let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
-            let goes_on = is_scattered | is_passed;
-            let ended = (!goes_on).to_bitmask();
-            if ended != 0 {
-                let mut ends = Ends { inside: inside.to_bitmask(), ..Ends::default() };
-                let left = Lane::select(inside, zero, weight);
-                Lane::select(is_down, zero, left).store_slice(&mut ends.values[0]);
-                Lane::select(is_down, left, zero).store_slice(&mut ends.values[1]);
-                let over = ends.collect(&mut places, ended, buffer);
-                places::leave(streams, over, numbers);
+        for (pack, lanes) in streams.packs().iter().enumerate() {
+            let mut numbers = lanes.awake(simd);
+            let (mut way, mut weight) = (begin, one);
+            let mut cosine = entering(incidence.light, &mut numbers, zero.at_most(one), one);
+            let mut places = Places::new(count, streams.turn, pack);
+            while places.are_open() {
+                let (length, number) = (-numbers.ln_uniform(), numbers.uniform());
+                let depth = length * cosine.size();
+                let is_down = zero.below(cosine);
+                way = Lane::select(is_down, depth, -depth).times_plus(path, way);
+                let inside = (is_down & way.below(end)) | (!is_down & begin.below(way));
+                // Above and below there is no field to look at.
+                let t = Lane::select(inside, sampling.spread(way), begin);
+                let odds = rule.odds(medium.extinction(t) * path, albedo);
+                let is_scattered = inside & number.below(odds.scatter);
+                let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
+                let goes_on = is_scattered | is_passed;
+                let ended = (!goes_on).to_bitmask();
+                if ended != 0 {
+                    let mut ends = Ends { inside: inside.to_bitmask(), ..Ends::default() };
+                    let left = Lane::select(inside, zero, weight);
+                    Lane::select(is_down, zero, left).store_slice(&mut ends.values[0]);
+                    Lane::select(is_down, left, zero).store_slice(&mut ends.values[1]);
+                    let over = ends.collect(&mut places, ended, buffer);
+                    places::leave(streams, pack, over, numbers);
+                }
+                places.step();
+                let deflection = incidence.phase.cosine(numbers.uniform_where(is_scattered));
+                let direction = if incidence.phase == Phase::Isotropic(Isotropic) {
+                    deflection
+                } else {
+                    let azimuth = (numbers.uniform_where(is_scattered) * TAU).cos();
+                    turned(cosine, deflection, azimuth)
+                };
+                let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+                weight = Lane::select(goes_on, weight * factor, one);
+                way = Lane::select(goes_on, way, begin);
+                cosine = Lane::select(is_scattered, direction, cosine);
+                let fresh = entering(incidence.light, &mut numbers, !goes_on, one);
+                cosine = Lane::select(goes_on, cosine, fresh);
             }
-            places.step();
-            let deflection = incidence.phase.cosine(numbers.uniform_where(is_scattered));
-            let direction = if incidence.phase == Phase::Isotropic(Isotropic) {
-                deflection
-            } else {
-                let azimuth = (numbers.uniform_where(is_scattered) * TAU).cos();
-                turned(cosine, deflection, azimuth)
-            };
-            let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
-            weight = Lane::select(goes_on, weight * factor, one);
-            way = Lane::select(goes_on, way, begin);
-            cosine = Lane::select(is_scattered, direction, cosine);
-            let fresh = entering(incidence.light, &mut numbers, !goes_on, one);
-            cosine = Lane::select(goes_on, cosine, fresh);
         }
         streams.turn = (streams.turn + count) % LANES;
     }

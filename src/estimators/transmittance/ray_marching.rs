@@ -23,13 +23,14 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use crate::catalogue::Settings;
 use crate::estimators::packet::Request;
+use crate::estimators::places;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Extinction;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Lane};
 use crate::problems::Transmittance;
-use crate::rng::{Lanes, Stream};
+use crate::rng::{LANES, Stream};
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// Panels of the quadrature over the offset: σ_t may have kinks, so the rule is a dense one.
@@ -156,16 +157,21 @@ impl<M: Extinction> Task for Marches<'_, '_, M> {
         let Some((values, lookups, defects)) = buffer.one_channel(count) else { return };
         lookups.fill(estimator.steps);
         defects.fill(0.0);
-        let mut numbers = Lanes::of(&streams.lanes).awake(simd);
-        let (rows, rest) = values.as_chunks_mut::<WIDTH>();
+        let [first, second] = streams.packs();
+        let mut packs = [first.awake(simd), second.awake(simd)];
+        let (rows, rest) = values.as_chunks_mut::<LANES>();
         for row in rows {
-            let half = f64x8::splat(simd, 0.5);
-            let u = if estimator.jitter { numbers.uniform() } else { half };
-            estimator.value(setup, medium, u).store_slice(row);
+            for (numbers, row) in packs.iter_mut().zip(row.as_chunks_mut::<WIDTH>().0) {
+                let half = f64x8::splat(simd, 0.5);
+                let u = if estimator.jitter { numbers.uniform() } else { half };
+                estimator.value(setup, medium, u).store_slice(row);
+            }
             // The first draw is that of the lane whose turn it is.
             row.rotate_left(streams.turn);
         }
-        streams.lanes = numbers.at_rest().apart();
+        for (pack, numbers) in packs.into_iter().enumerate() {
+            places::leave(streams, pack, u64::MAX, numbers);
+        }
         for value in rest {
             [*value] = estimator.draw(setup, medium, streams.of_next_draw()).value;
         }

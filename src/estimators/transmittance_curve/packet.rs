@@ -1,7 +1,7 @@
 //! Eight curves side by side: the packet kernel of [`super::double`].
 //!
 //! Specification: draw j is, bit for bit, the draw that `transmittance_curve/double` makes from stream
-//! j mod 8.
+//! j mod 16.
 //!
 //! A collision at t changes the weight at all distances beyond it, whether the walk has passed those
 //! before it or not: what is kept of a distance is the weight with which it was last ahead.
@@ -25,7 +25,7 @@ use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::MOST;
-use crate::rng::{LANES, Lanes};
+use crate::rng::LANES;
 
 /// The draws of a curve, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or one draw after the other is faster.
@@ -63,11 +63,11 @@ impl<M: Extinction> Task for Curves<'_, '_, M> {
 
 /// Walks until every lane has made its draws.
 #[inline(always)]
-fn walk<S: Simd, M: Extinction, C: Course<S>>(
+fn walk<S: Simd, M: Extinction, C: Course<S> + Copy>(
     simd: S,
     setup: &Setup<TransmittanceCurve>,
     medium: &M,
-    mut course: C,
+    course: C,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -75,43 +75,46 @@ fn walk<S: Simd, M: Extinction, C: Course<S>>(
     let distances = setup.problem.ascending();
     let from = f64x8::splat(simd, setup.sampling.begin().t);
     let nowhere = f64x8::splat(simd, f64::NEG_INFINITY);
-    let (mut weight, mut ahead) = (from.each(1.0), [from.each(1.0); MOST]);
-    let mut books = Books::open(weight);
-    let mut numbers = Lanes::of(&streams.lanes).awake(simd);
-    let mut places = Places::new(count, streams.turn);
     buffer.make_room(count);
-    while places.are_open() {
-        let inside = course.fly(-numbers.ln_uniform());
-        // Beyond the end there is no field to look at.
-        let t = Lane::select(inside, course.reached(), from);
-        let residual = medium.extinction(t) - control.at(t);
-        let due = weight.each(1.0) - residual * course.mean_free_path();
-        let ended = (!inside).to_bitmask();
-        if ended != 0 {
-            let mut ends = Ends::default();
-            for ((end, ahead), control) in
-                ends.values.iter_mut().zip(ahead).zip(&setup.control_curve)
-            {
-                (ahead * *control).store_slice(end);
+    for (pack, lanes) in streams.packs().iter().enumerate() {
+        let mut course = course;
+        let (mut weight, mut ahead) = (from.each(1.0), [from.each(1.0); MOST]);
+        let mut books = Books::open(weight);
+        let mut numbers = lanes.awake(simd);
+        let mut places = Places::new(count, streams.turn, pack);
+        while places.are_open() {
+            let inside = course.fly(-numbers.ln_uniform());
+            // Beyond the end there is no field to look at.
+            let t = Lane::select(inside, course.reached(), from);
+            let residual = medium.extinction(t) - control.at(t);
+            let due = weight.each(1.0) - residual * course.mean_free_path();
+            let ended = (!inside).to_bitmask();
+            if ended != 0 {
+                let mut ends = Ends::default();
+                for ((end, ahead), control) in
+                    ends.values.iter_mut().zip(ahead).zip(&setup.control_curve)
+                {
+                    (ahead * *control).store_slice(end);
+                }
+                weight.store_slice(&mut ends.weight);
+                books.handed_over.store_slice(&mut ends.handed_over);
+                books.turnover.store_slice(&mut ends.turnover);
+                let over = ends.collect(&mut places, ended, buffer);
+                places::leave(streams, pack, over, numbers);
             }
-            weight.store_slice(&mut ends.weight);
-            books.handed_over.store_slice(&mut ends.handed_over);
-            books.turnover.store_slice(&mut ends.turnover);
-            let over = ends.collect(&mut places, ended, buffer);
-            places::leave(streams, over, numbers);
+            places.step();
+            books.hand_over(weight, due);
+            let fresh = Books::open(from.each(1.0));
+            books.handed_over = Lane::select(inside, books.handed_over, fresh.handed_over);
+            books.turnover = Lane::select(inside, books.turnover, fresh.turnover);
+            weight = Lane::select(inside, weight * due, fresh.begin);
+            // To a walk that begins all distances are ahead.
+            let t = Lane::select(inside, t, nowhere);
+            for (ahead, &distance) in ahead.iter_mut().zip(distances) {
+                *ahead = Lane::select(t.below(t.each(distance)), weight, *ahead);
+            }
+            course.restart(!inside);
         }
-        places.step();
-        books.hand_over(weight, due);
-        let fresh = Books::open(from.each(1.0));
-        books.handed_over = Lane::select(inside, books.handed_over, fresh.handed_over);
-        books.turnover = Lane::select(inside, books.turnover, fresh.turnover);
-        weight = Lane::select(inside, weight * due, fresh.begin);
-        // To a walk that begins all distances are ahead.
-        let t = Lane::select(inside, t, nowhere);
-        for (ahead, &distance) in ahead.iter_mut().zip(distances) {
-            *ahead = Lane::select(t.below(t.each(distance)), weight, *ahead);
-        }
-        course.restart(!inside);
     }
     streams.turn = (streams.turn + count) % LANES;
 }

@@ -164,7 +164,7 @@ enum Way {
 fn warm(planned: &Planned, kernel: Kernel, draws: u64) -> DrawBuffer {
     let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
     let mut buffer = DrawBuffer::new(channels);
-    let draws = draws.min(DrawBuffer::LENGTH as u64);
+    let draws = draws.min(DrawBuffer::length(channels) as u64);
     each_buffer(planned, kernel, (0, draws), |fill| fill(&mut buffer));
     buffer
 }
@@ -177,12 +177,13 @@ fn each_buffer(
     mut f: impl FnMut(&mut dyn FnMut(&mut DrawBuffer)),
 ) {
     let Ok(ready) = &planned.outcome else { return };
+    let length = DrawBuffer::length(ready.prediction.channels.len()) as u64;
     for block in 0..draws.div_ceil(BLOCK) {
         let mut streams = planned.streams(first + block);
         let mut left = (draws - block * BLOCK).min(BLOCK);
         while left > 0 {
             #[allow(clippy::cast_possible_truncation)] // at most a buffer's length
-            let count = left.min(DrawBuffer::LENGTH as u64) as usize;
+            let count = left.min(length) as usize;
             f(&mut |buffer| ready.experiment.fill_by(kernel, &mut streams, count, buffer));
             left -= count as u64;
         }

@@ -62,7 +62,7 @@ impl Sample {
         let mut sample = Self::about(&truths, draws);
         if planned.outcome.as_ref().is_ok_and(|ready| ready.experiment.order() == Order::Free) {
             // Draws of a request come sorted: only whole requests are a sample.
-            let length = DrawBuffer::LENGTH as u64;
+            let length = DrawBuffer::length(truths.len()) as u64;
             sample.looks.retain(|&look| look % length == 0 || look == draws);
         }
         sample

@@ -207,9 +207,9 @@ impl Inspected<'_> {
     pub fn first_draws(&self, count: u64) -> Vec<f64> {
         let mut streams = (self.streams)(0);
         let mut buffer = DrawBuffer::new(self.channels);
-        let mut values = Vec::new();
+        let (length, mut values) = (DrawBuffer::length(self.channels), Vec::new());
         while (values.len() as u64) < count {
-            self.experiment.fill(&mut streams, DrawBuffer::LENGTH, &mut buffer);
+            self.experiment.fill(&mut streams, length, &mut buffer);
             values.extend(buffer.values.iter().last().into_iter().flatten());
         }
         values

@@ -184,8 +184,9 @@ fn caught(
 fn same(planned: &Planned, twin: &dyn Experiment) -> bool {
     let Ok(ready) = &planned.outcome else { return false };
     let fill = |experiment: &dyn Experiment| {
-        let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-        experiment.fill(&mut planned.streams(0), DrawBuffer::LENGTH, &mut buffer);
+        let channels = ready.prediction.channels.len();
+        let mut buffer = DrawBuffer::new(channels);
+        experiment.fill(&mut planned.streams(0), DrawBuffer::length(channels), &mut buffer);
         let bits = |values: &Vec<f64>| values.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
         (buffer.values.iter().map(bits).collect::<Vec<_>>(), buffer.lookups)
     };
