@@ -39,8 +39,7 @@
 //! | single scattering: moments in fields | [`gathered`] | panels of distance | 290 |
 //! | 1, in a furnace | – | nothing is computed | – |
 //!
-//! Not among them: moments of walks in slabs of sharper phase functions than g = 0.7; and optical depths where
-//! chords are cut by the eye, as in pictures.
+//! Not among them: optical depths where chords are cut by the eye, as in pictures.
 //!
 //! Random parameters come from addresses of their own, so that a run finds the same numbers on every
 //! machine that rounds alike, whatever its threads.
