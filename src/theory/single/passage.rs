@@ -235,6 +235,24 @@ mod tests {
     }
 
     #[test]
+    fn losses_of_small_residuals_keep_their_digits() {
+        // σ̂(1 − w⁴) = 4r − 6r²/σ̂ + …, r = 1e-3: the difference would be off by ε σ̂ = 1e-7.
+        let (sampling, residual) = (1e9, 1e-3);
+        let weight = 1.0 - residual / sampling;
+        assert!((loss(4, 0.0, residual, weight) / 4e-3 - 1.0).abs() < 1e-11);
+        // Elsewhere both are one, beyond weights of −1, too, where losses are gains.
+        for (residual, control) in [(0.3, 0.0), (1.7, 0.2), (2.9, 0.1), (-0.4, 0.5)] {
+            let weight: f64 = 1.0 - residual;
+            for k in POWERS {
+                let apart = f64::from(k) * control + (1.0 - weight.powi(k));
+                let found = loss(k, control, residual, weight);
+                assert!((found - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
+                assert!(k > 4 || found.abs() <= size(control, residual, weight));
+            }
+        }
+    }
+
+    #[test]
     fn delta_tracking_of_a_homogeneous_segment() {
         // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with chance 1 − e^{−τ}.
         let length: f64 = 1.5;

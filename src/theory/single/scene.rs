@@ -118,14 +118,14 @@ impl<'a> Scene<'a> {
         // The shadow ray begins at s, which is rounded.
         let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
         shadow.error += shadow.size * place / along.hypot(self.problem.distance());
-        let source = self.problem.source_beyond(along);
+        let [source, rounding] = self.problem.source_beyond(along);
         Node {
             s,
             along,
             extinction: medium.extinction(s),
-            source: source.value,
+            source,
             transmittance: (-depth.value).exp(),
-            error: [source.error, depth.error + f64::EPSILON],
+            error: [rounding, depth.error + f64::EPSILON],
             camera: self.camera.passage(s),
             shadow,
         }
@@ -151,7 +151,7 @@ impl<'a> Scene<'a> {
                 let before = medium.optical_depth(Span::new(from, s)).value;
                 let beyond = problem.shadow_medium(s);
                 let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
-                let source = problem.source_beyond(along).value;
+                let source = problem.source_beyond(along)[0];
                 [medium.extinction(s) * source * (-(before + beyond)).exp()]
             });
             let [value] = found.value;
