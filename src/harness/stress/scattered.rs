@@ -69,7 +69,7 @@ struct Setting {
     length: f64,
     distance: f64,
     foot: f64,
-    /// σ̂/σ_t.
+    /// `σ̂/σ_t`.
     ratio: f64,
 }
 
