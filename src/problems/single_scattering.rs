@@ -73,6 +73,8 @@ struct Light {
     distance: f64,
     /// The angles, seen from the light and measured from its foot, of the ends of the support.
     angles: Span,
+    /// The angle between them.
+    width: f64,
 }
 
 impl SingleScattering {
@@ -93,9 +95,17 @@ impl SingleScattering {
         let medium = Medium::new(profile, ray.span(), support);
         let Lamp { position, power } = lamp;
         let [foot, distance] = lamp.seen_from(&ray)?;
-        let angle = |s: f64| elementary::atan((s - foot) / distance);
-        let angles = Span::new(angle(support.from), angle(support.to));
-        let light = Light { position, power, foot, distance, angles };
+        let ends = [support.from - foot, support.to - foot];
+        let angle = |along: f64| elementary::atan(along / distance);
+        let angles = Span::new(angle(ends[0]), angle(ends[1]));
+        let width = if ends[0] * ends[1] > 0.0 {
+            // Of a light beyond either end both angles are near a right one.
+            let apart = distance * support.length();
+            elementary::atan(apart / (distance * distance + ends[0] * ends[1]))
+        } else {
+            angles.length()
+        };
+        let light = Light { position, power, foot, distance, angles, width };
         let radiance = OnceLock::new();
         Ok(Self { volume, ray, medium, light, albedo, phase, radiance })
     }
@@ -132,7 +142,13 @@ impl SingleScattering {
     /// The squared distance of `p(s)` from the light.
     #[inline(always)]
     fn square(&self, s: f64) -> f64 {
-        let (along, across) = (s - self.light.foot, self.light.distance);
+        self.square_beyond(s - self.light.foot)
+    }
+
+    /// The same of the point so far beyond the foot.
+    #[inline(always)]
+    fn square_beyond(&self, along: f64) -> f64 {
+        let across = self.light.distance;
         along * along + across * across
     }
 
@@ -179,7 +195,33 @@ impl SingleScattering {
     #[inline(always)]
     #[must_use]
     pub fn equiangular_density(&self, s: f64) -> f64 {
-        self.light.distance / (self.light.angles.length() * self.square(s))
+        self.equiangular_density_beyond(s - self.light.foot)
+    }
+
+    /// The same at the point so far beyond the foot: next to the light `s` has lost the digits of its
+    /// distance from there.
+    #[inline(always)]
+    #[must_use]
+    pub fn equiangular_density_beyond(&self, along: f64) -> f64 {
+        self.light.distance / (self.light.width * self.square_beyond(along))
+    }
+
+    /// `a p(cos θ) Φ/(4π r²)` at the point so far beyond the foot, as [`source`](Self::source), and by how much
+    /// rounding may change it, relative to itself.
+    ///
+    /// ```text
+    /// ε (4 + |d ln p/d cos θ|)
+    /// ```
+    #[must_use]
+    pub fn source_beyond(&self, along: f64) -> [f64; 2] {
+        const STEP: f64 = 1e-7;
+        let square = self.square_beyond(along);
+        let cosine = (-along / square.sqrt()).clamp(-1.0, 1.0);
+        let phase = self.phase.value(cosine);
+        let beside = self.phase.value(if cosine > 0.0 { cosine - STEP } else { cosine + STEP });
+        let steep = if phase > 0.0 { (phase - beside).abs() / (STEP * phase) } else { 0.0 };
+        let source = self.albedo * phase * self.light.power / (4.0 * PI * square);
+        [source, f64::EPSILON * (4.0 + steep)]
     }
 
     /// The ray from `p(s)` to the light, and its stretch within the bounds of the volume; `None`
@@ -270,5 +312,48 @@ impl Problem for SingleScattering {
 
     fn medium(&self) -> &Medium {
         &self.medium
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Bounds;
+    use crate::media::constant::Constant;
+    use crate::phase::{henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
+
+    fn lit(phase: Phase, [distance, foot]: [f64; 2]) -> SingleScattering {
+        let field = Volume::Constant(Constant::new(1.0, Bounds::Everywhere));
+        let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("a direction");
+        let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
+        SingleScattering::new(Arc::new(field), ray, lamp, 1.0, phase).expect("off the line")
+    }
+
+    #[test]
+    fn a_narrow_angle_keeps_its_digits() {
+        // Seen from 1e-6 beside the line and 1 before the ray: Δθ = D(1 − 1/2) − D³(1 − 1/8)/3.
+        let problem = lit(Phase::Isotropic(Isotropic), [1e-6, -1.0]);
+        let exact = 1e-6 / ((0.5e-6 - 0.875e-18 / 3.0) * (1.0 + 1e-12));
+        assert!((problem.equiangular_density_beyond(1.0) / exact - 1.0).abs() < 2e-15);
+        assert!((problem.angles().length() / 0.5e-6 - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn next_to_the_light_the_distance_from_its_foot_counts() {
+        let problem = lit(Phase::Isotropic(Isotropic), [1e-8, 0.7]);
+        let [source, error] = problem.source_beyond(1e-8);
+        let exact = 1.0 / (16.0 * PI * PI * 2e-16);
+        assert!((source / exact - 1.0).abs() < error && error < 1e-15);
+        assert!((problem.source(0.7 + 1e-8) / exact - 1.0).abs() > 1e-10);
+        assert_eq!(problem.source(0.5), problem.source_beyond(0.5 - problem.foot())[0]);
+    }
+
+    #[test]
+    fn steep_phase_functions_round_more() {
+        let sharp = HenyeyGreenstein::new(0.99).expect("in range");
+        let problem = lit(Phase::HenyeyGreenstein(sharp), [1e-3, 0.5]);
+        // d ln p/d cos θ = 3g/(1 + g² − 2g cos θ), 3e4 straight ahead.
+        let [_, error] = problem.source_beyond(-0.5);
+        assert!(error > 2e4 * f64::EPSILON && error < 4e4 * f64::EPSILON, "{error:e}");
     }
 }

@@ -91,6 +91,7 @@ impl Estimator<SingleScattering> for DeltaTracking {
         let technique = Technique {
             density: &|node| node.extinction * node.transmittance,
             gain: &|node| node.source,
+            blur: &|node| node.error[1],
             found: Some(Found {
                 at: &|node| lookups_at(setup, node),
                 none: lookups_of_escape(setup),

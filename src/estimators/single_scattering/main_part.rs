@@ -10,8 +10,9 @@
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup};
 use crate::media::{Control, Piecewise};
-use crate::numeric::{Lane, Span};
+use crate::numeric::{Known, Lane, Span};
 use crate::problems::{Problem, SingleScattering};
+use crate::theory::single::predict::DENSITY;
 
 /// The main part.
 #[derive(Clone, Copy)]
@@ -47,9 +48,19 @@ impl<'a> MainPart<'a> {
     #[inline(always)]
     #[must_use]
     pub fn density(&self, s: f64) -> f64 {
+        self.pieces.value(s) * Lane::exp(-self.depth(s).value) / self.absorbed
+    }
+
+    #[inline(always)]
+    fn depth(&self, s: f64) -> Known {
         let before = Span::new(self.support.from, s);
-        let depth = crate::media::OpticalDepth::optical_depth(self.pieces, before).value;
-        self.pieces.value(s) * Lane::exp(-depth) / self.absorbed
+        crate::media::OpticalDepth::optical_depth(self.pieces, before)
+    }
+
+    /// A relative error bound of the density.
+    #[must_use]
+    pub fn blur(&self, s: f64) -> f64 {
+        DENSITY + self.depth(s).error
     }
 }
 

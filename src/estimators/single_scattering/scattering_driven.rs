@@ -59,6 +59,7 @@ impl Estimator<SingleScattering> for ScatteringDriven {
         let technique = Technique {
             density: &|node| density(node.s),
             gain: &|node| node.extinction * node.source / density(node.s),
+            blur: &|node| main.map_or(0.0, |main| main.blur(node.s)),
             found: None,
         };
         let scene = self.connection.scene(setup, main_part::cuts(setup));

@@ -25,7 +25,7 @@ use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::single::predict::Found;
+use crate::theory::single::predict::{DENSITY, Found};
 use crate::theory::single::{Along, Node, Points, Technique, Tracking};
 
 /// Equiangular points and delta tracking.
@@ -57,15 +57,17 @@ impl Estimator<SingleScattering> for SourceDeltaMis {
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let source = |node: &Node| setup.problem.equiangular_density(node.s);
+        let source = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
         let collision = |node: &Node| node.extinction * node.transmittance;
         let gain = |node: &Node| node.extinction * node.source / (source(node) + collision(node));
         let walked = |node: &Node| node.transmittance * gain(node);
+        let blur = |node: &Node| node.error[1] + DENSITY;
         let scene = self.connection().scene(setup, setup.sampling.knots().to_vec());
-        let first = Technique { density: &source, gain: &gain, found: None };
+        let first = Technique { density: &source, gain: &gain, blur: &blur, found: None };
         let second = Technique {
             density: &collision,
             gain: &walked,
+            blur: &blur,
             found: Some(Found {
                 at: &|node| lookups_at(setup, node),
                 none: lookups_of_escape(setup),

@@ -23,6 +23,7 @@ use crate::media::Extinction;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
+use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Points, Technique};
 
 /// Source-driven scattering.
@@ -61,8 +62,11 @@ impl Estimator<SingleScattering> for SourceDriven {
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
         let problem = &setup.problem;
         let technique = Technique {
-            density: &|node| problem.equiangular_density(node.s),
-            gain: &|node| node.extinction * node.source / problem.equiangular_density(node.s),
+            density: &|node| problem.equiangular_density_beyond(node.along),
+            gain: &|node| {
+                node.extinction * node.source / problem.equiangular_density_beyond(node.along)
+            },
+            blur: &|_| DENSITY,
             found: None,
         };
         Points::of(&self.connection.scene(setup, Vec::new()), &technique).prediction()

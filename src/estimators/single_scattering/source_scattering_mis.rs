@@ -23,6 +23,7 @@ use crate::media::Extinction;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
+use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Node, Points, Technique};
 
 /// Source- and scattering-driven points.
@@ -53,12 +54,13 @@ impl Estimator<SingleScattering> for SourceScatteringMis {
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
         let main = MainPart::of(setup);
-        let source = |node: &Node| setup.problem.equiangular_density(node.s);
+        let source = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
         let scattering = |node: &Node| main.map_or(0.0, |main| main.density(node.s));
         let gain = |node: &Node| node.extinction * node.source / (source(node) + scattering(node));
+        let blur = |node: &Node| main.map_or(DENSITY, |main| main.blur(node.s));
         let scene = self.connection.scene(setup, main_part::cuts(setup));
         let points = |density: &dyn Fn(&Node) -> f64| {
-            Points::of(&scene, &Technique { density, gain: &gain, found: None })
+            Points::of(&scene, &Technique { density, gain: &gain, blur: &blur, found: None })
         };
         points(&source).plus(&points(&scattering)).prediction()
     }

@@ -1,4 +1,5 @@
-//! Single scattering in fields that vary: moments at one point and at every collision, by panels of s.
+//! Single scattering in fields that vary: moments at one point, at every collision and at points that share a
+//! walk, with a control or without, by panels of s.
 //!
 //! Theory halves panels of the stretched variable and finds the losses of the way in panels of their own. Here
 //! panels of s double away from the light and from both ends of the ray, losses are sums over the same nodes,
@@ -16,6 +17,7 @@ use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Span, Wide};
 use crate::problems::{Problem, SingleScattering};
 use crate::theory::Mesh;
+use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Tracking, walks};
 use crate::theory::volterra::binomial;
 
@@ -28,12 +30,11 @@ const STEPS: u32 = 40;
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "gathered", part);
-        let range =
-            "four fields, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
+        let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
         let mut rows = ["variance", "fourth moment"].map(|what| {
             Row::new(format!("single scattering in fields, {what}"), range, Measure::OfStated, 1.0)
         });
-        for _ in 0..effort.of(u32::from(part % 2 == 0), 3) {
+        for _ in 0..effort.of(u32::from(part % 2 == 0), 9) {
             trial(dice, &mut rows);
         }
         rows.to_vec()
@@ -48,9 +49,11 @@ struct At {
     extinction: f64,
     source: f64,
     density: f64,
-    /// τ, and A of the walk for k = 0 … 4.
+    /// τ, and A of the walk for k = 0 … 4, of which the first is τ.
     depth: f64,
     losses: [f64; 5],
+    /// What a collision leaves of a weight, `1 − (σ_t − σ_c)/σ̂`.
+    left: f64,
     /// `e^{−B}`.
     shadow: [f64; 5],
 }
@@ -58,7 +61,9 @@ struct At {
 fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
     let (what, problem) = field(dice);
     let (scale, shadow_scale) = (dice.sized(-0.2, 0.7), dice.sized(-0.2, 0.7));
-    let kind = dice.below(9);
+    let kind = dice.below(12);
+    let share = if dice.below(2) == 0 { 0.0 } else { dice.between(0.0, 0.8) };
+    let count = 1 + dice.below(8);
     let Some(problem) = problem.filter(|problem| !problem.medium().support().is_empty()) else {
         for row in rows {
             row.skip(|| what.clone());
@@ -75,25 +80,38 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
         _ => Tracking::Delta { sampling: shadow_scale.max(1.0) * most },
     };
     let flown = Piecewise::constant(sampling, support);
+    let held = share * largest;
+    let control = match held {
+        0.0 => Control::None,
+        held => Control::Pieces(Piecewise::constant(held, support)),
+    };
     let scene = |along| {
-        let camera = Camera::new(&mesh, &flown, &Control::None, along);
+        let camera = Camera::new(&mesh, &flown, &control, along);
         Scene::new(&problem, camera, tracking, Vec::new())
     };
-    let density = |node: &Node| problem.equiangular_density(node.s);
+    let density = |node: &Node| problem.equiangular_density_beyond(node.along);
     let gain = |node: &Node| node.extinction * node.source / density(node);
     let by_angle = |along| {
-        Points::of(&scene(along), &Technique { density: &density, gain: &gain, found: None })
+        let blur = |_: &Node| DENSITY;
+        Points::of(
+            &scene(along),
+            &Technique { density: &density, gain: &gain, blur: &blur, found: None },
+        )
     };
-    let nodes = nodes(&problem, sampling, tracking);
+    let nodes = nodes(&problem, [sampling, held], tracking);
     let (name, points, raw) = match kind / 3 {
         0 => ("by angle, exact", by_angle(Along::Exact), at_point(&nodes, false)),
         1 => ("by angle, ratio", by_angle(Along::Ratio), at_point(&nodes, true)),
-        _ => {
+        2 => {
             let points = walks::at_collisions(&scene(Along::Ratio));
             ("at collisions", points, at_collisions(&nodes, sampling))
         }
+        _ => {
+            let points = walks::at_points(&scene(Along::Ratio), count, &density);
+            ("shared walk", points, shared(&nodes, count))
+        }
     };
-    let place = || format!("{name}, σ̂ = {sampling:e}, {tracking:?}, {what}");
+    let place = || format!("{name}, σ̂ = {sampling:e}, σ_c = {held:e}, {tracking:?}, {what}");
     match points.prediction().channels[0].moments {
         Some(known) => {
             let exact = central(raw.map(Wide::from), Wide::from(known.scale));
@@ -110,7 +128,11 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
 }
 
 /// All nodes, panel by panel.
-fn nodes(problem: &SingleScattering, sampling: f64, tracking: Tracking) -> Vec<Vec<At>> {
+fn nodes(
+    problem: &SingleScattering,
+    [sampling, control]: [f64; 2],
+    tracking: Tracking,
+) -> Vec<Vec<At>> {
     let (medium, rule) = (problem.medium(), GaussLegendre::new(16));
     let from = medium.support().from;
     let mut passed = [0.0; 5];
@@ -118,7 +140,9 @@ fn nodes(problem: &SingleScattering, sampling: f64, tracking: Tracking) -> Vec<V
         let width = ends[1] - ends[0];
         let places: Vec<f64> = rule.nodes.iter().map(|x| ends[0] + width * x).collect();
         let extinctions = medium.extinctions(&places);
-        let lost = |k: i32, sigma: f64| sampling * (1.0 - (1.0 - sigma / sampling).powi(k));
+        let left = |sigma: f64| 1.0 - (sigma - control) / sampling;
+        let lost =
+            |k: i32, sigma: f64| f64::from(k) * control + sampling * (1.0 - left(sigma).powi(k));
         let so_far = |weights: &[f64]| -> [f64; 5] {
             std::array::from_fn(|k| {
                 let rates =
@@ -133,6 +157,7 @@ fn nodes(problem: &SingleScattering, sampling: f64, tracking: Tracking) -> Vec<V
             density: problem.equiangular_density(s),
             depth: medium.optical_depth(Span::new(from, s)).value,
             losses: so_far(&rule.running[i]),
+            left: left(extinctions[i]),
             shadow: shadow(problem.shadow_medium(s).as_ref(), tracking, &rule),
         };
         let found = places.iter().enumerate().map(at).collect();
@@ -180,38 +205,94 @@ fn at_point(nodes: &[Vec<At>], walks: bool) -> [f64; 4] {
     sums
 }
 
-fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
+/// `∫ₛ f dt` at every node and over all, f told the panel and the place.
+fn running(nodes: &[Vec<At>], f: impl Fn(&At, usize, usize) -> f64) -> (Vec<Vec<f64>>, f64) {
     let rule = GaussLegendre::new(16);
+    let mut whole = 0.0;
+    let mut after: Vec<Vec<f64>> = Vec::with_capacity(nodes.len());
+    for (p, panel) in nodes.iter().enumerate().rev() {
+        let rates: Vec<f64> = panel.iter().enumerate().map(|(i, at)| f(at, p, i)).collect();
+        let width: f64 = panel.iter().map(|at| at.weight).sum();
+        let sum = |weights: &[f64]| -> f64 {
+            width * weights.iter().zip(&rates).map(|(w, rate)| w * rate).sum::<f64>()
+        };
+        let here = sum(&rule.weights);
+        after.push((0..panel.len()).map(|i| whole + here - sum(&rule.running[i])).collect());
+        whole += here;
+    }
+    after.reverse();
+    (after, whole)
+}
+
+fn lost(at: &At, k: usize) -> f64 {
+    if k == 1 { at.depth } else { at.losses[k] }
+}
+
+fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
     // V_0 … V_4 at all nodes.
     let mut known: Vec<Vec<Vec<f64>>> =
         vec![nodes.iter().map(|panel| vec![1.0; panel.len()]).collect()];
     let mut powers = [0.0; 4];
     for (k, whole) in (1..5).zip(&mut powers) {
-        let mut worth: Vec<Vec<f64>> = Vec::with_capacity(nodes.len());
-        for (p, panel) in nodes.iter().enumerate().rev() {
-            let lost = |at: &At, k: usize| if k == 1 { at.depth } else { at.losses[k] };
-            let rate = |(i, at): (usize, &At)| -> f64 {
-                let (gain, weight) =
-                    (at.extinction * at.source / sampling, 1.0 - at.extinction / sampling);
-                let term = |j: usize| {
-                    let [up, left] = [j, k - j].map(|k| i32::try_from(k).unwrap_or(0));
-                    let apart = (lost(at, k - j) - lost(at, k)).exp();
-                    let scored = gain.powi(up) * at.shadow[j] * weight.powi(left);
-                    binomial(k, j) * scored * apart * known[k - j][p][i]
-                };
-                sampling * (1..=k).map(term).sum::<f64>()
+        let (after, all) = running(nodes, |at, p, i| {
+            let gain = at.extinction * at.source / sampling;
+            let term = |j: usize| {
+                let [up, left] = [j, k - j].map(|k| i32::try_from(k).unwrap_or(0));
+                let apart = (lost(at, k - j) - lost(at, k)).exp();
+                let scored = gain.powi(up) * at.shadow[j] * at.left.powi(left);
+                binomial(k, j) * scored * apart * known[k - j][p][i]
             };
-            let rates: Vec<f64> = panel.iter().enumerate().map(rate).collect();
-            let width: f64 = panel.iter().map(|at| at.weight).sum();
-            let sum = |weights: &[f64]| -> f64 {
-                width * weights.iter().zip(&rates).map(|(w, rate)| w * rate).sum::<f64>()
-            };
-            let here = sum(&rule.weights);
-            worth.push((0..panel.len()).map(|i| *whole + here - sum(&rule.running[i])).collect());
-            *whole += here;
-        }
-        worth.reverse();
-        known.push(worth);
+            sampling * (1..=k).map(term).sum::<f64>()
+        });
+        *whole = all;
+        known.push(after);
     }
     powers
+}
+
+/// At so many points that share a walk: from `E[A₁^{n₁} A₂^{n₂} …]`, `A_m = ∫ p (T̂ σ_t S/p)^m E[T̂_shadow^m] ds`,
+/// by how many ways points coincide.
+fn shared(nodes: &[Vec<At>], count: usize) -> [f64; 4] {
+    let mut known: Vec<([usize; 4], Vec<Vec<f64>>, f64)> = Vec::new();
+    for order in walks::ORDERS {
+        let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
+        let (after, whole) = running(nodes, |at, p, i| {
+            let gain = at.extinction * at.source / at.density;
+            let term = |m: usize| {
+                let mut lower = order;
+                lower[m - 1] -= 1;
+                let rest = known.iter().find(|(order, ..)| *order == lower);
+                let rest = rest.map_or(1.0, |(_, after, _)| after[p][i]);
+                let apart = (lost(at, degree - m) - lost(at, degree)).exp();
+                let scored = gain.powi(i32::try_from(m).unwrap_or(0)) * at.shadow[m];
+                order[m - 1] as f64 * at.density * scored * apart * rest
+            };
+            (1..5).filter(|&m| order[m - 1] > 0).map(term).sum()
+        });
+        known.push((order, after, whole));
+    }
+    // Of n points so many may be all different.
+    let ways = |points: usize| (0..points).map(|i| count as f64 - i as f64).product::<f64>();
+    let of = |degree: usize, points: usize| {
+        let fits = move |(order, ..): &&([usize; 4], Vec<Vec<f64>>, f64)| {
+            let all: usize = (1..5).map(|m| m * order[m - 1]).sum();
+            all == degree && order.iter().sum::<usize>() == points
+        };
+        known.iter().filter(fits)
+    };
+    let partitions = |order: &[usize; 4], degree: usize| {
+        // Set partitions of the factors into blocks of these sizes.
+        let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
+        let same = |m: usize| factorial(m).powi(i32::try_from(order[m - 1]).unwrap_or(0));
+        let alike: f64 = (1..5).map(|m| same(m) * factorial(order[m - 1])).product();
+        factorial(degree) / alike
+    };
+    [1, 2, 3, 4].map(|degree| {
+        let kinds =
+            (1..=degree).flat_map(|points| of(degree, points).map(move |one| (points, one)));
+        let sum: f64 = kinds
+            .map(|(points, (order, _, whole))| ways(points) * partitions(order, degree) * whole)
+            .sum();
+        sum / (count as f64).powi(i32::try_from(degree).unwrap_or(0))
+    })
 }

@@ -26,22 +26,20 @@
 //! | rods: truths, moments, lookups | [`rods`], [`costs`] | closed forms, 32 digits | 94,000; 2,200; 2,300 |
 //! | rods: orders, flux, absorption; moments | [`inside`] | power series, 32 digits | 4,000; 1,400 |
 //! | slabs: R, T, collisions | [`slabs`] | twice the resolution; ordinates, 32 digits | 1,150; 1,540 |
-//! | walks in slabs: moments | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation | 1,500; 1,020; 510 |
-//! | walks in slabs: lookups | [`walks`] | ordinates, 32 digits; more directions | 380; 260 |
-//! | light in balls | [`balls`] | ordinates, 32 digits; white light; a finer solution | 1,150; 1,540; 1,540 |
+//! | walks in slabs: moments | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation | 1,980; 1,930; 1,540 |
+//! | walks in slabs: lookups | [`walks`] | ordinates, 32 digits; more directions | 500; 480 |
+//! | light in balls | [`balls`] | ordinates, 32 digits; white light; a finer solution | 1,150; 1,540; 1,320 |
 //! | point sources in balls: no verdict asks | [`balls`] | a finer solution | 1,020 |
 //! | Case's formula, squared distances | [`mod@infinite`] | trapezoidal rule, 32 digits | 3,070; 3,840 |
 //! | H-function | [`mod@infinite`] | trapezoidal rule, 32 digits | 1,540 |
 //! | `∫σ_t dV` | [`contents`] | closed forms, 32 digits; rules exact in cells | 2,080; 1,020 |
 //! | radiance of single scattering | [`scattering`] | 32 digits; panels of distance | 1,270; 1,010 |
-//! | single scattering: moments of one point, of walks | [`scattered`] | power series, 32 digits | 530; 570 |
-//! | single scattering: lookups | [`scattered`] | power series, 32 digits | 490 |
-//! | single scattering: moments in fields | [`gathered`] | panels of distance | 100 |
+//! | single scattering: moments of one point, of walks | [`scattered`] | power series, 32 digits | 600; 650 |
+//! | single scattering: lookups | [`scattered`] | power series, 32 digits | 580 |
+//! | single scattering: moments in fields | [`gathered`] | panels of distance | 290 |
 //! | 1, in a furnace | – | nothing is computed | – |
 //!
-//! Not among them: moments of walks in slabs of sharper phase functions than g = 0.7; in fields that vary,
-//! those of single scattering by one walk for several points, or with controls; and optical depths where chords
-//! are cut by the eye, as in pictures.
+//! Not among them: optical depths where chords are cut by the eye, as in pictures.
 //!
 //! Random parameters come from addresses of their own, so that a run finds the same numbers on every
 //! machine that rounds alike, whatever its threads.

@@ -62,12 +62,13 @@ fn critical([a, b]: [Wide; 2]) -> f64 {
     if b.high == 0.0 {
         return f64::INFINITY;
     }
-    let (a, square) = (a.value(), ((a - b) * (a + b)).value());
+    let (a, b, square) = (a.value(), b.value().abs(), ((a - b) * (a + b)).value());
     let root = square.abs().sqrt();
     if square < 0.0 {
         root.atan2(-a) / root
     } else if a < 0.0 {
-        if root > 0.0 { (root / -a).atanh() / root } else { -1.0 / a }
+        // artanh(root/|A|), of which |A| − root = B²/(|A| + root) would leave nothing.
+        if root > 0.0 { ((root - a) / b).ln() / root } else { -1.0 / a }
     } else {
         f64::INFINITY
     }
@@ -233,6 +234,17 @@ fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn echoes_of_next_to_nothing_are_counted() {
+        // ln(44/2.84e-14)/22: the tangent of the same rounds to 1 and leaves 0.85.
+        let length = critical([-22.0, 2.84e-14].map(Wide::from));
+        assert!((length - (44.0_f64 / 2.84e-14).ln() / 22.0).abs() < 1e-14 && length > 1.5);
+        assert!(
+            (critical([-2.0, 1.0].map(Wide::from)) - 0.75_f64.sqrt().atanh() / 3f64.sqrt()).abs()
+                < 1e-15
+        );
+    }
 
     /// Its E[X⁴] is `e^{107}` times T⁴: grids of two hundred steps gave a negative fourth moment, and an error
     /// that left it out.

@@ -20,35 +20,90 @@ use crate::media::{Control, Piecewise};
 use crate::numeric::Wide;
 use crate::problems::Problem;
 use crate::theory::Mesh;
+use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Along, Camera, Node, Scene, Tracking};
 
 const PARTS: u64 = 16;
+/// Techniques that take turns where rays are deep.
+const TECHNIQUES: u64 = 6;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(PARTS, |part| {
+        let [even, odd] = [0, 1].map(|rest| effort.of(u64::from(part % 2 == rest), 6));
+        let shallow = "homogeneous, 3 shadows, residuals, σ_t ℓ = 1e-12 … 10, σ̂/σ_t = 0.5 … 1e4, \
+                       light 1e-6 … 10 ℓ away";
         let dice = &mut Dice::new(seed, "scattered", part);
-        let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 1e-3 … 10, σ̂/σ_t = 0.5 … 10, \
-                     light 1e-2 … 10 ℓ away";
-        let row = |what: &str| Row::new(what, range, Measure::OfStated, 1.0);
-        let mut kinds = ["at one point", "of walks"].map(|kind| {
-            ["variance", "fourth moment", "lookups"]
-                .map(|what| row(&format!("single scattering {kind}, {what}")))
-        });
-        for _ in 0..effort.of(u32::from(part % 2 == 0), 6) {
-            trial(dice, &mut kinds);
+        let mut thin = kinds(shallow);
+        for _ in 0..even {
+            let setting = Setting::shallow(dice);
+            trial(dice, &setting, &|_| true, &mut thin);
         }
-        kinds.into_iter().flatten().collect()
+        let deep = "homogeneous, 3 shadows, residuals, σ_t ℓ = 10 … 1e3, σ̂/σ_t = 0.3 … 1e3, \
+                    light 1e-4 … 100 mean free paths away";
+        let dice = &mut Dice::new(seed, "scattered, deep", part);
+        let mut thick = kinds(deep);
+        for i in 0..odd {
+            let setting = Setting::deep(dice);
+            // A chain through many mean free paths takes seconds for all techniques.
+            let turn = (part / 2 + i) % TECHNIQUES;
+            trial(dice, &setting, &|technique| technique == turn, &mut thick);
+        }
+        thin.into_iter().chain(thick).flatten().collect()
     })
 }
 
-fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
-    let (albedo, length) = (dice.between(0.1, 1.0), dice.sized(-1.0, 1.0));
-    let sigma = dice.sized(-3.0, 1.0) / length;
-    let distance = dice.sized(-2.0, 1.0) * length;
-    let foot = dice.between(-0.3, 1.3) * length;
-    let ratio = dice.sized(-0.3, 1.0);
+/// Rows of techniques that scatter at one point, and at many of a walk.
+fn kinds(range: &str) -> [[Row; 3]; 2] {
+    let row = |what: &str| Row::new(what, range, Measure::OfStated, 1.0);
+    ["at one point", "of walks"].map(|kind| {
+        ["variance", "fourth moment", "lookups"]
+            .map(|what| row(&format!("single scattering {kind}, {what}")))
+    })
+}
+
+/// A ray and a light beside it.
+struct Setting {
+    sigma: f64,
+    length: f64,
+    distance: f64,
+    foot: f64,
+    /// `σ̂/σ_t`.
+    ratio: f64,
+}
+
+impl Setting {
+    fn shallow(dice: &mut Dice) -> Self {
+        let length = dice.sized(-1.0, 1.0);
+        let depth =
+            if dice.below(4) == 0 { dice.sized(-12.0, -3.0) } else { dice.sized(-3.0, 1.0) };
+        let away = if dice.below(4) == 0 { dice.sized(-6.0, -2.0) } else { dice.sized(-2.0, 1.0) };
+        let foot = dice.between(-0.3, 1.3) * length;
+        let most = if dice.below(4) == 0 { 4.0 } else { 1.0 };
+        let ratio = dice.sized(-0.3, most);
+        Self { sigma: depth / length, length, distance: away * length, foot, ratio }
+    }
+
+    /// With a light that is not too many mean free paths away.
+    fn deep(dice: &mut Dice) -> Self {
+        let (length, depth) = (dice.sized(-1.0, 1.0), dice.sized(1.0, 3.0));
+        let path = length / depth;
+        let distance = dice.sized(-4.0, 2.0) * path;
+        let foot = (dice.sized(-2.0, 2.0) * path).min(1.3 * length) * dice.sign();
+        let ratio = if dice.below(4) == 0 { dice.sized(1.0, 3.0) } else { dice.sized(-0.5, 1.0) };
+        Self { sigma: depth / length, length, distance, foot, ratio }
+    }
+}
+
+fn trial(
+    dice: &mut Dice,
+    setting: &Setting,
+    is_wanted: &dyn Fn(u64) -> bool,
+    kinds: &mut [[Row; 3]; 2],
+) {
+    let &Setting { sigma, length, distance, foot, ratio } = setting;
+    let albedo = dice.between(0.1, 1.0);
     let mut residual = || if dice.below(2) == 0 { 0.0 } else { sigma * dice.between(0.0, 1.2) };
     let (control, shadow_control) = (residual(), residual());
     let sampling = sigma * ratio;
@@ -71,7 +126,7 @@ fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
         return;
     };
     let mut case = Case::new(&problem, (sigma, length), [sampling, control], tracking);
-    let mesh = Mesh::even(problem.medium().clone(), 1);
+    let mesh = Mesh::new(problem.medium().clone());
     let flown = Piecewise::constant(sampling, mesh.support());
     let main = match control {
         0.0 => Control::None,
@@ -82,23 +137,39 @@ fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
         let control = if along == Along::Ratio { &main } else { &Control::None };
         Scene::new(&problem, Camera::new(&mesh, &flown, control, along), tracking, Vec::new())
     };
-    let mut wanted = vec![case.at_collisions(&scene(Along::Ratio))];
-    wanted.push(case.resampled(&scene(Along::Ratio), tracking));
-    wanted.push(case.at_points(&scene(Along::Ratio), &problem, count));
+    let walk = scene(Along::Ratio);
+    let mut wanted = Vec::new();
+    if is_wanted(0) {
+        wanted.push(case.at_collisions(&walk));
+    }
+    if is_wanted(1) {
+        wanted.push(case.resampled(&walk, tracking));
+    }
+    if is_wanted(2) {
+        wanted.push(case.at_points(&walk, &problem, count));
+    }
     let mut alongs = vec![Along::Exact, Along::Ratio];
     if sampling >= sigma {
         alongs.push(Along::Delta);
-        wanted.push(case.found(&scene(Along::Exact)));
+        if is_wanted(3) {
+            wanted.push(case.found(&scene(Along::Exact)));
+        }
     }
-    let along = alongs[dice.below(alongs.len())];
-    let by_angle = |node: &Node| problem.equiangular_density(node.s);
-    let from = ("by angle", &scene(along), along);
-    wanted.push(case.at_point(from, &by_angle, (-2, Wide::default())));
-    let found = -(-sampling * length).exp_m1();
-    let by_depth = |node: &Node| sampling * (-sampling * node.s).exp() / found;
-    let along = alongs[dice.below(alongs.len())];
-    let from = ("by depth", &scene(along), along);
-    wanted.push(case.at_point(from, &by_depth, (0, Wide::from(sampling))));
+    let [by_angle, by_depth] = [(); 2].map(|()| alongs[dice.below(alongs.len())]);
+    if is_wanted(4) {
+        let density = |node: &Node| problem.equiangular_density_beyond(node.along);
+        let from = ("by angle", &scene(by_angle), by_angle);
+        wanted.push(case.at_point(from, [&density, &|_| DENSITY], (-2, Wide::default())));
+    }
+    if is_wanted(5) {
+        // Points are found in closed form: no deeper than −ln 2⁻⁵³ = 37.
+        let rate = sampling.min(30.0 / length);
+        let found = -(-rate * length).exp_m1();
+        let density = |node: &Node| rate * (-rate * node.s).exp() / found;
+        let blur = |node: &Node| DENSITY + f64::EPSILON * rate * node.s;
+        let from = ("by depth", &scene(by_depth), by_depth);
+        wanted.push(case.at_point(from, [&density, &blur], (0, Wide::from(rate))));
+    }
     let values = case.chain.solve();
     for Wanted { name, is_walk, found, moments, lookups } in wanted {
         let place = || format!("{name}, {}", place());
@@ -106,15 +177,22 @@ fn trial(dice: &mut Dice, kinds: &mut [[Row; 3]; 2]) {
         let prediction = found.prediction();
         if let Some(known) = prediction.channels[0].moments {
             let exact = central(moments(&values), Wide::from(known.scale));
-            second.see(exact[0].relative_error(known.relative[0]) / known.error, place);
-            fourth.see(exact[1].relative_error(known.relative[2]) / known.error, place);
+            let relative = [known.relative[0], known.relative[2]];
+            for ((row, found), exact) in [second, fourth].into_iter().zip(relative).zip(exact) {
+                // Beyond the range of doubles for both.
+                let is_beyond = found == f64::INFINITY && !exact.high.is_finite();
+                let off = if is_beyond { 0.0 } else { exact.relative_error(found) };
+                row.see(off / known.error, place);
+            }
         } else {
             // A spread that rounding hides is not told.
             second.skip(place);
             fourth.skip(place);
         }
         match prediction.lookups.zip(lookups) {
-            Some((law, lookups)) => counts.see(of_stated(stated(&law), lookups(&values)), place),
+            Some((law, lookups)) => {
+                counts.see(of_stated(stated(&law), lookups(&values)), place);
+            }
             None => counts.skip(place),
         }
     }

@@ -41,7 +41,7 @@ pub(super) fn lights(dice: &mut Dice) -> Vec<Light> {
 }
 
 pub(super) fn phase(dice: &mut Dice) -> Phase {
-    let asymmetry = dice.between(-0.7, 0.7);
+    let asymmetry = dice.between(-0.935, 0.935);
     match dice.below(4) {
         0 => Phase::Isotropic(Isotropic),
         1 => Phase::Rayleigh(Rayleigh),
@@ -61,7 +61,7 @@ fn see(row: &mut Row, found: &slab::Answer, exact: [Wide; 3], place: &dyn Fn() -
 
 /// Adding and doubling with more directions and a thinner first layer.
 fn finer(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.7; twice the resolution";
+    let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.935; twice the resolution";
     let mut row = Row::new("slab, adding and doubling", range, Measure::OfStated, 1.0);
     let finer =
         Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14, ..Resolution::FINE };

@@ -209,7 +209,7 @@ impl Case {
 
     /// At points that share a walk.
     pub fn at_points(&mut self, scene: &Scene, problem: &SingleScattering, count: usize) -> Wanted {
-        let density = |node: &Node| problem.equiangular_density(node.s);
+        let density = |node: &Node| problem.equiangular_density_beyond(node.along);
         let found = walks::at_points(scene, count, &density);
         let mut known: Vec<usize> = Vec::new();
         for order in walks::ORDERS {
@@ -278,6 +278,7 @@ impl Case {
         let technique = Technique {
             density: &|node| node.extinction * node.transmittance,
             gain: &|node| node.source,
+            blur: &|node| node.error[1],
             found: Some(Found {
                 at: &|node| added(added([1.0; 5], poisson(nulls(node.s))), node.shadow.lookups),
                 none: {
@@ -306,11 +307,11 @@ impl Case {
     pub fn at_point(
         &mut self,
         (name, scene, along): (&'static str, &Scene, Along),
-        density: &dyn Fn(&Node) -> f64,
+        [density, blur]: [&dyn Fn(&Node) -> f64; 2],
         (n, a): (i32, Wide),
     ) -> Wanted {
         let gain = |node: &Node| node.extinction * node.source / density(node);
-        let found = Points::of(scene, &Technique { density, gain: &gain, found: None });
+        let found = Points::of(scene, &Technique { density, gain: &gain, blur, found: None });
         let none = Wide::default();
         let before = |k: usize, case: &Self| match along {
             Along::Exact => case.sigma * Wide::from(k as f64),

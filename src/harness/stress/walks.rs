@@ -43,9 +43,9 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(PARTS, |part| {
         let dice = &mut Dice::new(seed, "walks", part);
         let some = |every: u64, full: u32| effort.of(u32::from(part % every == 0), full);
-        let mut rows = even(dice, some(4, 3));
-        rows.extend(finer(dice, some(8, 2)));
-        rows.extend(graded(dice, some(8, 1)));
+        let mut rows = even(dice, some(4, 4));
+        rows.extend(finer(dice, some(8, 4)));
+        rows.extend(graded(dice, some(8, 3)));
         rows
     })
 }
@@ -206,7 +206,7 @@ fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
 
 /// Layers of other ratios and other phase functions: the same slabs with more directions.
 fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "1 … 3 layers, |g| to 0.7, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
+    let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
     let mut kinds = Kinds::new(range);
     let mut lookups = Row::new("lookups of walks in a slab", range, Measure::OfStated, 1.0);
     for _ in 0..trials {

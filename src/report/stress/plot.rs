@@ -64,9 +64,9 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
 }
 
 fn entry((index, curve): (usize, &&Curve)) -> Entry {
-    let Style { colour, dash, marker } = Style::of(index);
+    let Style { colour, marker, .. } = Style::of(index);
     let label = curve.estimator.to_owned();
-    Entry { label, line: Some((dash, 2.0)), marker: Some(marker), colour }
+    Entry { label, line: Some((&[], 2.0)), marker: Some(marker), colour }
 }
 
 /// What is drawn of a point: below a thousandth the bias is nothing.
@@ -90,10 +90,11 @@ fn one_panel(
     let edges = [panel.x.low, panel.x.high].map(|x| (x, 1.0));
     panel.line(sheet, edges, (&[], 1.6, GREY));
     for (i, curve) in curves.iter().enumerate() {
-        let Style { colour, dash, marker } = Style::of(i);
+        // Markers tell the curves apart; dashes would be most of the file.
+        let Style { colour, marker, .. } = Style::of(i);
         let shown = || curve.points.iter().filter(has_noise);
         let line = shown().map(|point| (point.x, share(point.bias, point.noise)));
-        panel.line(sheet, line, (dash, 1.4, colour.mix(0.6)));
+        panel.line(sheet, line, (&[], 1.4, colour.mix(0.6)));
         for point in shown() {
             let Some(spot) = panel.spot(point.x, share(point.bias, point.noise)) else { continue };
             let is_told = point.exceeds() || point.holds();

@@ -1,14 +1,14 @@
 //! The transmittance from the ray's origin to any point of the ray, as it is estimated.
 
 use super::Along;
-use super::passage::{POWERS, Passage};
+use super::passage::{POWERS, Passage, loss, rounding, size};
 use crate::media::{Control, Piecewise};
-use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Known, Span};
 use crate::theory::Mesh;
 
 /// How many integrals are kept.
-const COUNT: usize = 9;
+const COUNT: usize = 10;
 /// Where `∫σ̂` is among them.
 const FLOWN: usize = 8;
 
@@ -87,28 +87,35 @@ impl<'a> Camera<'a> {
         let control = self.control.extinction(t);
         if self.along == Along::Delta {
             let from = self.mesh.support().from;
-            let depth = self.depth(t);
+            let depth = self.depth(t).value;
             let nulls = self.flown(Span::new(from, t)) - depth;
             let alive = sampling * (-depth).exp();
             let [a, b, c, d] = [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1));
-            return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling];
+            return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling, depth];
         }
         if sampling <= 0.0 {
             let [a, b, c, d, e] = POWERS.map(|k| f64::from(k) * control);
-            return [a, b, c, d, e, a, c, b, 0.0];
+            return [a, b, c, d, e, a, c, b, 0.0, d.abs()];
         }
-        let weight = 1.0 - (extinction - control) / sampling;
-        let loss = |k: i32, power: f64| f64::from(k) * control + sampling * (1.0 - power);
-        let [a, b, c, d, e] = POWERS.map(|k| loss(k, weight.powi(k)));
-        let size = weight.abs();
-        let sizes = [loss(1, size), loss(3, size.powi(3)), loss(2, size * weight)];
-        [a, b, c, d, e, sizes[0], sizes[1], sizes[2], sampling]
+        let residual = extinction - control;
+        let weight = 1.0 - residual / sampling;
+        let [a, b, c, d, e] = POWERS.map(|k| loss(k, control, residual, weight));
+        let [one, three, two] = if weight < 0.0 {
+            // σ̂(1 − |w|) = 2σ̂ − (σ_t − σ_c), and 1 − w|w| = 1 + w².
+            let size = -weight;
+            let left = 2.0 * sampling - residual;
+            let mixed = 2.0 * control + sampling * (1.0 + weight * weight);
+            [loss(1, control, left, size), loss(3, control, left, size), mixed]
+        } else {
+            [a, c, b]
+        };
+        [a, b, c, d, e, one, three, two, sampling, size(control, residual, weight)]
     }
 
     /// τ up to a point.
-    fn depth(&self, s: f64) -> f64 {
+    fn depth(&self, s: f64) -> Known {
         let from = self.mesh.support().from;
-        self.mesh.medium().optical_depth(Span::new(from, s)).value
+        self.mesh.medium().optical_depth(Span::new(from, s))
     }
 
     /// `∫σ̂` over a span.
@@ -147,8 +154,9 @@ impl<'a> Camera<'a> {
         match self.along {
             Along::Exact => Passage::exact(depth),
             Along::Ratio => {
-                let [_, b, c, d, e, .., flown] = self.at(s);
-                Passage::product([depth, b, c, d, e], flown)
+                let [_, b, c, d, e, .., flown, size] = self.at(s);
+                let error = rounding(size) + 4.0 * depth.error;
+                Passage::product([depth.value, b, c, d, e], flown, [error, size])
             }
             Along::Delta => {
                 let [a, b, c, d, ..] = self.at(s);
@@ -161,8 +169,8 @@ impl<'a> Camera<'a> {
     /// What a walk of weights loses up to `s`.
     #[must_use]
     pub fn losses(&self, s: f64) -> Losses {
-        let [_, b, c, d, _, size, cube, mixed, _] = self.at(s);
-        let signed = [0.0, self.depth(s), b, c, d];
+        let [_, b, c, d, _, size, cube, mixed, ..] = self.at(s);
+        let signed = [0.0, self.depth(s).value, b, c, d];
         Losses { signed, sizes: [0.0, size, b, cube, d], mixed }
     }
 

@@ -47,18 +47,26 @@ impl<'a> Chain<'a> {
     /// On the given panels of the stretched variable.
     #[must_use]
     pub fn new(scene: &'a Scene<'a>, panels: &[Span]) -> Self {
-        let losses = |x: f64| scene.camera.losses(scene.stretched(x)[0]);
+        let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
         let panel = |&x: &Span| {
             let node = |&at: &f64| {
-                let [s, stretch] = scene.stretched(x.from + at * x.length());
-                let node = scene.node(s);
-                let collision = scene.camera.collision(s, node.extinction);
-                At { node, losses: scene.camera.losses(s), collision, stretch }
+                let place = scene.stretched(x.from + at * x.length());
+                let node = scene.node(place);
+                let collision = scene.camera.collision(place.s, node.extinction);
+                let losses = scene.camera.losses(place.s);
+                At { node, losses, collision, stretch: place.stretch }
             };
             let nodes = scene.rule().nodes.iter().map(node).collect();
             Panel { x, nodes, from: losses(x.from), to: losses(x.to) }
         };
         Self { scene, panels: panels.iter().map(panel).collect() }
+    }
+
+    /// Whether a weight changes its sign somewhere.
+    #[must_use]
+    pub fn is_signed(&self) -> bool {
+        let mut nodes = self.panels.iter().flat_map(|panel| &panel.nodes);
+        nodes.any(|at| at.collision[0] > 0.0 && at.collision[1] < 0.0)
     }
 
     /// Solves for one functional: `loss` picks its A, and `f` is asked at each node, of which it is

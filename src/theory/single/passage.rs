@@ -1,8 +1,8 @@
 //! An estimated transmittance of one segment: moments of its value and of its lookups.
 
 use crate::media::Medium;
-use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Known, Span};
 
 /// How the transmittance of a shadow ray is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,25 +37,67 @@ pub struct Passage {
     pub lookups: [f64; 5],
     /// `E[N^k; the walk came through]` for k = 0 … 4.
     pub through: [f64; 5],
+    /// A bound on the errors of the exponents A, `E[X^k] = e^{−A}`, k to 4: the relative error of `powers`.
+    pub error: f64,
+    /// A number that these exponents and what they are sums of do not exceed.
+    pub size: f64,
+}
+
+/// Roundings of a loss, and of its sum over nodes, in units of ε times [`size`].
+const ROUNDINGS: f64 = 8.0;
+
+/// What is lost per length of the power k: `kσ_c + σ̂(1 − w^k)`, σ_c and the residual `σ_t − σ_c` given.
+///
+/// ```text
+/// σ̂(1 − w^k) = (σ_t − σ_c)(1 + w + … + w^{k−1}),   w = 1 − (σ_t − σ_c)/σ̂
+/// ```
+///
+/// The difference would leave ε σ̂ of rounding, however small the residual.
+#[must_use]
+pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
+    let sum = (0..k).fold(0.0, |sum, _| sum * weight + 1.0);
+    f64::from(k) * control + residual * sum
+}
+
+/// What [`loss`] sums up for k = 4, all with the same sign: at least as much as for a smaller k.
+#[must_use]
+pub fn size(control: f64, residual: f64, weight: f64) -> f64 {
+    loss(4, control.abs(), residual.abs(), weight.abs())
+}
+
+/// The error of exponents that are integrals of losses.
+#[must_use]
+pub fn rounding(size: f64) -> f64 {
+    f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
 impl Passage {
     /// A transmittance that is known.
     #[must_use]
-    pub fn exact(depth: f64) -> Self {
-        let power = |k: f64| (-k * depth).exp();
+    pub fn exact(depth: Known) -> Self {
+        let power = |k: f64| (-k * depth.value).exp();
         let powers = [1.0, power(1.0), power(2.0), power(3.0), power(4.0)];
         let none = [1.0, 0.0, 0.0, 0.0, 0.0];
-        Self { powers, eighth: power(8.0), lookups: none, through: none }
+        let error = 4.0 * depth.error + f64::EPSILON;
+        let size = 4.0 * depth.value;
+        Self { powers, eighth: power(8.0), lookups: none, through: none, error, size }
+    }
+
+    /// A transmittance of nothing.
+    #[must_use]
+    pub fn free() -> Self {
+        Self::exact(Known::new(0.0, 0.0))
     }
 
     /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the
-    /// given mean number of collisions. It always comes through.
+    /// given mean number of collisions. It always comes through. The exponents are off by an error, and sums
+    /// of losses of a size.
     #[must_use]
-    pub fn product(exponents: [f64; 5], collisions: f64) -> Self {
+    pub fn product(exponents: [f64; 5], collisions: f64, [error, size]: [f64; 2]) -> Self {
         let [a, b, c, d, eighth] = exponents.map(|x| (-x).exp());
         let lookups = poisson(collisions);
-        Self { powers: [1.0, a, b, c, d], eighth, lookups, through: lookups }
+        let powers = [1.0, a, b, c, d];
+        Self { powers, eighth, lookups, through: lookups, error, size }
     }
 
     /// 1 with chance `e^{−τ}`, else 0, by delta tracking through `∫σ̄ = flown`; `factorial[k − 1]` is
@@ -65,34 +107,41 @@ impl Passage {
     /// E[N (N − 1) … (N − k + 1)] = k ∫ σ̄ e^{−τ(t)} (∫₀ᵗ σ̄ − τ(t))^{k−1} dt
     /// ```
     #[must_use]
-    pub fn decided(depth: f64, flown: f64, factorial: [f64; 4]) -> Self {
-        let chance = (-depth).exp();
+    pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
+        let chance = (-depth.value).exp();
         let [f1, f2, f3, f4] = factorial;
         let lookups = [1.0, f1, f2 + f1, f3 + 3.0 * f2 + f1, f4 + 6.0 * f3 + 7.0 * f2 + f1];
         // What does not end a walk is a Poisson number of null collisions.
-        let through = poisson(flown - depth).map(|moment| chance * moment);
-        Self { powers: [1.0, chance, chance, chance, chance], eighth: chance, lookups, through }
+        let through = poisson(flown - depth.value).map(|moment| chance * moment);
+        let powers = [1.0, chance, chance, chance, chance];
+        let (error, size) = (depth.error + f64::EPSILON, depth.value);
+        Self { powers, eighth: chance, lookups, through, error, size }
     }
 
     /// Of a shadow ray.
     #[must_use]
     pub fn of_shadow(tracking: Tracking, medium: Option<&Medium>, rule: &GaussLegendre) -> Self {
-        let Some(medium) = medium else { return Self::exact(0.0) };
+        let Some(medium) = medium else { return Self::free() };
         let support = medium.support();
-        let depth = medium.optical_depth(support).value;
+        let depth = medium.optical_depth(support);
         match tracking {
             Tracking::Exact => Self::exact(depth),
             Tracking::Ratio { sampling, control } => {
-                let loss = |_: f64, sigma: f64| {
-                    let weight = 1.0 - (sigma - control) / sampling;
-                    POWERS.map(|k| f64::from(k) * control + sampling * (1.0 - weight.powi(k)))
+                let losses = |_: f64, sigma: f64| {
+                    let residual = sigma - control;
+                    let weight = 1.0 - residual / sampling;
+                    let [a, b, c, d, e] = POWERS.map(|k| loss(k, control, residual, weight));
+                    [a, b, c, d, e, size(control, residual, weight)]
                 };
-                let mut exponents = along(medium, rule, loss);
-                exponents[0] = depth;
-                Self::product(exponents, sampling * support.length())
+                let (value, apart) = along(medium, rule, losses);
+                let [_, b, c, d, e, size] = value;
+                let apart = apart[1..4].iter().fold(0.0, |most: f64, &apart| most.max(apart));
+                let error = [rounding(size) + apart.max(4.0 * depth.error), size];
+                let exponents = [depth.value, b, c, d, e];
+                Self::product(exponents, sampling * support.length(), error)
             }
             Tracking::Delta { sampling } => {
-                let factorial = along(medium, rule, |t, _| {
+                let (factorial, _) = along(medium, rule, |t, _| {
                     let depth = medium.optical_depth(Span::new(support.from, t)).value;
                     let nulls = sampling * (t - support.from) - depth;
                     let alive = sampling * (-depth).exp();
@@ -129,13 +178,13 @@ const HALVINGS: u32 = 6;
 /// 2³², so that the finer one is then good to rounding.
 const AGREED: f64 = 1e-11;
 
-/// `∫ f(t, σ_t)` over the support of a medium: Gauss panels between its breaks, halved together until
-/// two resolutions agree.
+/// `∫ f(t, σ_t)` over the support of a medium, and what two resolutions differ by: Gauss panels between its
+/// breaks, halved together until these agree.
 fn along<const N: usize>(
     medium: &Medium,
     rule: &GaussLegendre,
     f: impl Fn(f64, f64) -> [f64; N],
-) -> [f64; N] {
+) -> ([f64; N], [f64; N]) {
     let support = medium.support();
     let mut ends = medium.breaks();
     ends.retain(|&t| support.contains_inside(t));
@@ -161,15 +210,16 @@ fn along<const N: usize>(
         sum
     };
     let mut coarse = at(1);
+    let mut apart = [0.0; N];
     for halving in 1..=HALVINGS {
         let fine = at(1 << halving);
-        let agree = |(a, b): (&f64, &f64)| (a - b).abs() <= AGREED * b.abs().max(1.0);
-        if coarse.iter().zip(&fine).all(agree) {
-            return fine;
-        }
+        apart = std::array::from_fn(|i| (coarse[i] - fine[i]).abs());
         coarse = fine;
+        if apart.iter().zip(&fine).all(|(apart, value)| *apart <= AGREED * value.abs().max(1.0)) {
+            break;
+        }
     }
-    coarse
+    (coarse, apart)
 }
 
 #[cfg(test)]
@@ -185,11 +235,29 @@ mod tests {
     }
 
     #[test]
+    fn losses_of_small_residuals_keep_their_digits() {
+        // σ̂(1 − w⁴) = 4r − 6r²/σ̂ + …, r = 1e-3: the difference would be off by ε σ̂ = 1e-7.
+        let (sampling, residual) = (1e9, 1e-3);
+        let weight = 1.0 - residual / sampling;
+        assert!((loss(4, 0.0, residual, weight) / 4e-3 - 1.0).abs() < 1e-11);
+        // Elsewhere both are one, beyond weights of −1, too, where losses are gains.
+        for (residual, control) in [(0.3, 0.0), (1.7, 0.2), (2.9, 0.1), (-0.4, 0.5)] {
+            let weight: f64 = 1.0 - residual;
+            for k in POWERS {
+                let apart = f64::from(k) * control + (1.0 - weight.powi(k));
+                let found = loss(k, control, residual, weight);
+                assert!((found - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
+                assert!(k > 4 || found.abs() <= size(control, residual, weight));
+            }
+        }
+    }
+
+    #[test]
     fn delta_tracking_of_a_homogeneous_segment() {
         // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with chance 1 − e^{−τ}.
         let length: f64 = 1.5;
         let first = 1.0 - (-length).exp();
-        let passage = Passage::decided(length, length, [first, 0.0, 0.0, 0.0]);
+        let passage = Passage::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);
         assert_eq!(passage.lookups, [1.0, first, first, first, first]);
         assert_eq!(passage.through[1..], [0.0; 4]);
         assert_eq!(passage.through[0], passage.powers[1]);

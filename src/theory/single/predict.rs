@@ -18,6 +18,8 @@ pub struct Technique<'a> {
     pub density: &'a dyn Fn(&Node) -> f64,
     /// The draw without both estimated transmittances.
     pub gain: &'a dyn Fn(&Node) -> f64,
+    /// A relative error bound of the density, and of whatever stands for it in the gain.
+    pub blur: &'a dyn Fn(&Node) -> f64,
     /// Whether the point was found by a walk that came through: then the transmittance from the
     /// origin is no factor of the draw, and what comes is its lookups given the point.
     pub found: Option<Found<'a>>,
@@ -42,20 +44,32 @@ pub struct Points {
     pub error: f64,
     /// `E[X⁸]`, where it is known.
     pub eighth: Option<f64>,
-    /// `E[N^k]`, k = 0 … 4; `None` where it is not worked out.
+    /// `E[(N − least)^k]`, k = 0 … 4; `None` where it is not worked out.
     pub lookups: Option<[f64; 5]>,
+    /// Lookups that every draw makes: beside them rare ones would lose their digits.
+    pub least: f64,
+    /// A relative error bound of the mean lookups.
+    pub counted: f64,
 }
+
+/// What sums over panels lose, relative to the whole.
+const SUMS: f64 = 1e-14;
+/// What evaluates a density from σ_t, distances and exponentials loses, relative to itself.
+pub const DENSITY: f64 = 4.0 * f64::EPSILON;
+/// Where a moment is smaller, some of what adds up to it is no double of full length.
+const LEAST: f64 = 1e-280;
 
 impl Points {
     /// Of one technique.
     #[must_use]
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
-        let mut parts = [MOMENT; 9];
-        parts[5..].fill(LOOKUPS);
+        let mut parts = [MOMENT; 13];
+        parts[5..9].fill(LOOKUPS);
+        parts[9..].fill(f64::INFINITY);
         let found = scene.integrate(parts, &|node| {
             let density = (technique.density)(node);
             if density <= 0.0 {
-                return [0.0; 9];
+                return [0.0; 13];
             }
             let gain = (technique.gain)(node);
             let walked = technique.found.is_some();
@@ -65,31 +79,45 @@ impl Points {
             };
             let [_, c1, c2, c3, c4] = node.camera.powers;
             let [_, s1, s2, s3, s4] = node.shadow.powers;
+            let powers = [power(1, c1, s1), power(2, c2, s2), power(3, c3, s3), power(4, c4, s4)];
+            let factor = node.error[0] + (technique.blur)(node) + DENSITY;
+            let exponents = if walked { 0.0 } else { node.camera.error } + node.shadow.error;
+            let rounding = |i: usize| powers[i].abs() * ((i + 1) as f64 * factor + exponents);
             let lookups = match &technique.found {
                 Some(found) => (found.at)(node),
                 None => node.lookups(),
             };
             [
-                power(1, c1, s1),
-                power(2, c2, s2),
-                power(3, c3, s3),
-                power(4, c4, s4),
+                powers[0],
+                powers[1],
+                powers[2],
+                powers[3],
                 power(8, node.camera.eighth, node.shadow.eighth),
                 density * lookups[1],
                 density * lookups[2],
                 density * lookups[3],
                 density * lookups[4],
+                rounding(0),
+                rounding(1),
+                rounding(2),
+                rounding(3),
             ]
         });
-        let [p1, p2, p3, p4, eighth, n1, n2, n3, n4] = found.value;
+        let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
         let none = technique.found.as_ref().map_or([0.0; 5], |found| found.none);
-        let relative = found.error[..4].iter().zip([p1, p2, p3, p4]).map(|(e, p)| e / p.abs());
+        let off = found.error[..4].iter().zip(roundings).map(|(apart, rounding)| apart + rounding);
+        let relative = off.zip([p1, p2, p3, p4]).map(|(off, power)| off / power.abs());
+        let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
+        // A walk that ends at its point may end before.
+        let least = if technique.found.is_some() { 0.0 } else { 1.0 };
         Self {
             truth: scene.radiance(),
             powers: [1.0, p1, p2, p3, p4],
-            error: relative.fold(1e-14, f64::max),
+            error: relative.fold(SUMS, f64::max),
             eighth: Some(eighth),
-            lookups: Some([1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]]),
+            lookups: Some(lookups),
+            least,
+            counted: SUMS + found.error[5] / (least + lookups[1]),
         }
     }
 
@@ -99,8 +127,10 @@ impl Points {
         Self {
             truth: self.truth,
             powers: added(self.powers, other.powers),
-            error: self.error.max(other.error),
+            error: self.error + other.error,
             eighth: None,
+            least: self.least + other.least,
+            counted: self.counted.max(other.counted),
             lookups: self.lookups.zip(other.lookups).map(|(a, b)| added(a, b)),
         }
     }
@@ -110,38 +140,49 @@ impl Points {
     pub fn prediction(&self) -> Prediction {
         let [_, mean, second, third, fourth] = self.powers;
         let [r2, r3, r4] = [second / mean.powi(2), third / mean.powi(3), fourth / mean.powi(4)];
-        let m2 = (r2 - 1.0).max(0.0);
+        let m2 = r2 - 1.0;
         let m4 = r4 - 4.0 * r3 + 6.0 * r2 - 3.0;
-        // Errors of the raw moments, and of the powers of the mean, where they nearly cancel.
-        let sensitivity = (3.0 * r2 / m2).max((5.0 * r4 + 24.0 * r3.abs() + 24.0 * r2) / m4);
+        // Errors of the raw moments, and of the powers of the mean, where they nearly cancel: m₄ ≥ m₂².
+        let [off2, off4] =
+            [3.0 * r2, 5.0 * r4 + 24.0 * r3.abs() + 24.0 * r2].map(|size| self.error * size);
+        let [least2, least4] = [m2 - off2, (m4 - off4).max((m2 - off2).powi(2))];
+        let error =
+            if r4 == f64::INFINITY { off2 / least2 } else { (off2 / least2).max(off4 / least4) };
         let moments = Moments {
             scale: mean,
             relative: [m2, r3 - 3.0 * r2 + 2.0, m4.max(m2 * m2)],
-            error: self.error * sensitivity,
+            error: if least2 > 0.0 { error } else { f64::INFINITY },
         };
         // A spread that rounding hides is not known to be none, nor one beyond the range of doubles.
-        let moments = (moments.error < BLURRED && !m4.is_nan()).then_some(moments);
+        let is_known = moments.error < BLURRED && !m4.is_nan() && mean.abs() < f64::INFINITY;
+        let is_full = self.powers.iter().all(|power| power.abs() >= LEAST);
+        let moments = (is_known && is_full).then_some(moments);
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
         // How rare the draws are that make the variance is not worked out.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
         let certain = Channel::unbiased(self.truth, Moments::certain(mean), tails);
         let channel = Channel { moments, ..certain };
         let prediction = Prediction::single(channel, CountLaw::always(0.0));
-        let lookups = self.lookups.map(|raw| CountLaw { error: self.error, ..count(raw) });
+        let law = |raw| CountLaw { error: self.counted, ..count(self.least, raw) };
+        let lookups = self.lookups.map(law);
         Prediction { lookups, ..prediction }
     }
 }
 
-/// The law of a count with the given raw moments, without probabilities.
+/// Of a variance less than this of the second moment nothing is known.
+const HIDDEN: f64 = 1e-12;
+
+/// The law of a count, with the raw moments of what it is more than its least, without probabilities.
 #[must_use]
-pub fn count([_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
+pub fn count(least: f64, [_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
     let square = mean * mean;
     let variance = second - square;
-    if variance <= 1e-9 * second {
-        return CountLaw::always(mean.round());
+    if variance <= HIDDEN * second {
+        return CountLaw::always(least + mean);
     }
     let central = fourth - 4.0 * third * mean + 6.0 * second * square - 3.0 * square * square;
     let kurtosis = central / (variance * variance);
+    let mean = least + mean;
     CountLaw { mean, variance, kurtosis, error: 0.0, poisson: false, pmf: Vec::new() }
 }
 
@@ -156,6 +197,8 @@ mod tests {
             error: 1e-14,
             eighth: None,
             lookups: Some([1.0, 0.5, 0.5, 0.5, 0.5]),
+            least: 0.0,
+            counted: 1e-14,
         }
     }
 
@@ -177,5 +220,16 @@ mod tests {
     fn a_spread_that_rounding_hides_is_unknown() {
         let faint = points([1.0, 1.0, 1.0 + 1e-16, 1.0, 1.0]);
         assert!(faint.prediction().channels[0].moments.is_none());
+        // 1 ± 1e-5: the variance, 1e-10, is known to three digits, m₄ = 1e-20 to none.
+        let narrow = points([1.0, 1.0, 1.0 + 1e-10, 1.0 + 3e-10, 1.0 + 6e-10]);
+        assert!(narrow.prediction().channels[0].moments.is_none());
+    }
+
+    #[test]
+    fn rare_lookups_keep_their_digits() {
+        // 3 and, once in a thousand millions, one more.
+        let law = count(3.0, [1.0, 1e-9, 1e-9, 1e-9, 1e-9]);
+        assert_eq!(law.mean, 3.000_000_001);
+        assert!((law.variance / 1e-9 - 1.0).abs() < 2e-9 && law.kurtosis > 0.9e9);
     }
 }

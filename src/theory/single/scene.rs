@@ -25,12 +25,16 @@ const MOST: usize = 20_000;
 pub struct Node {
     /// Its distance from the ray's origin.
     pub s: f64,
+    /// Its distance from the light's foot, with digits that `s` has lost next to the light.
+    pub along: f64,
     /// σ_t there.
     pub extinction: f64,
     /// S there, see [`SingleScattering::source`].
     pub source: f64,
     /// The exact transmittance from the ray's origin.
     pub transmittance: f64,
+    /// A relative error bound of `extinction · source`, and of `transmittance`.
+    pub error: [f64; 2],
     /// The transmittance from there as it is estimated.
     pub camera: Passage,
     /// That of the shadow ray.
@@ -38,20 +42,29 @@ pub struct Node {
 }
 
 impl Node {
-    /// `E[N^k]` of a draw that scatters here: one lookup and, unless there is nothing, those of the
+    /// `E[(N − 1)^k]` of a draw that scatters here: beside one lookup those, unless there is nothing, of the
     /// walk from the origin and, if that came through, of the shadow ray.
     #[must_use]
     pub fn lookups(&self) -> [f64; 5] {
-        let one = [1.0; 5];
         if self.extinction <= 0.0 {
-            return one;
+            return [1.0, 0.0, 0.0, 0.0, 0.0];
         }
         let Passage { lookups, through, .. } = self.camera;
         let with_shadow = added(through, self.shadow.lookups);
         let ended: [f64; 5] = std::array::from_fn(|k| lookups[k] - through[k]);
-        let both: [f64; 5] = std::array::from_fn(|k| with_shadow[k] + ended[k]);
-        added(both, one)
+        std::array::from_fn(|k| with_shadow[k] + ended[k])
     }
+}
+
+/// A point of the ray, as the stretched variable finds it.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Its distance from the ray's origin.
+    pub s: f64,
+    /// Its distance from the light's foot.
+    pub along: f64,
+    /// `ds/dx`.
+    pub stretch: f64,
 }
 
 /// The ray, the light and how transmittances are found.
@@ -97,26 +110,34 @@ impl<'a> Scene<'a> {
 
     /// All that is known at a distance.
     #[must_use]
-    pub fn node(&self, s: f64) -> Node {
+    pub fn node(&self, Place { s, along, .. }: Place) -> Node {
         let medium = self.problem.medium();
-        let depth = medium.optical_depth(Span::new(medium.support().from, s)).value;
-        let shadow = self.problem.shadow_medium(s);
+        let depth = medium.optical_depth(Span::new(medium.support().from, s));
+        let cast = self.problem.shadow_medium(s);
+        let mut shadow = Passage::of_shadow(self.shadow, cast.as_ref(), &self.rule);
+        // The shadow ray begins at s, which is rounded.
+        let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
+        shadow.error += shadow.size * place / along.hypot(self.problem.distance());
+        let [source, rounding] = self.problem.source_beyond(along);
         Node {
             s,
+            along,
             extinction: medium.extinction(s),
-            source: self.problem.source(s),
-            transmittance: (-depth).exp(),
+            source,
+            transmittance: (-depth.value).exp(),
+            error: [rounding, depth.error + f64::EPSILON],
             camera: self.camera.passage(s),
-            shadow: Passage::of_shadow(self.shadow, shadow.as_ref(), &self.rule),
+            shadow,
         }
     }
 
-    /// The distance and `ds/dx` at the stretched variable: `s = foot + D sinh x`, in which `1/r²` is
-    /// smooth however near the light is.
+    /// The place at the stretched variable: `s = foot + D sinh x`, in which `1/r²` is smooth however
+    /// near the light is.
     #[must_use]
-    pub fn stretched(&self, x: f64) -> [f64; 2] {
+    pub fn stretched(&self, x: f64) -> Place {
         let distance = self.problem.distance();
-        [self.problem.foot() + distance * x.sinh(), distance * x.cosh()]
+        let along = distance * x.sinh();
+        Place { s: self.problem.foot() + along, along, stretch: distance * x.cosh() }
     }
 
     /// L by quadrature of exact optical depths, once for all experiments on it.
@@ -126,11 +147,12 @@ impl<'a> Scene<'a> {
         let medium = problem.medium();
         let from = medium.support().from;
         problem.radiance(|| {
-            let found = self.over([RADIANCE], Vec::new(), &|s| {
+            let found = self.over([RADIANCE], Vec::new(), &|Place { s, along, .. }| {
                 let before = medium.optical_depth(Span::new(from, s)).value;
                 let beyond = problem.shadow_medium(s);
                 let beyond = beyond.map_or(0.0, |m| m.optical_depth(m.support()).value);
-                [medium.extinction(s) * problem.source(s) * (-(before + beyond)).exp()]
+                let source = problem.source_beyond(along)[0];
+                [medium.extinction(s) * source * (-(before + beyond)).exp()]
             });
             let [value] = found.value;
             // The optical depths add their own rounding, and so do places next to the light.
@@ -165,12 +187,12 @@ impl<'a> Scene<'a> {
         ends
     }
 
-    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(f64) -> [f64; N]) -> [f64; N] {
+    fn panel<const N: usize>(&self, x: Span, f: &dyn Fn(Place) -> [f64; N]) -> [f64; N] {
         let mut sum = [0.0; N];
         for (&node, &weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
-            let [s, stretch] = self.stretched(x.from + node * x.length());
-            let values = f(s);
-            let weight = weight * stretch * x.length();
+            let place = self.stretched(x.from + node * x.length());
+            let values = f(place);
+            let weight = weight * place.stretch * x.length();
             sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
         }
         sum
@@ -186,14 +208,14 @@ impl<'a> Scene<'a> {
     ) -> Integral<N> {
         let mut cuts = self.cuts.clone();
         cuts.extend(self.camera.cuts());
-        self.over(parts, cuts, &|s| f(&self.node(s)))
+        self.over(parts, cuts, &|place| f(&self.node(place)))
     }
 
     fn over<const N: usize>(
         &self,
         parts: [f64; N],
         cuts: Vec<f64>,
-        f: &dyn Fn(f64) -> [f64; N],
+        f: &dyn Fn(Place) -> [f64; N],
     ) -> Integral<N> {
         if self.problem.medium().support().is_empty() {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };

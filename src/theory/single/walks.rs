@@ -9,7 +9,7 @@
 use super::camera::Losses;
 use super::chain::{At, Chain, Solved, halved};
 use super::passage::{Passage, added, poisson};
-use super::predict::{LOOKUPS, MOMENT, Points};
+use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
 use crate::numeric::Span;
 
@@ -36,11 +36,33 @@ const BINOMIAL: [[f64; 5]; 5] = [
     [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
-/// Moments on the panels and on their halves; the difference bounds the error.
-fn both(panels: &[Span], powers: impl Fn(&[Span]) -> [f64; 5]) -> ([f64; 5], f64) {
-    let (coarse, fine) = (powers(panels), powers(&halved(panels)));
-    let apart = (1..5).map(|k| ((fine[k] - coarse[k]) / fine[k]).abs());
-    (fine, apart.fold(1e-13, f64::max))
+/// Moments on the panels and on their halves, and a relative error bound: the difference, and the rounding of
+/// what is summed, relative to sums of the same sizes, which come second.
+fn both(
+    panels: &[Span],
+    rounding: f64,
+    powers: impl Fn(&[Span]) -> [[f64; 5]; 2],
+) -> ([f64; 5], f64) {
+    let ([coarse, _], [fine, sizes]) = (powers(panels), powers(&halved(panels)));
+    let off = |k: usize| {
+        let rounded = (SUMS + rounding) * sizes[k].abs().max(fine[k].abs());
+        ((fine[k] - coarse[k]).abs() + rounded) / fine[k].abs()
+    };
+    (fine, (1..5).map(off).fold(0.0, f64::max))
+}
+
+/// What running sums over panels lose, relative to the whole.
+const SUMS: f64 = 1e-13;
+
+/// What rounding does to the fourth power of what is scattered at a node, relative to itself.
+fn blur(node: &Node) -> f64 {
+    4.0 * (node.error[0] + DENSITY) + node.camera.error + node.shadow.error
+}
+
+/// The rounding of powers on average over where light is scattered, of the power for which that is largest.
+fn average<const N: usize>(powers: &[f64], rounded: [f64; N]) -> f64 {
+    let shares = rounded.iter().zip(powers).map(|(rounded, power)| rounded / power.abs());
+    shares.fold(0.0, f64::max)
 }
 
 /// `h` and what follows at a collision; nothing where σ̂ is zero, since the residual is zero there.
@@ -52,14 +74,25 @@ fn gain(at: &At) -> [f64; 3] {
     [sampling, at.node.extinction * at.node.source / sampling, weight]
 }
 
-/// The panels that resolve `σ̂ E[(h T̂_shadow)^k] E[T̂^k]`, and the cumulants of the lookups.
-fn panels_at_collisions(scene: &Scene) -> (Vec<Span>, [f64; 4]) {
-    let mut parts = [MOMENT; 8];
-    parts[4..].fill(LOOKUPS);
+/// The panels that resolve `σ̂ E[(h T̂_shadow)^k] E[T̂^k]`.
+struct AtCollisions {
+    panels: Vec<Span>,
+    /// The cumulants of the lookups, and a relative error bound of their mean.
+    cumulants: [f64; 4],
+    counted: f64,
+    /// See [`average`].
+    rounding: f64,
+}
+
+/// These panels.
+fn panels_at_collisions(scene: &Scene) -> AtCollisions {
+    let mut parts = [MOMENT; 12];
+    parts[4..8].fill(LOOKUPS);
+    parts[8..].fill(f64::INFINITY);
     let found = scene.integrate(parts, &|node| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
         if sampling <= 0.0 {
-            return [0.0; 8];
+            return [0.0; 12];
         }
         let h = node.extinction * node.source / sampling;
         let power = |k: usize| {
@@ -68,7 +101,7 @@ fn panels_at_collisions(scene: &Scene) -> (Vec<Span>, [f64; 4]) {
         };
         // A compound Poisson number: its cumulants are moments of what each collision costs.
         let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::exact(0.0).lookups };
+            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::free().lookups };
         let each = added([1.0; 5], shadow);
         [
             power(1),
@@ -79,10 +112,19 @@ fn panels_at_collisions(scene: &Scene) -> (Vec<Span>, [f64; 4]) {
             sampling * each[2],
             sampling * each[3],
             sampling * each[4],
+            power(1).abs() * blur(node),
+            power(2).abs() * blur(node),
+            power(3).abs() * blur(node),
+            power(4).abs() * blur(node),
         ]
     });
-    let [.., k1, k2, k3, k4] = found.value;
-    (found.panels, [k1, k2, k3, k4])
+    let [p1, p2, p3, p4, k1, k2, k3, k4, rounded @ ..] = found.value;
+    AtCollisions {
+        panels: found.panels,
+        cumulants: [k1, k2, k3, k4],
+        counted: SUMS + found.error[4] / k1,
+        rounding: average(&[p1, p2, p3, p4], rounded),
+    }
 }
 
 /// Raw moments from cumulants.
@@ -96,14 +138,15 @@ fn raw([k1, k2, k3, k4]: [f64; 4]) -> [f64; 5] {
 /// At every collision.
 #[must_use]
 pub fn at_collisions(scene: &Scene) -> Points {
-    let (panels, cumulants) = panels_at_collisions(scene);
-    let powers = |panels: &[Span]| {
-        let chain = Chain::new(scene, panels);
+    let AtCollisions { panels, cumulants, counted, rounding } = panels_at_collisions(scene);
+    let of = |chain: &Chain, signed: bool| {
         let mut known: Vec<Solved> = Vec::new();
         let mut powers = [1.0; 5];
         for k in 1..5 {
-            let solved = chain.solve(&|losses| losses.signed[k], &|at, p, i| {
+            let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
+            let solved = chain.solve(&loss, &|at, p, i| {
                 let [sampling, h, weight] = gain(at);
+                let weight = if signed { weight } else { weight.abs() };
                 let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
                 let term = |j: usize| {
                     let scored = power(h, j) * at.node.shadow.powers[j];
@@ -116,8 +159,14 @@ pub fn at_collisions(scene: &Scene) -> Points {
         }
         powers
     };
-    let (powers, error) = both(&panels, powers);
-    Points { truth: scene.radiance(), powers, error, eighth: None, lookups: Some(raw(cumulants)) }
+    let powers = |panels: &[Span]| {
+        let chain = Chain::new(scene, panels);
+        let sizes = if chain.is_signed() { of(&chain, false) } else { [0.0; 5] };
+        [of(&chain, true), sizes]
+    };
+    let (powers, error) = both(&panels, rounding, powers);
+    let (truth, lookups) = (scene.radiance(), Some(raw(cumulants)));
+    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
 }
 
 fn power(x: f64, k: usize) -> f64 {
@@ -131,7 +180,7 @@ fn power(x: f64, k: usize) -> f64 {
 /// ```
 #[must_use]
 pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
-    let (panels, _) = panels_at_collisions(scene);
+    let AtCollisions { panels, rounding, .. } = panels_at_collisions(scene);
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
         let mut f: Vec<Solved> = Vec::new();
@@ -146,9 +195,7 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
             });
             f.push(solved);
         }
-        let mut powers = [1.0; 5];
-        for k in 1..5 {
-            let odd = k % 2 == 1;
+        let last = |k: usize, odd: bool| {
             let mut g: Vec<Solved> = Vec::new();
             for j in 0..k {
                 let loss = |losses: &Losses| match (odd, j) {
@@ -171,22 +218,32 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
                 });
                 g.push(solved);
             }
-            powers[k] = g[k - 1].begin;
+            g[k - 1].begin
+        };
+        let [mut powers, mut sizes] = [[1.0, 0.0, 0.0, 0.0, 0.0]; 2];
+        for k in 1..5 {
+            let odd = k % 2 == 1;
+            powers[k] = last(k, odd);
+            if odd && chain.is_signed() {
+                sizes[k] = last(k, false);
+            }
         }
-        powers
+        [powers, sizes]
     };
-    let (powers, error) = both(&panels, powers);
+    let (powers, error) = both(&panels, rounding, powers);
     // Which collision casts the ray depends on all of them; without lookups of its own it does not
     // matter.
     let lookups = shadow_is_free.then(|| poisson(scene.camera.collisions()));
-    Points { truth: scene.radiance(), powers, error, eighth: None, lookups }
+    let truth = scene.radiance();
+    Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted: SUMS }
 }
 
 /// At `count` points of a density, all with the transmittance of one walk over the whole ray.
 #[must_use]
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
-    let mut parts = [MOMENT; 8];
-    parts[4..].fill(LOOKUPS);
+    let mut parts = [MOMENT; 12];
+    parts[4..8].fill(LOOKUPS);
+    parts[8..].fill(f64::INFINITY);
     let scored = |node: &Node, k: usize| {
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
@@ -194,10 +251,23 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
     let found = scene.integrate(parts, &|node| {
         let each = |k: usize| scored(node, k) * node.camera.powers[k];
         let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::exact(0.0).lookups };
-        let lookups = added([1.0; 5], shadow);
-        let cost = |k: usize| density(node) * lookups[k];
-        [each(1), each(2), each(3), each(4), cost(1), cost(2), cost(3), cost(4)]
+            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::free().lookups };
+        let cost = |k: usize| density(node) * shadow[k];
+        let rounded = |k: usize| each(k).abs() * (blur(node) + 4.0 * DENSITY);
+        [
+            each(1),
+            each(2),
+            each(3),
+            each(4),
+            cost(1),
+            cost(2),
+            cost(3),
+            cost(4),
+            rounded(1),
+            rounded(2),
+            rounded(3),
+            rounded(4),
+        ]
     });
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
@@ -227,12 +297,17 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         let third = n * of[3] + 3.0 * two * of[4] + three * of[5];
         let fourth =
             n * of[6] + two * (4.0 * of[7] + 3.0 * of[8]) + 6.0 * three * of[9] + four * of[10];
-        [1.0, of[0], (n * of[1] + two * of[2]) / n.powi(2), third / n.powi(3), fourth / n.powi(4)]
+        let second = n * of[1] + two * of[2];
+        // All that is summed is positive.
+        [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
-    let (powers, error) = both(&found.panels, powers);
     let value = found.value;
+    let rounding = average(&value[..4], [value[8], value[9], value[10], value[11]]);
+    let (powers, error) = both(&found.panels, rounding, powers);
     let each = [1.0, value[4], value[5], value[6], value[7]];
     let walk = poisson(scene.camera.collisions());
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
-    Points { truth: scene.radiance(), powers, error, eighth: None, lookups: Some(lookups) }
+    let counted = SUMS + found.error[4] / (1.0 + value[4]);
+    let (truth, least) = (scene.radiance(), count as f64);
+    Points { truth, powers, error, eighth: None, lookups: Some(lookups), least, counted }
 }

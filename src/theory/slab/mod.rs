@@ -96,7 +96,9 @@ impl Resolution {
     }
 
     fn coarsest(self) -> Self {
-        Self { directions: self.directions * 5 / 8, ..self.coarser() }
+        // Of a sharp phase function the Legendre moments ask for more directions: five eighths of those, too.
+        let faintest = self.faintest.powf(0.625);
+        Self { faintest, directions: self.directions * 5 / 8, ..self.coarser() }
     }
 }
 

@@ -11,7 +11,7 @@
 //! twice, where that cannot be chance, or the chords become too many. What the last ones differ by, and the
 //! errors of the optical depths, make the error.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::media::{Medium, Volume};
@@ -25,6 +25,8 @@ const AGREED: f64 = 1e-13;
 pub const MOST_CHORDS: f64 = 3e5;
 /// The most pieces that all chords of one resolution may have: those of noise are many.
 const MOST_PIECES: f64 = 6e5;
+/// One step between resolutions says nothing where there are kinks.
+const LEAST_STEPS: usize = 2;
 /// Nodes of a panel of θ.
 const RINGS: usize = 8;
 /// Nodes of a panel of x or y: exact up to the seventh power, of which the fade of noise has six.
@@ -62,7 +64,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
         let agree = |step: &f64| here.value > 0.0 && *step <= AGREED * here.value;
         let is_there =
             is_smooth && steps.len() >= needed && steps.iter().rev().take(needed).all(agree);
-        if is_there || chords.count(2 * n) > most {
+        if is_there || (steps.len() >= LEAST_STEPS && chords.count(2 * n) > most) {
             let error = if is_there {
                 steps[steps.len() - 1]
             } else {
@@ -90,8 +92,7 @@ fn has_kinks(volume: &Volume) -> bool {
 
 /// What a sequence of resolutions is still off, by its last steps. Where the field is smooth, the last one
 /// if it settles fast, and four times that if it settles slowly. Kinks make steps of any size, and two
-/// resolutions may be alike by chance: the largest of three steps says more, and where fewer were made,
-/// each that is missing may have been four times as large.
+/// resolutions may be alike by chance: the largest of three steps, or of two, says more, see [`doubt`].
 fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     let last = &steps[steps.len().saturating_sub(3)..];
     let shrinks = |factor: f64| {
@@ -102,9 +103,28 @@ fn settled(steps: &[f64], is_smooth: bool) -> f64 {
     } else if shrinks(4.0) {
         4.0 * last[2]
     } else {
-        let missing = 3_usize.saturating_sub(last.len());
-        6.0 * 4f64.powf(missing as f64) * last.iter().copied().fold(0.0, f64::max)
+        doubt(last.len()) * last.iter().copied().fold(0.0, f64::max)
     }
+}
+
+/// The chance that all steps are small beside what the last resolution is off.
+const CHANCE: f64 = 3e-5;
+
+/// By how much what the last resolution is off exceeds the largest of m steps, but with the [`CHANCE`].
+///
+/// Where a plane of kinks lies among the chords is chance: what resolutions are off is as good as independent and
+/// normal, and at worst halved with them. With x for the last, in its own deviations, and yⱼ of deviation 2ʲ for
+/// those before, all steps are below |x|/K if every yⱼ is so near the one after it:
+///
+/// ```text
+/// P = ∫ φ(x) ∏ⱼ (2|x|/K) φ(x/2ʲ)/2ʲ dx = (2/(πK²))^{m/2} E|z|^m 2^{−m(m+1)/2} q^{−(m+1)/2},
+/// q = 1 + 1/4 + … + 4^{−m},  E|z|² = 1, E|z|³ = √(8/π)
+/// ```
+fn doubt(steps: usize) -> f64 {
+    let (m, moment, q) =
+        if steps < 3 { (2.0, 1.0, 1.3125_f64) } else { (3.0, (8.0 / PI).sqrt(), 1.328_125) };
+    let rest = moment / (2f64.powf(0.5 * m * (m + 1.0)) * q.powf(0.5 * (m + 1.0)));
+    (2.0 / PI).sqrt() * (rest / CHANCE).powf(1.0 / m)
 }
 
 /// Where chords are: about the axis of a ball, or in panels of x and y.
@@ -242,6 +262,26 @@ fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> Known {
 mod tests {
     use super::*;
     use crate::media::eq21::Eq21;
+
+    #[test]
+    fn steps_are_doubted_as_much_as_chance_asks() {
+        // The integral over x, by even steps, with the factor that it was solved for.
+        for (m, about) in [(2, 42.0), (3, 6.2)] {
+            let factor = doubt(m);
+            assert!((factor / about - 1.0).abs() < 0.01, "{factor}");
+            let density = |x: f64| (-0.5 * x * x).exp() / TAU.sqrt();
+            let mut chance = 0.0;
+            for i in 0..4000 {
+                let x = 4e-3 * (f64::from(i) + 0.5);
+                let near = |j: usize| {
+                    let size = 2f64.powf(j as f64);
+                    2.0 * x / factor * density(x / size) / size
+                };
+                chance += 2.0 * 4e-3 * density(x) * (1..=m).map(near).product::<f64>();
+            }
+            assert!((chance / CHANCE - 1.0).abs() < 1e-6, "{chance:e}");
+        }
+    }
 
     #[test]
     fn the_sphere_of_equation_21_holds_what_it_holds() {
