@@ -1,7 +1,7 @@
 //! The number type that formulas are written in.
 //!
 //! A field of a medium is one formula, generic over a lane type: `f64`, or a pack of eight doubles
-//! ([`super::pack`]) that is treated element by element. Control flow (loops, early exits) stays
+//! ([`super::pack`]) that is treated element by element, or two packs ([`super::twin`]). Control flow (loops, early exits) stays
 //! outside; within a formula a choice is a [`Lane::select`].
 //!
 //! Where the machine multiplies and adds in one rounding, lanes do, and `f64` rounds as packs do:
