@@ -15,6 +15,7 @@ use super::plan::{BLOCK, Planned};
 use super::scenario::Ready;
 use crate::estimators::DrawBuffer;
 use crate::estimators::walkers::{Request, Walkers};
+use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::sum_in_lanes;
 use crate::rng::Streams;
 use crate::stats::Tally;
@@ -246,7 +247,10 @@ impl Absorber {
                     *total += y.iter().zip(times).map(|(y, times)| y * times).sum::<f64>();
                 } else {
                     sums.absorb(y, &arguments);
-                    *total += sum_in_lanes(y, |y| y);
+                    *total += in_fused_code(
+                        #[inline(always)]
+                        || sum_in_lanes(y, |y| y),
+                    );
                 }
             }
             (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(draws, first, sums),

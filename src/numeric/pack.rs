@@ -5,8 +5,8 @@
 //! addition, and what is drawn never depends on the width.
 
 use fearless_simd::{
-    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, f64x4, f64x8, i64x8, mask64x8,
-    u32x16, u64x8,
+    Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdFloat, SimdInt, f64x4, f64x8, i64x8,
+    mask64x8, u32x16, u64x8,
 };
 
 use super::single::{ROOT_HALF, ROUNDER};
@@ -28,6 +28,19 @@ pub fn fuses(level: Level) -> bool {
     {
         let _ = level;
         false
+    }
+}
+
+/// Whether a level converts 64-bit integers by one instruction.
+#[inline(always)]
+#[must_use]
+pub fn converts<S: Simd>(simd: S) -> bool {
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    return simd.level().as_avx512().is_some();
+    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
+    {
+        let _ = simd;
+        true
     }
 }
 
@@ -209,8 +222,12 @@ impl<S: Simd> Lane for f64x8<S> {
     fn split(self) -> (Self, Self) {
         let bits: u64x8<S> = self.bitcast();
         let shifted: i64x8<S> = (bits - ROOT_HALF).bitcast();
-        let k: u64x8<S> = (shifted >> 52).bitcast();
+        let exponent = shifted >> 52;
+        let k: u64x8<S> = exponent.bitcast();
         let m: Self = (bits - (k << 52)).bitcast();
+        if converts(self.token()) {
+            return (m, exponent.to_float());
+        }
         // A small integer added to the bits of 1.5·2^52 is added to its value.
         let sum: Self = (k + ROUNDER.to_bits()).bitcast();
         (m, sum - ROUNDER)

@@ -52,7 +52,7 @@ impl FromIterator<f64> for Sum {
 }
 
 /// `Σ f(x)` in eight lanes, whose additions need not wait for each other.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub fn sum_in_lanes(values: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     let (rows, rest) = values.as_chunks::<8>();

@@ -77,18 +77,6 @@ impl Words for u64 {
     }
 }
 
-/// Whether a level converts 64-bit integers by one instruction.
-#[inline(always)]
-fn converts<S: Simd>(simd: S) -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return simd.level().as_avx512().is_some();
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    {
-        let _ = simd;
-        true
-    }
-}
-
 impl<S: Simd> Words for u64x8<S> {
     type Numbers = f64x8<S>;
 
@@ -115,7 +103,7 @@ impl<S: Simd> Words for u64x8<S> {
     #[inline(always)]
     fn upper(self) -> f64x8<S> {
         let word = self >> 11;
-        if converts(self.token()) {
+        if pack::converts(self.token()) {
             return word.to_float();
         }
         // Each half becomes the last bits of a double, above 2^84 and 2^52; all steps are exact.

@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::Census;
+use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::Sum;
 
 /// The sums side by side.
@@ -39,18 +40,16 @@ impl Tally {
         // Eight sums of each, whose additions need not wait for each other.
         let (mut sums, mut squares) = ([0.0; LANES], [0.0; LANES]);
         let inverse = 1.0 / scale;
-        let mut add = |row: &[f64]| {
-            for ((value, sum), squares) in row.iter().zip(&mut sums).zip(&mut squares) {
-                let y = (value - shift) * inverse;
-                *sum += y;
-                *squares += y * y;
-            }
-        };
         let (rows, rest) = values.as_chunks::<LANES>();
-        for row in rows {
-            add(row);
-        }
-        add(rest);
+        in_fused_code(
+            #[inline(always)]
+            || {
+                for row in rows {
+                    add(&mut sums, &mut squares, row, [shift, inverse]);
+                }
+            },
+        );
+        add(&mut sums, &mut squares, rest, [shift, inverse]);
         let squares: f64 = squares.iter().sum();
         let mut tally = Self { draws: values.len() as u64, ..Self::default() };
         tally.sum.add(sums.iter().sum());
@@ -102,6 +101,21 @@ impl Tally {
         let scatter = self.squares.value() - n * mean * mean;
         let variance = (self.draws > 1).then(|| scatter.max(0.0) / (n - 1.0));
         Some(Moments2 { mean, variance })
+    }
+}
+
+/// Adds `y = (value − shift) · inverse` and its square, each in its lane.
+#[inline(always)]
+fn add(
+    sums: &mut [f64; LANES],
+    squares: &mut [f64; LANES],
+    row: &[f64],
+    [shift, inverse]: [f64; 2],
+) {
+    for ((value, sum), squares) in row.iter().zip(sums).zip(squares) {
+        let y = (value - shift) * inverse;
+        *sum += y;
+        *squares += y * y;
     }
 }
 

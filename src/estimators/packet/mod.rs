@@ -73,7 +73,8 @@ struct Numbers<S: Simd> {
 
 /// The random numbers of [`STEPS`] steps.
 struct Ahead<S: Simd> {
-    depths: [f64x8<S>; STEPS],
+    /// Minus the optical depths: the sign is part of the flight.
+    logarithms: [f64x8<S>; STEPS],
     /// Not looked at where chance does not decide.
     decisions: [f64x8<S>; STEPS],
 }
@@ -82,20 +83,20 @@ impl<S: Simd> Ahead<S> {
     #[inline(always)]
     fn new(simd: S) -> Self {
         let none = [f64x8::splat(simd, 0.0); STEPS];
-        Self { depths: none, decisions: none }
+        Self { logarithms: none, decisions: none }
     }
 
     /// Hands out the numbers of a step and finds those of the same step in the next window.
     #[inline(always)]
     fn exchange(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>) -> Numbers<S> {
-        let now = Numbers { depth: self.depths[step], decision: self.decisions[step] };
+        let now = Numbers { depth: -self.logarithms[step], decision: self.decisions[step] };
         self.find(step, streams, true);
         now
     }
 
     #[inline(always)]
     fn find(&mut self, step: usize, streams: &mut Xoshiro<u64x8<S>>, decides: bool) {
-        self.depths[step] = -streams.ln_uniform();
+        self.logarithms[step] = streams.ln_uniform();
         if decides {
             self.decisions[step] = streams.uniform();
         }
@@ -161,7 +162,8 @@ impl<S: Simd> Window<S> {
             // A step waits for the one before: logarithms, which wait for nothing, fill the time.
             self.ahead.exchange(step, streams)
         } else {
-            Numbers { depth: self.ahead.depths[step], decision: self.ahead.depths[step] }
+            let logarithm = self.ahead.logarithms[step];
+            Numbers { depth: -logarithm, decision: logarithm }
         };
         let ends = walks.step(now, &mut self.rows[step]);
         self.notes.ended[step] = ends.ended as u8;

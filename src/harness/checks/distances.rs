@@ -26,7 +26,7 @@ const INTEGERS: f64 = 4_503_599_627_370_496.0;
 /// Distances that are counted at once.
 const ROW: usize = 512;
 /// Ends that a distance is compared with at once.
-const NEAR: usize = 3;
+const NEAR: usize = 2;
 /// Counts are kept fourfold, so that one need not wait for the last to be stored.
 const FOLD: usize = 4;
 

@@ -310,14 +310,16 @@ pages! {
 /// Stresses everything; `done` is told the name of each page that is finished.
 pub fn all(effort: Effort, seed: u64, done: &(dyn Fn(&str) + Sync)) -> Stress {
     let begin = std::time::Instant::now();
-    let page = |(name, rows): &(&str, fn(Effort, u64) -> Vec<Row>)| {
-        let found = rows(effort, seed);
-        done(name);
-        found
-    };
     // At once: the last parts of a page alone would leave threads idle.
     let (rows, narrow) = rayon::join(
-        || PAGES.par_iter().map(page).collect::<Vec<_>>(),
+        || {
+            let pages = PAGES.par_iter().map(|(name, rows)| {
+                let found = rows(effort, seed);
+                done(name);
+                found
+            });
+            pages.collect::<Vec<_>>()
+        },
         || {
             let narrow = narrow::measure(effort, seed);
             done("narrow");
