@@ -53,7 +53,8 @@ pub struct Flock<'a> {
 }
 
 impl Flock<'_> {
-    /// So many walks, the first of which is number `first`, meet their collisions, two packs at a time.
+    /// So many walks, the first of which is number `first`, meet their collisions, two packs at a time; answers
+    /// whether some residual was no number. (That some were infinite and of both signs looks the same.)
     #[inline(always)]
     pub fn meet<S: Simd, R: Collision>(
         &mut self,
@@ -62,7 +63,7 @@ impl Flock<'_> {
         first: usize,
         count: usize,
         mut collisions: impl FnMut(usize) -> Collisions<S>,
-    ) {
+    ) -> bool {
         let whole = count / PAIR * PAIR;
         let mut sum = Packs::splat(simd, 0.0);
         for from in (0..whole).step_by(PAIR) {
@@ -77,15 +78,7 @@ impl Flock<'_> {
             is_unknown |= is_none(collisions.met.residual) & there != 0;
             self.meet_last(simd, rule, first + whole..first + count, &collisions);
         }
-        // Weights that stay say nothing of residuals that are no numbers: one survivor does.
-        if R::DECIDES
-            && !R::WEIGHS
-            && is_unknown
-            && let Some(weight) = self.weights.first_mut()
-        {
-            *weight = f64::NAN;
-            self.survivors = self.survivors.max(1);
-        }
+        is_unknown
     }
 
     #[inline(always)]
@@ -169,14 +162,14 @@ mod tests {
     struct Meeting<R>(R, usize, f64);
 
     impl<R: Collision> Task for Meeting<R> {
-        type Output = Vec<f64>;
+        type Output = (Vec<f64>, bool);
 
         #[inline(always)]
-        fn run<S: Simd>(self, simd: S) -> Vec<f64> {
+        fn run<S: Simd>(self, simd: S) -> Self::Output {
             let Self(rule, odd, value) = self;
             let mut weights = [1.0; COUNT];
             let mut flock = Flock { weights: &mut weights, survivors: 0 };
-            flock.meet(
+            let is_unknown = flock.meet(
                 simd,
                 &rule,
                 0,
@@ -193,7 +186,7 @@ mod tests {
                     }
                 },
             );
-            flock.weights[..flock.survivors].to_vec()
+            (flock.weights[..flock.survivors].to_vec(), is_unknown)
         }
     }
 
@@ -203,9 +196,9 @@ mod tests {
             for odd in [3, COUNT - 2] {
                 let mut weighed = [0.75; COUNT];
                 weighed[odd] = -1.0;
-                assert_eq!(on(level, Meeting(Weight, odd, 4.0)), weighed);
-                assert_eq!(on(level, Meeting(Null, odd, 4.0)), [1.0; COUNT - 1]);
-                let single = on(level, Meeting(Single::Clamped, odd, 4.0));
+                assert_eq!(on(level, Meeting(Weight, odd, 4.0)), (weighed.to_vec(), false));
+                assert_eq!(on(level, Meeting(Null, odd, 4.0)), (vec![1.0; COUNT - 1], false));
+                let (single, _) = on(level, Meeting(Single::Clamped, odd, 4.0));
                 assert_eq!((single.len(), single.iter().sum::<f64>()), (COUNT, COUNT as f64 - 2.0));
             }
         }
@@ -213,10 +206,13 @@ mod tests {
 
     #[test]
     fn a_ratio_that_is_no_number_shows() {
-        let shows = |weights: Vec<f64>| weights.iter().any(|weight| weight.is_nan());
+        let shows = |(weights, is_unknown): (Vec<f64>, bool)| {
+            is_unknown && weights.iter().any(|weight| weight.is_nan())
+        };
         for level in [Level::new(), Level::baseline()] {
             for odd in [0, 13, COUNT - 1] {
-                assert!(shows(on(level, Meeting(Null, odd, f64::NAN))));
+                // Weights that stay say nothing of it.
+                assert!(on(level, Meeting(Null, odd, f64::NAN)).1);
                 assert!(shows(on(level, Meeting(Weight, odd, f64::NAN))));
                 assert!(shows(on(level, Meeting(Single::Clamped, odd, f64::NAN))));
             }

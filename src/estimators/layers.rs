@@ -19,7 +19,7 @@
 //! Where the collisions of a layer lie is the same for every σ̂ that is constant, whatever control
 //! and rule. Experiments that find their random numbers at one address can so share all lookups:
 //! each makes the draws that it would make alone ([`draw`]). One that is alone, with one σ̂ and one
-//! σ_c, notes no places: a pack of its walks is looked up and decided at once.
+//! σ_c, notes no places: two packs of its walks are looked up and decided at once.
 //!
 //! Source: the layers are the multinomial histogram of N, drawn bin by bin; binomial numbers by
 //! `rand_distr`.

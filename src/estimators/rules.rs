@@ -122,7 +122,8 @@ impl Collision for Null {
         Outcome { survival, death, weight: one, loss: zero }
     }
 
-    /// `(1 − u) σ̂ ≤ σ_t − σ_c`, of which the left side does not wait for the lookup.
+    /// `(1 − u) σ̂ ≤ σ_t − σ_c`, of which the left side does not wait for the lookup: as probable as `u < r`,
+    /// which pages without a control decide by.
     #[inline(always)]
     fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
         number.times_plus(-met.sampling, met.sampling).at_most(met.residual)

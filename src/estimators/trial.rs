@@ -25,8 +25,8 @@ pub struct DrawBuffer {
 }
 
 impl DrawBuffer {
-    /// How many draws of one channel a buffer holds: small enough for the second-level cache, and so many
-    /// that the lanes of a packet seldom wait for the slowest.
+    /// How many draws of one channel a buffer holds: with what a question makes of them half a mebibyte, small
+    /// enough for most second-level caches, and so many that the lanes of a packet seldom wait for the slowest.
     pub const LENGTH: usize = 16_384;
 
     /// The fewest, however many channels.

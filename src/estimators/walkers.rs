@@ -87,6 +87,8 @@ struct Walks<'a, R> {
     lookups: &'a mut [u32],
     walking: usize,
     survivors: usize,
+    /// Whether some residual was no number.
+    is_unknown: bool,
 }
 
 impl<'a, R: Collision> Walks<'a, R> {
@@ -108,7 +110,22 @@ impl<'a, R: Collision> Walks<'a, R> {
             lookups,
             walking: count,
             survivors: 0,
+            is_unknown: false,
         })
+    }
+}
+
+impl<R: Collision> Walks<'_, R> {
+    /// So many are still on their way.
+    fn go_on(&mut self, walking: usize) {
+        self.walking = walking;
+        // Weights that stay say nothing of residuals that are no numbers: one draw does.
+        if walking == 0
+            && self.is_unknown
+            && let Some(weight) = self.weights.first_mut()
+        {
+            *weight = f64::NAN;
+        }
     }
 }
 
@@ -130,7 +147,8 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         let escaped = binomial(self.walking, self.hazards.at(layer), self.counts);
         let left = self.walking.saturating_sub(escaped);
         self.lookups[left..self.walking].fill(layer);
-        (self.walking, self.survivors) = (left, 0);
+        self.survivors = 0;
+        self.go_on(left);
     }
 
     fn collide(&mut self, level: Level, sites: &Sites, first: usize) {
@@ -154,7 +172,9 @@ impl<R: Collision> Walkers for Walks<'_, R> {
             first,
             count,
         };
-        self.survivors = pack::on(level, batch);
+        let is_unknown;
+        (self.survivors, is_unknown) = pack::on(level, batch);
+        self.is_unknown |= is_unknown;
     }
 
     fn collide_alone(
@@ -176,15 +196,16 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
         let (rule, places) = (&self.rule, [from, unit]);
         let layer = Layer { rule, level, places, sampling, subtracted, streams, flock };
-        let survivors = medium.profile().visit(layer);
-        self.survivors = survivors.unwrap_or_default();
-        survivors.is_some()
+        let Some((survivors, is_unknown)) = medium.profile().visit(layer) else { return false };
+        self.survivors = survivors;
+        self.is_unknown |= is_unknown;
+        true
     }
 
     fn close(&mut self, layer: u32) {
         self.weights[self.survivors..self.walking].fill(0.0);
         self.lookups[self.survivors..self.walking].fill(layer + 1);
-        self.walking = self.survivors;
+        self.go_on(self.survivors);
     }
 }
 
@@ -206,16 +227,16 @@ fn pair<S: Simd>(simd: S, row: &[f64; BATCH], number: usize) -> Twin<f64x8<S>> {
 }
 
 impl<R: Collision> Task for Batch<'_, R> {
-    type Output = usize;
+    type Output = (usize, bool);
 
-    /// Answers how many have survived, with those before.
+    /// Answers how many have survived, with those before, and whether some residual was no number.
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> usize {
+    fn run<S: Simd>(self, simd: S) -> (usize, bool) {
         let Self { rule, sites, subtracted, sampling: single, mut flock, first, count } = self;
         let one = Twin::splat(simd, 1.0);
         let sampling = Twin::splat(simd, single.unwrap_or(1.0));
         let mean_free_path = one / sampling;
-        flock.meet(
+        let is_unknown = flock.meet(
             simd,
             rule,
             first,
@@ -234,7 +255,7 @@ impl<R: Collision> Task for Batch<'_, R> {
                 Collisions { met, decision: pair(simd, &sites.decision, number) }
             },
         );
-        flock.survivors
+        (flock.survivors, is_unknown)
     }
 }
 
@@ -251,9 +272,9 @@ struct Layer<'a, R> {
 }
 
 impl<R: Collision> Visitor for Layer<'_, R> {
-    type Output = Option<usize>;
+    type Output = Option<(usize, bool)>;
 
-    fn visit<F: FreeFlight>(self, medium: &F) -> Option<usize> {
+    fn visit<F: FreeFlight>(self, medium: &F) -> Option<(usize, bool)> {
         pack::on_wide(self.level, Through { layer: self, medium }).ok()
     }
 }
@@ -264,11 +285,11 @@ struct Through<'a, R, M> {
 }
 
 impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
-    type Output = usize;
+    type Output = (usize, bool);
 
-    /// Answers how many have survived.
+    /// Answers how many have survived, and whether some residual was no number.
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> usize {
+    fn run<S: Simd>(self, simd: S) -> (usize, bool) {
         let Layer { rule, places: [from, unit], sampling, subtracted, streams, mut flock, .. } =
             self.layer;
         let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
@@ -279,7 +300,7 @@ impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
         // Found while the lookups before are made: a shorter chain, of which more are under way at once.
         let mut next =
             (integers(&mut places).times_plus(unit, from), integers(&mut decisions) * SCALE);
-        flock.meet(
+        let is_unknown = flock.meet(
             simd,
             rule,
             0,
@@ -295,7 +316,7 @@ impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
                 Collisions { met: Met { residual, sampling, mean_free_path }, decision }
             },
         );
-        flock.survivors
+        (flock.survivors, is_unknown)
     }
 }
 

@@ -58,6 +58,7 @@ impl<'a> Counted<'a> {
     /// Adds how many draws are in each class of the experiment's distances: the same for all that ask.
     pub fn add_distances(&self, classes: &Classes, sums: &mut [f64]) {
         let counts = self.distances.get_or_init(|| classes.count(self.draws));
+        debug_assert_eq!(sums.len(), counts.len(), "an experiment has one law of distances");
         sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
 

@@ -6,8 +6,8 @@
 //! ```
 //!
 //! Additions, shifts and exclusive ors: what a vector unit does well. Element i of a pack of
-//! streams has the words of stream i. Numbers are made of a word's upper 53 bits; the lowest three, which
-//! are those of a linear generator, are never used.
+//! streams has the words of stream i. Numbers are made of a word's upper 53 bits: the lowest three are
+//! those of a linear generator.
 //!
 //! Source: D. Blackman, S. Vigna, *Scrambled linear pseudorandom number generators*, ACM
 //! Transactions on Mathematical Software 47(4) (2021).

@@ -19,7 +19,8 @@ use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 
 const LANES: usize = 8;
-/// Draws between two splits of the exponents: thirty-two factors to a lane, each below 4e9 in most.
+/// Draws between two splits of the exponents: thirty-two factors to a lane, which overflow only if their
+/// geometric mean exceeds 4e9.
 const FLUSH: usize = 256;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
