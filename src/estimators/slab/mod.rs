@@ -17,11 +17,12 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
     let ratio =
         |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
+    let incidence = *setup.problem.incidence();
     Walk {
-        incidence: *setup.problem.incidence(),
+        incidence,
         albedo: setup.problem.albedo(),
         rule,
-        pieces: Pieces::new(&setup.mesh, &setup.sampling),
+        pieces: Pieces::new(&setup.mesh, &setup.sampling, &[incidence.light]),
         largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
         depth: setup.mesh.optical_depth().value,
         laws: setup.laws,

@@ -281,7 +281,7 @@ fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
             incidence: Incidence { light: Light::Diffuse, phase },
             albedo,
             rule,
-            pieces: Pieces::new(&mesh, &flown),
+            pieces: Pieces::new(&mesh, &flown, lights),
             largest_ratio: most,
             depth: mesh.optical_depth().value,
             laws: false,

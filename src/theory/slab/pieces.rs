@@ -1,9 +1,14 @@
 //! A slab cut into layers on which the ratio `r = σ_t/σ̂` is one number, or nearly so.
+//!
+//! Where r varies, layers end where it passes 1, at which the moments of collisions have kinks, and the
+//! first is halved again and again towards the top: grazing light gets no deeper than μ₀ free paths, and
+//! sees r there rather than the mean of a layer.
 
 use super::layer::Slice;
 use crate::media::Piecewise;
 use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::problems::slab::Light;
 use crate::theory::Mesh;
 use crate::theory::particle::Odds;
 
@@ -18,6 +23,10 @@ const COARSE: [usize; 2] = [12, 48];
 const MOST_BREAKS: usize = 24;
 /// Nodes on a smooth part of a layer.
 const NODES: usize = 6;
+/// The first layer is not thicker than light of this cosine gets, even if none grazes.
+const STEEP: f64 = 0.1;
+/// The most halvings of the first layer.
+const HALVINGS: u32 = 30;
 
 /// A layer: what is flown in it, and the ratios in it with their shares, which add up to 1.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,9 +72,9 @@ pub enum Pieces {
 }
 
 impl Pieces {
-    /// The layers of a medium under a sampling extinction.
+    /// The layers of a medium under a sampling extinction, for any of the given lights.
     #[must_use]
-    pub fn new(mesh: &Mesh, sampling: &Piecewise) -> Self {
+    pub fn new(mesh: &Mesh, sampling: &Piecewise, lights: &[Light]) -> Self {
         let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
         let mut exact: Vec<Piece> = Vec::new();
         let mut is_exact = true;
@@ -85,39 +94,56 @@ impl Pieces {
                 _ => exact.push(Piece::of(flown, first)),
             }
             if !is_exact || exact.len() > MOST_EXACT {
-                return Self::Graded([1, 2].map(|times| graded(mesh, sampling, times)));
+                return Self::Graded(graded(&cut, sampling, lights));
             }
         }
         Self::Exact(exact)
     }
 }
 
-/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂ where these are few.
-fn graded(mesh: &Mesh, sampling: &Piecewise, times: usize) -> Vec<Piece> {
-    let support = mesh.support();
-    let mut breaks = mesh.medium().breaks();
+/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂ and where these are equal if such
+/// places are few, and the same layers cut in two.
+fn graded(cut: &Mesh, sampling: &Piecewise, lights: &[Light]) -> [Vec<Piece>; 2] {
+    let support = cut.support();
+    let mut breaks = cut.medium().breaks();
     breaks.extend(sampling.knots());
+    breaks.extend(cut.roots(|t, sigma| sigma - sampling.value(t)));
     breaks.retain(|&t| support.contains_inside(t));
     breaks.extend([support.from, support.to]);
     breaks.sort_by(f64::total_cmp);
     breaks.dedup();
     let few = breaks.len() <= MOST_BREAKS;
-    let ends = if few { breaks.clone() } else { vec![support.from, support.to] };
-    let rule = GaussLegendre::new(NODES);
-    let layers = (2 * mesh.panels().len()).clamp(COARSE[0], COARSE[1]);
-    let mut pieces = Vec::new();
-    for stretch in ends.windows(2) {
-        let share = (stretch[1] - stretch[0]) / support.length();
+    let stretches = if few { breaks.clone() } else { vec![support.from, support.to] };
+    let layers = (2 * cut.panels().len()).clamp(COARSE[0], COARSE[1]);
+    let mut ends = vec![support.from];
+    for stretch in stretches.windows(2) {
+        let length = stretch[1] - stretch[0];
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
-        let parts = times * ((layers as f64 * share).ceil() as usize).max(1);
-        let step = (stretch[1] - stretch[0]) / parts as f64;
-        for part in 0..parts {
-            let from = stretch[0] + step * part as f64;
-            let within = Span::new(from, if part + 1 == parts { stretch[1] } else { from + step });
-            pieces.extend(piece(mesh, sampling, within, &breaks, &rule));
-        }
+        let parts = ((layers as f64 * length / support.length()).ceil() as usize).max(1);
+        ends.extend((1..parts).map(|i| stretch[0] + length / parts as f64 * i as f64));
+        ends.push(stretch[1]);
     }
-    pieces
+    let rule = GaussLegendre::new(NODES);
+    let piece = |from: f64, to: f64| piece(cut, sampling, Span::new(from, to), &breaks, &rule);
+    let cosine = |light: &Light| match light {
+        Light::Collimated(cosine) => *cosine,
+        Light::Diffuse => STEEP,
+    };
+    let least = lights.iter().map(cosine).fold(STEEP, f64::min);
+    for _ in 0..HALVINGS {
+        if piece(ends[0], ends[1]).is_none_or(|first| first.flown <= least) {
+            break;
+        }
+        ends.insert(1, 0.5 * (ends[0] + ends[1]));
+    }
+    [1, 2].map(|times| {
+        let cut = |ends: &[f64]| -> Vec<Piece> {
+            let step = (ends[1] - ends[0]) / f64::from(times);
+            let from = |i: i32| if i == times { ends[1] } else { ends[0] + step * f64::from(i) };
+            (0..times).filter_map(|i| piece(from(i), from(i + 1))).collect()
+        };
+        ends.windows(2).flat_map(cut).collect()
+    })
 }
 
 /// One layer by quadrature between the breaks inside it; `None` where nothing is flown.
