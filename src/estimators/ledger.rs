@@ -20,6 +20,10 @@ pub struct Row(pub [[f64; WIDTH]; 2]);
 
 /// What makes draws of rows.
 pub trait Reader {
+    /// Whether chance decides what becomes of walks: a step then takes a word for that, too. Elsewhere all
+    /// go on to the end, and steps need not note who escaped.
+    const DECIDES: bool;
+
     /// The value and the defect of a walk that ended in the step of a row.
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64);
 
@@ -59,14 +63,16 @@ impl Notes {
     /// The same by lanes.
     #[inline(always)]
     #[must_use]
-    pub fn by_lanes<S: Simd>(&self, simd: S) -> [Endings; WIDTH] {
+    pub fn by_lanes<S: Simd, R: Reader>(&self, simd: S) -> [Endings; WIDTH] {
         let (ended, escaped) =
             (u8x64::from_slice(simd, &self.ended), u8x64::from_slice(simd, &self.escaped));
         let mut endings = [Endings::default(); WIDTH];
         for (lane, ending) in endings.iter_mut().enumerate() {
             let bit = 1 << lane;
             ending.ended = (ended & bit).simd_eq(bit).to_bitmask();
-            ending.escaped = (escaped & bit).simd_eq(bit).to_bitmask();
+            if R::DECIDES {
+                ending.escaped = (escaped & bit).simd_eq(bit).to_bitmask();
+            }
         }
         endings
     }
@@ -143,7 +149,7 @@ impl<'a> Ledger<'a> {
             while ended != 0 && place < count {
                 let step = ended.trailing_zeros() & (STEPS as u32 - 1);
                 ended &= ended - 1;
-                let has_escaped = ending.escaped >> step & 1 == 1;
+                let has_escaped = !R::DECIDES || ending.escaped >> step & 1 == 1;
                 let row = &rows[step as usize];
                 (values[place], defects[place]) = reader.draw(row, lane, has_escaped);
                 let now = first.wrapping_add(step);

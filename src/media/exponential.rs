@@ -29,6 +29,9 @@ use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::{Known, Lane, Span};
 
+/// Below this exponent `e^x` loses digits.
+const LEAST: f64 = -700.0;
+
 /// An exponential atmosphere as a volume.
 pub struct Exponential {
     extinction: f64,
@@ -56,7 +59,13 @@ impl Decay {
     }
 
     fn value(&self, t: f64) -> f64 {
-        self.scale * self.exponent(t).exp()
+        let exponent = self.exponent(t);
+        if exponent >= LEAST {
+            return self.scale * exponent.exp();
+        }
+        // Next to underflow e^x has few digits, which a large scale would show.
+        let half = (0.5 * exponent).exp();
+        self.scale * half * half
     }
 }
 
@@ -178,6 +187,18 @@ mod tests {
         assert_eq!(field.free_flight(Span::new(0.0, 1e9), 1.0), None);
         let s = field.free_flight(Span::new(0.0, 1e9), 0.5).expect("inside");
         assert!((s - std::f64::consts::LN_2).abs() < 1e-15);
+    }
+
+    /// e^{−727} has nine digits.
+    #[test]
+    fn a_large_scale_shows_no_underflow() {
+        let (slope, scale) = (956.324_469_521_829_3, 6.397_761_024_764_652e196);
+        let field = Decay { scale, offset: 0.0, slope };
+        let span = Span::new(-0.759_942_721_560_702_7, -0.371_056_459_061_988_2);
+        let depth = 3.315_785_944_374_523_7e37;
+        let s = field.free_flight(span, depth).expect("inside");
+        let back = field.optical_depth(Span::new(span.from, s)).value;
+        assert!((back / depth - 1.0).abs() < 1e-11, "{back:e}");
     }
 
     #[test]

@@ -11,6 +11,14 @@ pub struct Moments {
     pub error: f64,
 }
 
+/// A number that is not negative and known to within `off`, and its relative error. One that is smaller than
+/// that is taken for `off` itself, which is right to 100 %: zero would promise that draws do not vary.
+#[must_use]
+pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
+    let value = value.max(off);
+    [value, if value > 0.0 { off / value } else { 0.0 }]
+}
+
 impl Moments {
     /// A draw without spread.
     #[must_use]

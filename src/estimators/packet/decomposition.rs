@@ -88,7 +88,6 @@ struct Residuals<'a, S: Simd, M, C> {
 }
 
 impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Residuals<'_, S, M, C> {
-    const DECIDES: bool = true;
     type Reader = Survivors;
 
     #[inline(always)]
@@ -121,6 +120,8 @@ struct Survivors {
 }
 
 impl Reader for Survivors {
+    const DECIDES: bool = true;
+
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
         let stopped = row.0[0][lane] < self.end;

@@ -74,7 +74,6 @@ struct Flights<'a, S: Simd, M, C> {
 }
 
 impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
-    const DECIDES: bool = true;
     type Reader = Distances;
 
     #[inline(always)]
@@ -100,6 +99,8 @@ struct Distances {
 }
 
 impl Reader for Distances {
+    const DECIDES: bool = true;
+
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
         (if escaped { self.ray.length() } else { row.0[0][lane] - self.ray.from }, 0.0)

@@ -75,7 +75,6 @@ struct Hops<'a, S: Simd, M> {
 }
 
 impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
-    const DECIDES: bool = true;
     type Reader = Survivors;
 
     #[inline(always)]
@@ -111,6 +110,8 @@ struct Survivors {
 }
 
 impl Reader for Survivors {
+    const DECIDES: bool = true;
+
     #[inline(always)]
     fn draw(&self, _: &Row, _: usize, escaped: bool) -> (f64, f64) {
         (if escaped { self.survivor } else { 0.0 }, 0.0)

@@ -112,9 +112,6 @@ impl<S: Simd> Ahead<S> {
 
 /// Eight walks.
 trait Walks<S: Simd> {
-    /// Whether chance decides what becomes of them: a step then takes a word for that, too.
-    const DECIDES: bool;
-
     /// What reads their rows.
     type Reader: Reader;
 
@@ -158,7 +155,7 @@ impl<S: Simd> Window<S> {
     #[inline(always)]
     #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
     fn step<W: Walks<S>>(&mut self, step: usize, walks: &mut W, streams: &mut Xoshiro<u64x8<S>>) {
-        let now = if W::DECIDES {
+        let now = if W::Reader::DECIDES {
             // A step waits for the one before: logarithms, which wait for nothing, fill the time.
             self.ahead.exchange(step, streams)
         } else {
@@ -167,21 +164,24 @@ impl<S: Simd> Window<S> {
         };
         let ends = walks.step(now, &mut self.rows[step]);
         self.notes.ended[step] = ends.ended as u8;
-        self.notes.escaped[step] = ends.escaped as u8;
+        if W::Reader::DECIDES {
+            self.notes.escaped[step] = ends.escaped as u8;
+        }
     }
 
     /// Makes draws of the walks of a pack that ended, and begins the next window, for which the streams were
-    /// here. A lane that has made its draws leaves its stream where the last one left it.
+    /// at `next`. A lane that has made its draws leaves its stream where the last one left it.
     #[inline(always)]
     fn turn<R: Reader>(
         &mut self,
         simd: S,
         pack: usize,
         next: Xoshiro<u64x8<S>>,
+        streams: &mut Xoshiro<u64x8<S>>,
         draws: &mut Draws<R>,
-        words: usize,
     ) {
-        let endings = self.notes.by_lanes(simd);
+        let words = if R::DECIDES { 2 } else { 1 };
+        let endings = self.notes.by_lanes::<S, R>(simd);
         let over = draws.ledger.collect(pack, &draws.reader, &self.rows, &endings);
         if over != [0; WIDTH] {
             let before = self.before.at_rest().apart();
@@ -196,6 +196,10 @@ impl<S: Simd> Window<S> {
             }
         }
         self.before = next;
+        if !R::DECIDES {
+            // By themselves: then all that a step needs stays in registers.
+            self.ahead.find_all(streams, false);
+        }
     }
 }
 
@@ -214,7 +218,7 @@ fn run<S: Simd, W: Walks<S>>(simd: S, begin: impl Fn() -> W, request: Request) -
     let packs = streams.packs();
     streams.turn = (streams.turn + count) % LANES;
     let draws = Draws { ledger, reader: begin().reader(), lanes: &mut streams.lanes };
-    if W::DECIDES && pack::is_widest(simd) {
+    if pack::is_widest(simd) {
         in_turn(simd, begin, &packs, draws)
     } else {
         one_after_the_other(simd, begin, &packs, draws)
@@ -231,16 +235,16 @@ fn in_turn<S: Simd, W: Walks<S>>(
 ) -> bool {
     let (mut walks, mut others) = (begin(), begin());
     let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
-    let mut window = Window::open(simd, &mut streams, W::DECIDES);
-    let mut other_window = Window::open(simd, &mut other_streams, W::DECIDES);
+    let mut window = Window::open(simd, &mut streams, W::Reader::DECIDES);
+    let mut other_window = Window::open(simd, &mut other_streams, W::Reader::DECIDES);
     while draws.ledger.is_open(0) || draws.ledger.is_open(1) {
         let (next, other_next) = (streams, other_streams);
         for step in 0..STEPS {
             window.step(step, &mut walks, &mut streams);
             other_window.step(step, &mut others, &mut other_streams);
         }
-        window.turn(simd, 0, next, &mut draws, 2);
-        other_window.turn(simd, 1, other_next, &mut draws, 2);
+        window.turn(simd, 0, next, &mut streams, &mut draws);
+        other_window.turn(simd, 1, other_next, &mut other_streams, &mut draws);
     }
     walks.are_sound() && others.are_sound()
 }
@@ -256,17 +260,13 @@ fn one_after_the_other<S: Simd, W: Walks<S>>(
     let mut are_sound = true;
     for (pack, lanes) in packs.iter().enumerate() {
         let (mut walks, mut streams) = (begin(), lanes.awake(simd));
-        let mut window = Window::open(simd, &mut streams, W::DECIDES);
+        let mut window = Window::open(simd, &mut streams, W::Reader::DECIDES);
         while draws.ledger.is_open(pack) {
             let next = streams;
             for step in 0..STEPS {
                 window.step(step, &mut walks, &mut streams);
             }
-            window.turn(simd, pack, next, &mut draws, if W::DECIDES { 2 } else { 1 });
-            if !W::DECIDES {
-                // By themselves: then all that a step needs stays in registers.
-                window.ahead.find_all(&mut streams, false);
-            }
+            window.turn(simd, pack, next, &mut streams, &mut draws);
         }
         are_sound &= walks.are_sound();
     }

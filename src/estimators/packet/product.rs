@@ -3,6 +3,8 @@
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::walk::product`] makes from
 //! stream j mod 16.
 
+use std::marker::PhantomData;
+
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use super::survival::Survivals;
@@ -168,12 +170,11 @@ where
     R: Collision,
     C: Course<S>,
 {
-    const DECIDES: bool = R::DECIDES;
-    type Reader = Weights;
+    type Reader = Weights<R>;
 
     #[inline(always)]
-    fn reader(&self) -> Weights {
-        Weights
+    fn reader(&self) -> Weights<R> {
+        Weights(PhantomData)
     }
 
     #[inline(always)]
@@ -200,9 +201,11 @@ where
 }
 
 /// Reads weights and what their books lack.
-struct Weights;
+struct Weights<R>(PhantomData<R>);
 
-impl Reader for Weights {
+impl<R: Collision> Reader for Weights<R> {
+    const DECIDES: bool = R::DECIDES;
+
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, escaped: bool) -> (f64, f64) {
         let [weights, defects] = &row.0;

@@ -72,7 +72,6 @@ struct Scores<'a, S: Simd, M, H> {
 }
 
 impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
-    const DECIDES: bool = false;
     type Reader = Totals;
 
     #[inline(always)]
@@ -102,6 +101,8 @@ struct Totals {
 }
 
 impl Reader for Totals {
+    const DECIDES: bool = false;
+
     #[inline(always)]
     fn draw(&self, row: &Row, lane: usize, _: bool) -> (f64, f64) {
         (row.0[0][lane] * self.unit, 0.0)

@@ -40,7 +40,6 @@ where
     R: Collision,
     C: Course<S>,
 {
-    const DECIDES: bool = true;
     type Reader = Survivors;
 
     #[inline(always)]
@@ -74,6 +73,8 @@ pub(super) struct Survivors {
 }
 
 impl Reader for Survivors {
+    const DECIDES: bool = true;
+
     #[inline(always)]
     fn draw(&self, _: &Row, _: usize, escaped: bool) -> (f64, f64) {
         (if escaped { self.begin } else { 0.0 }, self.defect)

@@ -13,7 +13,7 @@
 use std::cell::OnceCell;
 
 use super::collided::central;
-use super::rods::{moments_of, of_stated, rod_with, share};
+use super::rods::{moments_of, of_relative, of_stated, rod_with, share};
 use super::{Dice, Effort, Measure, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::Wide;
@@ -149,9 +149,9 @@ fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
             }
             // In units of the mean as it is told, which may have few digits.
             let exact = central(raw, Wide::from(moments.scale));
-            second.see(exact[0].relative_error(moments.relative[0]) / moments.error, place);
+            second.see(of_relative(moments.relative[0], moments.error, exact[0]), place);
             if moments.relative[2].is_finite() {
-                fourth.see(exact[1].relative_error(moments.relative[2]) / moments.error, place);
+                fourth.see(of_relative(moments.relative[2], moments.error, exact[1]), place);
             } else {
                 fourth.skip(place);
             }

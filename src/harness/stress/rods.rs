@@ -37,6 +37,11 @@ pub(super) fn of_stated(found: Known, exact: Wide) -> f64 {
     if off <= rounding { 0.0 } else { off / found.error }
 }
 
+/// How far a moment is off, in units of its stated error, which is relative.
+pub(super) fn of_relative(found: f64, error: f64, exact: Wide) -> f64 {
+    of_stated(Known::new(found, found.abs() * error), exact)
+}
+
 /// R and T of two-stream equations with rates A and B, in units of one over the length.
 pub(super) fn leaving([a, b]: [Wide; 2]) -> [Wide; 2] {
     let square = (a - b) * (a + b);
@@ -219,13 +224,13 @@ fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
                 continue;
             }
             let [variance, exact] = central(raw, raw[0]);
-            second.see(variance.relative_error(moments.relative[0]) / moments.error, place);
+            second.see(of_relative(moments.relative[0], moments.error, variance), place);
             // A moment that grids do not resolve says so: there are no digits to compare.
             if critical(rates[3]) <= 1.002 || !moments.relative[2].is_finite() {
                 fourth.skip(place);
                 continue;
             }
-            fourth.see(exact.relative_error(moments.relative[2]) / moments.error, place);
+            fourth.see(of_relative(moments.relative[2], moments.error, exact), place);
         }
     }
     vec![second, fourth, diverging]

@@ -14,7 +14,7 @@ use super::collided::central;
 use super::costs::stated;
 use super::ordinates::Ordinates;
 use super::peierls::Peierls;
-use super::rods::{moments_of, of_stated};
+use super::rods::{moments_of, of_relative, of_stated};
 use super::slabs::{lights, phase};
 use super::{Dice, Effort, Measure, Row, in_parts, text};
 use crate::media::Piecewise;
@@ -79,7 +79,7 @@ impl Kinds {
         let rows = [(&mut self.second, 2, relative[0]), (&mut self.fourth, 4, relative[2])];
         for ((row, needed, found), exact) in rows.into_iter().zip(exact) {
             match (raw.len() >= needed, found.is_finite()) {
-                (true, true) => row.see(exact.relative_error(found) / error, place),
+                (true, true) => row.see(of_relative(found, error, exact), place),
                 (false, false) => row.see(0.0, place),
                 _ => row.skip(place),
             }

@@ -23,7 +23,7 @@ use self::grid::Walk;
 use self::moments::{Joint, POWERS, Precision};
 use super::particle::ParticleRule;
 use super::prediction::Covariance;
-use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails};
+use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails, moments::not_negative};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Span};
 use crate::problems::rod::Seen;
@@ -217,19 +217,20 @@ const FAINT: f64 = 1e-9;
 fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let m = truth.value;
     let [_, [two, e2], [three, e3], [four, e4], _] = *raw;
-    let variance = two - m * m;
-    let second = variance / (m * m);
-    let error = (e2 + 2.0 * m * truth.error) / variance;
+    let off = (e2 + 2.0 * m * truth.error) / (m * m);
+    let [second, error] = not_negative((two - m * m) / (m * m), off);
     let third = (three - 3.0 * m * two + 2.0 * m.powi(3)) / m.powi(3);
     let fourth = (four - 4.0 * m * three + 6.0 * m * m * two - 3.0 * m.powi(4)) / m.powi(4);
-    let off = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2) / m.powi(4);
+    let of_truth = 4.0 * three.abs() + 12.0 * m * two + 12.0 * m.powi(3);
+    let off = (e4 + 4.0 * m * e3 + 6.0 * m * m * e2 + of_truth * truth.error) / m.powi(4);
     // By Jensen's inequality the fourth moment is not below the square of the second.
     let is_resolved = off <= (RESOLVED * fourth).max(FAINT)
         && fourth >= (1.0 - RESOLVED) * second * second - FAINT;
     if !four.is_finite() || !is_resolved {
         return Moments { scale: m, relative: [second, f64::INFINITY, f64::INFINITY], error };
     }
-    Moments { scale: m, relative: [second, third, fourth], error: error.max(off / fourth) }
+    let [fourth, of_fourth] = not_negative(fourth, off);
+    Moments { scale: m, relative: [second, third, fourth], error: error.max(of_fourth) }
 }
 
 /// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.

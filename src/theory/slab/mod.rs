@@ -6,9 +6,9 @@
 //! ```
 //!
 //! A layer so thin that light scatters in it once at most is doubled until it is the slab; layers that
-//! differ are laid upon each other. Any answer is computed three times, with fewer directions and thicker
-//! first layers the second and the third time, and the differences tell its error: thin slabs need grazing
-//! directions, and two answers with too few of them may agree by chance.
+//! differ are laid upon each other. Any answer is computed four times, with fewer and fewer directions and
+//! thicker first layers, and the differences tell its error: thin slabs need grazing directions, and answers
+//! with too few of them may agree by chance.
 //!
 //! Where only `r = σ_t/σ̂` matters at a tentative collision, the k-th moments of a walk are reflectance
 //! and transmittance of another slab: `∫σ̂(1 − Q_k)` thick, of albedo `S_k/(1 − Q_k)`, which may exceed
@@ -73,18 +73,23 @@ pub struct Resolution {
     pub directions: usize,
     /// The error that the first layer may bring in.
     pub first_layer: f64,
-    /// What five eighths of the directions differ by is so many times the error.
-    pub gain: f64,
+    /// What five eighths of the directions differ by is so many times the error, and what half of them do.
+    pub gains: [f64; 2],
 }
 
 impl Resolution {
     /// For exact answers: 1e-10, 1e-8 for Henyey–Greenstein of g = 0.9, and mostly far better.
-    pub const FINE: Self = Self { faintest: 1e-11, directions: 32, first_layer: 3e-14, gain: 12.0 };
+    pub const FINE: Self =
+        Self { faintest: 1e-11, directions: 32, first_layer: 3e-14, gains: [12.0, 400.0] };
     /// For moments: 1e-4 and mostly far better. So few directions that grazing light in thin slabs may
-    /// gain no more by more of them than `1/n`: five eighths then differ by 8/5 − 1 times the error.
-    pub const COARSE: Self = Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gain: 0.6 };
+    /// gain no more by more of them than `1/n`: five eighths then differ by 8/5 − 1 times the error. Elsewhere
+    /// errors swing, those of sixteen, twelve and ten directions may be one by chance, and half of them, whose
+    /// errors are ten to a hundred times larger, tell.
+    pub const COARSE: Self =
+        Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: [0.6, 4.0] };
     /// For moments where r varies, of which thirty-six layers are solved, and for differences.
-    pub const LAYERED: Self = Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gain: 0.6 };
+    pub const LAYERED: Self =
+        Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: [0.6, 4.0] };
 
     fn coarser(self) -> Self {
         Self {
@@ -99,6 +104,11 @@ impl Resolution {
         // Of a sharp phase function the Legendre moments ask for more directions: five eighths of those, too.
         let faintest = self.faintest.powf(0.625);
         Self { faintest, directions: self.directions * 5 / 8, ..self.coarser() }
+    }
+
+    fn half(self) -> Self {
+        let faintest = self.faintest.sqrt();
+        Self { faintest, directions: self.directions / 2, ..self.coarser() }
     }
 }
 
@@ -118,7 +128,7 @@ const ROUNDING: f64 = 2e-13;
 /// one with five eighths of thirty-two divided by twelve. Of 160 random slabs, 1e-4 to 10 thick, two exceeded the first
 /// alone, taken once, as did one of 128 others, by five times; of both no more than 0.72 was reached.
 const SAFETY: f64 = 2.0;
-/// In thinner slabs light grazes between the directions of all three answers, and differences are taken more
+/// In thinner slabs light grazes between the directions of all answers, and differences are taken more
 /// often, by this over the depth: of 4600 answers some exceeded them, by three times, from 5e-3 down.
 const THIN: f64 = 1e-2;
 /// In thicker ones rounding adds up: of 1500 answers one was off by twice the sum at a depth of 77.
@@ -144,15 +154,19 @@ pub fn solve_all(
     let fine = at(resolution)?;
     let coarse = at(resolution.coarser())?;
     let coarsest = at(resolution.coarsest())?;
+    let half = at(resolution.half())?;
     let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     let answer = |i: usize| {
         // What is known of the first layer and of rounding is added.
         let known = |of: &dyn Fn(&Energy) -> f64| {
-            let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
-            let differences =
-                (SAFETY * (fine - coarse).abs()).max((fine - coarsest).abs() / resolution.gain);
+            let [fine, coarse, coarsest, half] =
+                [&fine[i], &coarse[i], &coarsest[i], &half[i]].map(of);
+            let [of_coarsest, of_half] = resolution.gains;
+            let differences = (SAFETY * (fine - coarse).abs())
+                .max((fine - coarsest).abs() / of_coarsest)
+                .max((fine - half).abs() / of_half);
             Known::new(
                 fine,
                 thin * differences + thick * (resolution.first_layer + ROUNDING) * fine.abs(),

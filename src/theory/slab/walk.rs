@@ -28,6 +28,7 @@ use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
 use super::{Answer, Energy, Incidence, Light, Resolution, energies, energy, solve_all};
 use crate::numeric::Known;
+use crate::theory::moments::not_negative;
 use crate::theory::particle::{Odds, ParticleRule};
 use crate::theory::prediction::Covariance;
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
@@ -264,23 +265,20 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         let (second, third, fourth) = (unit(2, second), unit(3, third), unit(4, fourth));
         let blur = truth.error / t;
         let [a, b, c] = [second, third, fourth].map(|known| known.value);
-        let variance = (a - 1.0).max(0.0);
+        let off = second.error + 2.0 * blur * a;
         if c.is_infinite() || b.is_infinite() {
-            let error = (second.error + 2.0 * blur * a) / variance;
+            let [variance, error] = not_negative(a - 1.0, off);
             let error = if error.is_nan() { 0.0 } else { error };
             let higher = f64::INFINITY;
             return Moments { scale: t, relative: [variance, higher, higher], error };
         }
         let skew = b - 3.0 * a + 2.0;
-        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
         let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
-        let errors = [
-            (second.error + 2.0 * blur * a + rounding) / variance,
-            (fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding)
-                / peak,
-        ];
-        let error = errors[0].max(errors[1]);
-        Moments { scale: t, relative: [variance, skew, peak], error }
+        let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
+        let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding;
+        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max((a - 1.0).powi(2));
+        let [peak, of_peak] = not_negative(peak, off);
+        Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
     });
     let tails = match (moments, fourth, eighth) {
         (Some(moments), Some(fourth), Some(eighth)) => Tails {
