@@ -52,21 +52,22 @@ impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, control, begin, rule, medium, request } = self;
         let from = f64x8::splat(simd, sampling.begin().t);
-        let control = Subtracted::new(simd, control);
-        let site = Site { rule, medium, control, begin, from };
-        if let Some(even) = sampling.even() {
-            walk(simd, site, Even::new(simd, even), request);
-        } else {
-            walk(simd, site, Pieces::new(simd, sampling), request);
+        let site = Site { rule, medium, control: Any::new(simd, control), begin, from };
+        match (sampling.even(), site.control.constant) {
+            (Some(even), Some(value)) => {
+                walk(simd, site.less(Constant(value)), Even::new(simd, even), request);
+            }
+            (Some(even), None) => walk(simd, site, Even::new(simd, even), request),
+            (None, _) => walk(simd, site, Pieces::new(simd, sampling), request),
         }
     }
 }
 
 /// Walks without books where that is enough, else with them.
 #[inline(always)]
-fn walk<S: Simd, M: Extinction, R: Collision, C: Course<S> + Copy>(
+fn walk<S: Simd, M: Extinction, R: Collision, K: Subtracted<S>, C: Course<S> + Copy>(
     simd: S,
-    site: Site<S, M, R>,
+    site: Site<S, M, R, K>,
     course: C,
     request: Request,
 ) {
@@ -96,14 +97,31 @@ fn walk<S: Simd, M: Extinction, R: Collision, C: Course<S> + Copy>(
 }
 
 /// σ_c as the walks ask for it.
+pub(super) trait Subtracted<S: Simd>: Copy {
+    /// At the places reached.
+    fn at(&self, t: f64x8<S>) -> f64x8<S>;
+}
+
+/// One value: a branch in every step, even if it always goes one way, would keep the walks out of registers.
 #[derive(Clone, Copy)]
-pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
+struct Constant<S: Simd>(f64x8<S>);
+
+impl<S: Simd> Subtracted<S> for Constant<S> {
+    #[inline(always)]
+    fn at(&self, _: f64x8<S>) -> f64x8<S> {
+        self.0
+    }
+}
+
+/// Any.
+#[derive(Clone, Copy)]
+pub(in crate::estimators) struct Any<'a, S: Simd> {
     control: &'a Control,
     /// Its value, where there is only one.
     constant: Option<f64x8<S>>,
 }
 
-impl<'a, S: Simd> Subtracted<'a, S> {
+impl<'a, S: Simd> Any<'a, S> {
     /// What does not change is found here, not in every step.
     #[inline(always)]
     pub(in crate::estimators) fn new(simd: S, control: &'a Control) -> Self {
@@ -111,6 +129,7 @@ impl<'a, S: Simd> Subtracted<'a, S> {
         Self { control, constant }
     }
 
+    /// At the places reached.
     #[inline(always)]
     pub(in crate::estimators) fn at(&self, t: f64x8<S>) -> f64x8<S> {
         match self.constant {
@@ -120,32 +139,46 @@ impl<'a, S: Simd> Subtracted<'a, S> {
     }
 }
 
+impl<S: Simd> Subtracted<S> for Any<'_, S> {
+    #[inline(always)]
+    fn at(&self, t: f64x8<S>) -> f64x8<S> {
+        Any::at(self, t)
+    }
+}
+
 /// What the walks of a product estimator meet.
-pub(super) struct Site<'a, S: Simd, M, R> {
+pub(super) struct Site<'a, S: Simd, M, R, K> {
     pub rule: &'a R,
     medium: &'a M,
-    control: Subtracted<'a, S>,
+    control: K,
     pub begin: f64,
     from: f64x8<S>,
 }
 
-impl<S: Simd, M, R> Clone for Site<'_, S, M, R> {
+impl<S: Simd, M, R, K: Copy> Clone for Site<'_, S, M, R, K> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Simd, M, R> Copy for Site<'_, S, M, R> {}
+impl<S: Simd, M, R, K: Copy> Copy for Site<'_, S, M, R, K> {}
 
-impl<S: Simd, M, R> Site<'_, S, M, R> {
+impl<'a, S: Simd, M, R, K> Site<'a, S, M, R, K> {
     #[inline(always)]
     pub(super) fn zero(&self) -> f64x8<S> {
         self.from.each(0.0)
     }
+
+    /// The same with another σ_c.
+    #[inline(always)]
+    fn less<L>(&self, control: L) -> Site<'a, S, M, R, L> {
+        let Self { rule, medium, begin, from, .. } = *self;
+        Site { rule, medium, control, begin, from }
+    }
 }
 
-impl<S: Simd, M: Extinction, R> Site<'_, S, M, R> {
+impl<S: Simd, M: Extinction, R, K: Subtracted<S>> Site<'_, S, M, R, K> {
     /// What is met at the places reached. Beyond the end it means nothing, and nobody asks for it.
     #[inline(always)]
     pub(super) fn met<C: Course<S>>(&self, course: &C) -> Met<f64x8<S>> {
@@ -156,18 +189,19 @@ impl<S: Simd, M: Extinction, R> Site<'_, S, M, R> {
 }
 
 /// The walks of a product estimator.
-struct Products<'a, S: Simd, M, R, C> {
-    site: Site<'a, S, M, R>,
+struct Products<'a, S: Simd, M, R, K, C> {
+    site: Site<'a, S, M, R, K>,
     course: C,
     weight: f64x8<S>,
     books: Books<f64x8<S>>,
 }
 
-impl<S, M, R, C> Walks<S> for Products<'_, S, M, R, C>
+impl<S, M, R, K, C> Walks<S> for Products<'_, S, M, R, K, C>
 where
     S: Simd,
     M: Extinction,
     R: Collision,
+    K: Subtracted<S>,
     C: Course<S>,
 {
     type Reader = Weights<R>;

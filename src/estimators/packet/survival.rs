@@ -9,7 +9,7 @@
 
 use fearless_simd::{Simd, SimdMask, mask64x8};
 
-use super::product::Site;
+use super::product::{Site, Subtracted};
 use super::{Ends, Numbers, Walks, ends};
 use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::rules::Collision;
@@ -18,26 +18,27 @@ use crate::media::{Course, Extinction};
 use crate::numeric::Lane;
 
 /// The walks.
-pub(super) struct Survivals<'a, S: Simd, M, R, C> {
-    site: Site<'a, S, M, R>,
+pub(super) struct Survivals<'a, S: Simd, M, R, K, C> {
+    site: Site<'a, S, M, R, K>,
     course: C,
     /// Where every ratio so far was in `[0, 1]`.
     balanced: mask64x8<S>,
 }
 
-impl<'a, S: Simd, M, R, C> Survivals<'a, S, M, R, C> {
+impl<'a, S: Simd, M, R, K, C> Survivals<'a, S, M, R, K, C> {
     #[inline(always)]
-    pub(super) fn new(site: Site<'a, S, M, R>, course: C) -> Self {
+    pub(super) fn new(site: Site<'a, S, M, R, K>, course: C) -> Self {
         let zero = site.zero();
         Self { site, course, balanced: zero.at_most(zero) }
     }
 }
 
-impl<S, M, R, C> Walks<S> for Survivals<'_, S, M, R, C>
+impl<S, M, R, K, C> Walks<S> for Survivals<'_, S, M, R, K, C>
 where
     S: Simd,
     M: Extinction,
     R: Collision,
+    K: Subtracted<S>,
     C: Course<S>,
 {
     type Reader = Survivors;

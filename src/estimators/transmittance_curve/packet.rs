@@ -14,7 +14,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
-use crate::estimators::packet::product::Subtracted;
+use crate::estimators::packet::product::Any;
 use crate::estimators::packet::{Request, pays};
 use crate::estimators::places::{self, Place, Places};
 use crate::estimators::walk::Books;
@@ -71,7 +71,7 @@ fn walk<S: Simd, M: Extinction, C: Course<S> + Copy>(
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
-    let control = Subtracted::new(simd, &setup.control);
+    let control = Any::new(simd, &setup.control);
     let distances = setup.problem.ascending();
     let from = f64x8::splat(simd, setup.sampling.begin().t);
     let nowhere = f64x8::splat(simd, f64::NEG_INFINITY);
