@@ -6,10 +6,13 @@
 
 use std::cell::OnceCell;
 
-use super::checks::Observe;
 use super::checks::distances::Classes;
+use super::checks::{Observe, Observer};
 use crate::estimators::DrawBuffer;
 use crate::stats::{Census, Tally};
+
+/// Draws that are observed at once.
+const PART: usize = 1024;
 
 /// Draws, with what is known of their values.
 pub struct Counted<'a> {
@@ -32,25 +35,27 @@ impl<'a> Counted<'a> {
         Self { draws, values, lookups, distances: OnceCell::new() }
     }
 
-    /// Replaces `y` by what is observed of each value, and answers how often each comes; `None` where
-    /// it is of each draw.
-    #[must_use]
-    pub fn observe(&self, observe: &Observe, y: &mut Vec<f64>) -> Option<&[f64]> {
-        y.clear();
+    /// Hands over what is observed of each value and how often each comes, or what is observed of each draw,
+    /// part by part, so that it is still at hand; `y` is where it lies.
+    pub fn observe(
+        &self,
+        observe: &Observe,
+        y: &mut Vec<f64>,
+        mut absorb: impl FnMut(&mut [f64], Option<&[f64]>),
+    ) {
         match observe {
             Observe::Value(channel, observer) => {
-                let census = self.values[*channel].as_ref();
-                observer(census.map_or(&self.draws.values[*channel], |c| &c.values), y);
-                census.map(|census| &census.times[..])
+                let (values, census) = (&self.draws.values[*channel], &self.values[*channel]);
+                in_parts(values, census.as_ref(), observer, y, &mut absorb);
             }
             Observe::Lookups(observer) => {
-                let census = self.lookups.as_ref();
-                observer(census.map_or(&self.draws.lookups, |c| &c.values), y);
-                census.map(|census| &census.times[..])
+                let (lookups, census) = (&self.draws.lookups, &self.lookups);
+                in_parts(lookups, census.as_ref(), observer, y, &mut absorb);
             }
             Observe::Draw(observer) => {
+                y.clear();
                 observer(self.draws, y);
-                None
+                absorb(y, None);
             }
         }
     }
@@ -82,6 +87,24 @@ impl<'a> Counted<'a> {
     }
 }
 
+fn in_parts<T>(
+    draws: &[T],
+    census: Option<&Census<T>>,
+    observer: &Observer<[T]>,
+    y: &mut Vec<f64>,
+    absorb: &mut impl FnMut(&mut [f64], Option<&[f64]>),
+) {
+    let mut see = |part: &[T], times: Option<&[f64]>| {
+        y.clear();
+        observer(part, y);
+        absorb(y, times);
+    };
+    match census {
+        Some(census) => see(&census.values, Some(&census.times)),
+        None => draws.chunks(PART).for_each(|part| see(part, None)),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,11 +118,13 @@ mod tests {
 
     /// The sum of the y's, whichever way they come.
     fn sum(counted: &Counted, observe: &Observe) -> (bool, f64) {
-        let mut y = Vec::new();
-        match counted.observe(observe, &mut y) {
-            Some(times) => (true, y.iter().zip(times).map(|(y, n)| y * n).sum()),
-            None => (false, y.iter().sum()),
-        }
+        let (mut few, mut sum) = (false, 0.0);
+        counted.observe(observe, &mut Vec::new(), |y, times| {
+            few = times.is_some();
+            let times = |i: usize| times.map_or(1.0, |times| times[i]);
+            sum += y.iter().enumerate().map(|(i, y)| y * times(i)).sum::<f64>();
+        });
+        (few, sum)
     }
 
     #[test]

@@ -16,7 +16,7 @@ use super::scenario::Ready;
 use crate::estimators::DrawBuffer;
 use crate::estimators::walkers::{Request, Walkers};
 use crate::numeric::pack::in_fused_code;
-use crate::numeric::sum::sum_in_lanes;
+use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::rng::Streams;
 use crate::stats::Tally;
 use crate::stats::gate::{GateSums, SUMS};
@@ -235,23 +235,24 @@ impl Absorber {
     ) {
         match (self, kind) {
             (Self::Gate(sums, total), Kind::Scalar(scalar)) => {
-                let times = draws.observe(&scalar.observe, y);
-                if scalar.bias != 0.0 {
-                    for y in y.iter_mut() {
-                        *y += scalar.bias;
-                    }
-                }
                 let arguments = scalar.design.arguments();
-                if let Some(times) = times {
-                    sums.absorb_counted(y, times, &arguments);
-                    *total += y.iter().zip(times).map(|(y, times)| y * times).sum::<f64>();
-                } else {
-                    sums.absorb(y, &arguments);
-                    *total += in_fused_code(
-                        #[inline(always)]
-                        || sum_in_lanes(y, |y| y),
-                    );
-                }
+                draws.observe(&scalar.observe, y, |y, times| {
+                    if scalar.bias != 0.0 {
+                        for y in y.iter_mut() {
+                            *y += scalar.bias;
+                        }
+                    }
+                    if let Some(times) = times {
+                        sums.absorb_counted(y, times, &arguments);
+                        *total += sum_of_pairs(y, times, |y, times| y * times);
+                    } else {
+                        sums.absorb(y, &arguments);
+                        *total += in_fused_code(
+                            #[inline(always)]
+                            || sum_in_lanes(y, |y| y),
+                        );
+                    }
+                });
             }
             (Self::Law(sums), Kind::Law(law)) if is_fixed => law.add(draws, first, sums),
             (Self::Largest(most), Kind::Always(always)) => {

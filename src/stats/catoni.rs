@@ -8,7 +8,8 @@
 //! ψ grows like a logarithm, so that no single draw decides, and its exponential is bounded by a
 //! parabola, so that sums of it are evidence for any law with a known variance. The sum is kept as
 //! two running products, one over `t > 0` and one over `t < 0`; their exponents are split off every
-//! 256 draws; logarithms are taken where that overflows. The lanes are fixed, so that the width of a machine's registers changes no bit.
+//! 1024 draws; logarithms are taken where that overflows. The lanes are fixed, so that the width of a
+//! machine's registers changes no bit.
 //!
 //! Source: O. Catoni, *Challenging the empirical mean and empirical variance: a deviation study*,
 //! Annales de l'Institut Henri Poincaré B 48 (2012), 1148–1185, Eq. 2.1.
@@ -19,9 +20,9 @@ use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 
 const LANES: usize = 8;
-/// Draws between two splits of the exponents: thirty-two factors to a lane, which overflow only if their
-/// geometric mean exceeds 4e9.
-const FLUSH: usize = 256;
+/// Draws between two splits of the exponents: a hundred and twenty-eight factors to a lane, which overflow only
+/// if their geometric mean exceeds 250.
+const FLUSH: usize = 1024;
 const MANTISSA: u64 = 0x000f_ffff_ffff_ffff;
 const ONE: u64 = 0x3ff0_0000_0000_0000;
 const INFINITE: i64 = 0x7ff;

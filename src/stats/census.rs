@@ -2,6 +2,8 @@
 //!
 //! Whatever is summed over draws then costs as much as there are values, not as there are draws.
 
+use crate::numeric::pack::in_fused_code;
+
 /// Places of the table of values: twice as many as are let in, so that few collide.
 const PLACES: usize = 128;
 /// More values than this are not few.
@@ -92,7 +94,10 @@ impl Census<u32> {
     /// Counts whole numbers; `None` where they are large, or too many of them differ.
     #[must_use]
     pub fn of(draws: &[u32]) -> Option<Self> {
-        let largest = draws.iter().fold(0, |most, &n| most.max(n)) as usize;
+        let largest = in_fused_code(
+            #[inline(always)]
+            || draws.iter().fold(0, |most, &n| most.max(n)),
+        ) as usize;
         if largest > LARGEST || largest * WORTH > draws.len() {
             return None;
         }

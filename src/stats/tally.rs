@@ -7,7 +7,7 @@ use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::Sum;
 
 /// The sums side by side.
-const LANES: usize = 8;
+const LANES: usize = 16;
 
 /// Sums of `y` and `y²`, where `y` is a draw less a known shift, in units of a known scale.
 ///
@@ -37,19 +37,30 @@ impl Tally {
     /// The sums of one block, or a part of it.
     #[must_use]
     pub fn of(values: &[f64], shift: f64, scale: f64) -> Self {
-        // Eight sums of each, whose additions need not wait for each other.
-        let (mut sums, mut squares) = ([0.0; LANES], [0.0; LANES]);
         let inverse = 1.0 / scale;
+        let y = |value: f64| (value - shift) * inverse;
         let (rows, rest) = values.as_chunks::<LANES>();
-        in_fused_code(
+        // Many sums of each, whose additions need not wait for each other; they belong to the loop, which
+        // keeps them in registers.
+        let [mut sums, mut squares] = in_fused_code(
             #[inline(always)]
             || {
+                let (mut sums, mut squares) = ([0.0; LANES], [0.0; LANES]);
                 for row in rows {
-                    add(&mut sums, &mut squares, row, [shift, inverse]);
+                    for lane in 0..LANES {
+                        let y = y(row[lane]);
+                        sums[lane] += y;
+                        squares[lane] += y * y;
+                    }
                 }
+                [sums, squares]
             },
         );
-        add(&mut sums, &mut squares, rest, [shift, inverse]);
+        for ((sum, square), &value) in sums.iter_mut().zip(&mut squares).zip(rest) {
+            let y = y(value);
+            *sum += y;
+            *square += y * y;
+        }
         let squares: f64 = squares.iter().sum();
         let mut tally = Self { draws: values.len() as u64, ..Self::default() };
         tally.sum.add(sums.iter().sum());
@@ -101,21 +112,6 @@ impl Tally {
         let scatter = self.squares.value() - n * mean * mean;
         let variance = (self.draws > 1).then(|| scatter.max(0.0) / (n - 1.0));
         Some(Moments2 { mean, variance })
-    }
-}
-
-/// Adds `y = (value − shift) · inverse` and its square, each in its lane.
-#[inline(always)]
-fn add(
-    sums: &mut [f64; LANES],
-    squares: &mut [f64; LANES],
-    row: &[f64],
-    [shift, inverse]: [f64; 2],
-) {
-    for ((value, sum), squares) in row.iter().zip(sums).zip(squares) {
-        let y = (value - shift) * inverse;
-        *sum += y;
-        *squares += y * y;
     }
 }
 

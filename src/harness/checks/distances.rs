@@ -27,8 +27,8 @@ const INTEGERS: f64 = 4_503_599_627_370_496.0;
 const ROW: usize = 512;
 /// Ends that a distance is compared with at once.
 const NEAR: usize = 2;
-/// Counts are kept fourfold, so that one need not wait for the last to be stored.
-const FOLD: usize = 4;
+/// Counts are kept twice, so that one need not wait for the last to be stored.
+const FOLD: usize = 2;
 
 /// The check of the distances.
 pub struct Distances;
@@ -73,10 +73,11 @@ impl Classes {
         // A distance that rounding puts into the next cell still finds its class ahead.
         let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
         let passed = |cell| ends.partition_point(|&end| end < before(cell));
-        // Fewer than there are is a guide, too.
-        let guide = (0..=cells + 1).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
+        // Fewer than there are is a guide, too. All that is farther than the ends has the last cell: rays that
+        // escape come often, and at no rule, which would mislead a branch.
+        let guide = (0..=cells + 2).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
-        let (guide, last) = (guide.collect(), (cells + 1) as f64);
+        let (guide, last) = (guide.collect(), (cells + 2) as f64);
         ends.extend([f64::NAN; NEAR]);
         Self { ends, total, guide, first, last, scale, escapes }
     }

@@ -11,7 +11,9 @@
 //! bound on the variance, V is that bound; where it has none but knows that tails are light, as of the
 //! length of a walk, V is again twice that of pilot draws.
 
-use super::{Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, rounding_of};
+use super::{
+    Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, observe_each, rounding_of,
+};
 use crate::estimators::DrawBuffer;
 use crate::theory::Channel;
 
@@ -93,7 +95,12 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
         return Kind::Untestable("all pilot draws are the same, which tells nothing here".into());
     }
     let observe = move |values: &[f64], y: &mut Vec<f64>| {
-        y.extend(values.iter().map(|x| (x - truth) * scale));
+        observe_each(
+            values,
+            y,
+            #[inline(always)]
+            |x| (x - truth) * scale,
+        );
     };
     let observe = Observe::Value(index, Box::new(observe));
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };

@@ -10,6 +10,7 @@ use super::case::Tolerance;
 use super::counted::Counted;
 use crate::catalogue::Catalogue;
 use crate::estimators::{DrawBuffer, Experiment};
+use crate::numeric::pack::in_fused_code;
 use crate::rng::Streams;
 use crate::stats::gate::{self, Design};
 use crate::theory::Prediction;
@@ -98,6 +99,17 @@ pub enum Observe {
     Lookups(Observer<[u32]>),
     /// From the draw as a whole.
     Draw(Observer<DrawBuffer>),
+}
+
+/// Appends `f` of each value, on the hardware's registers: `f` must be inlined.
+fn observe_each(values: &[f64], y: &mut Vec<f64>, f: impl Fn(f64) -> f64) {
+    // Not extended: that is compiled for the least machine.
+    let first = y.len();
+    y.resize(first + values.len(), 0.0);
+    in_fused_code(
+        #[inline(always)]
+        || y[first..].iter_mut().zip(values).for_each(|(y, &x)| *y = f(x)),
+    );
 }
 
 impl Observe {

@@ -10,7 +10,7 @@
 //! values, and of experiments that a case declares biased.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, rounding_of};
+use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, observe_each, rounding_of};
 use crate::theory::Channel;
 
 /// The largest relative error of the variance that is still worth a promise.
@@ -56,10 +56,15 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     let known = Known { variance: kurtosis - 1.0, error, floor };
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
     let observe = move |values: &[f64], y: &mut Vec<f64>| {
-        y.extend(values.iter().map(|x| {
-            let deviation = (x - mean) * scale;
-            deviation * deviation - 1.0
-        }));
+        observe_each(
+            values,
+            y,
+            #[inline(always)]
+            |x| {
+                let deviation = (x - mean) * scale;
+                deviation * deviation - 1.0
+            },
+        );
     };
     let observe = Observe::Value(index, Box::new(observe));
     let wanted = Wanted { tolerance: subject.tolerance.variance, cap: CAP };
