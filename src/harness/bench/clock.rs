@@ -4,6 +4,7 @@
 //! thrown away, so that none pays for what is read or mapped for the first time; every other round
 //! goes through the ways backwards, so that none is always the second.
 
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -135,20 +136,29 @@ impl Stopwatch {
         seconds / draws as f64
     }
 
-    /// Seconds for a draw on all threads of the pool, each of which makes so many.
+    /// Seconds for a draw on all threads of the pool, which make so many for each thread: whoever is free takes
+    /// the next block, as in a run.
     fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
-        let (kernel, blocks) = (Kernel::Packets(self.level), draws.div_ceil(BLOCK));
+        let (kernel, threads) = (Kernel::Packets(self.level), self.threads as u64);
+        let (blocks, each) = (threads * draws.div_ceil(BLOCK), draws.min(BLOCK));
+        let first = u64::from(round) * blocks;
+        let next = AtomicU64::new(first);
         let buffers = rayon::broadcast(|_| Mutex::new(warm(planned, kernel, draws)));
         let seconds = self.clock.time(|| {
             rayon::broadcast(|context| {
-                let (thread, threads) = (context.index(), context.num_threads() as u64);
-                let turn = u64::from(round) * threads + thread as u64;
                 // Each thread has a buffer of its own: none waits.
-                let mut buffer = buffers[thread].lock().unwrap_or_else(PoisonError::into_inner);
-                each_buffer(planned, kernel, (turn * blocks, draws), |fill| fill(&mut buffer));
+                let buffer = buffers[context.index()].lock();
+                let mut buffer = buffer.unwrap_or_else(PoisonError::into_inner);
+                loop {
+                    let block = next.fetch_add(1, Ordering::Relaxed);
+                    if block >= first + blocks {
+                        break;
+                    }
+                    each_buffer(planned, kernel, (block, each), |fill| fill(&mut buffer));
+                }
             });
         });
-        seconds / (draws as f64 * self.threads as f64)
+        seconds / (blocks * each) as f64
     }
 }
 
