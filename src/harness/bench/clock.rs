@@ -5,7 +5,6 @@
 //! goes through the ways backwards, so that none is always the second.
 
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use cpu_time::ThreadTime;
@@ -137,27 +136,30 @@ impl Stopwatch {
     }
 
     /// Seconds for a draw on all threads of the pool, which make so many for each thread: whoever is free takes
-    /// the next block, as in a run.
+    /// the next block, as in a run. Time begins when all are awake.
     fn together(&self, planned: &Planned, round: u32, draws: u64) -> f64 {
         let (kernel, threads) = (Kernel::Packets(self.level), self.threads as u64);
         let (blocks, each) = (threads * draws.div_ceil(BLOCK), draws.min(BLOCK));
         let first = u64::from(round) * blocks;
-        let next = AtomicU64::new(first);
-        let buffers = rayon::broadcast(|_| Mutex::new(warm(planned, kernel, draws)));
-        let seconds = self.clock.time(|| {
-            rayon::broadcast(|context| {
-                // Each thread has a buffer of its own: none waits.
-                let buffer = buffers[context.index()].lock();
-                let mut buffer = buffer.unwrap_or_else(PoisonError::into_inner);
-                loop {
-                    let block = next.fetch_add(1, Ordering::Relaxed);
-                    if block >= first + blocks {
-                        break;
-                    }
-                    each_buffer(planned, kernel, (block, each), |fill| fill(&mut buffer));
+        let (next, awake) = (AtomicU64::new(first), AtomicU64::new(0));
+        let times = rayon::broadcast(|_| {
+            let mut buffer = warm(planned, kernel, draws);
+            awake.fetch_add(1, Ordering::Relaxed);
+            while awake.load(Ordering::Relaxed) < threads {
+                std::thread::yield_now();
+            }
+            let begin = Instant::now();
+            loop {
+                let block = next.fetch_add(1, Ordering::Relaxed);
+                if block >= first + blocks {
+                    return [begin, Instant::now()];
                 }
-            });
+                each_buffer(planned, kernel, (block, each), |fill| fill(&mut buffer));
+            }
         });
+        let begin = times.iter().map(|[begin, _]| *begin).min();
+        let end = times.iter().map(|[_, end]| *end).max();
+        let seconds = begin.zip(end).map_or(0.0, |(begin, end)| (end - begin).as_secs_f64());
         seconds / (blocks * each) as f64
     }
 }
