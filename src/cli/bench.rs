@@ -29,7 +29,7 @@ pub struct Arguments {
     /// Rounds; each times every experiment and its plain loop in turn
     #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
     rounds: u32,
-    /// Threads that draw at once, as many for each; with several, time is elapsed and not processor
+    /// Threads that draw at once, so many times as many draws; with several, time is elapsed and not processor
     /// time, and the column `scaling` compares them with one: give more draws then
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,

@@ -15,6 +15,9 @@ pub struct Moments {
 /// that is taken for `off` itself, which is right to 100 %: zero would promise that draws do not vary.
 #[must_use]
 pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
+    if value.is_nan() || off.is_nan() || off == f64::INFINITY {
+        return [value, f64::INFINITY];
+    }
     let value = value.max(off);
     [value, if value > 0.0 { off / value } else { 0.0 }]
 }

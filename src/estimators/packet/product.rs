@@ -97,7 +97,7 @@ fn walk<S: Simd, M: Extinction, R: Collision, K: Subtracted<S>, C: Course<S> + C
 }
 
 /// σ_c as the walks ask for it.
-pub(super) trait Subtracted<S: Simd>: Copy {
+pub(in crate::estimators) trait Subtracted<S: Simd>: Copy {
     /// At the places reached.
     fn at(&self, t: f64x8<S>) -> f64x8<S>;
 }
@@ -128,21 +128,15 @@ impl<'a, S: Simd> Any<'a, S> {
         let constant = control.single_value().map(|value| f64x8::splat(simd, value));
         Self { control, constant }
     }
-
-    /// At the places reached.
-    #[inline(always)]
-    pub(in crate::estimators) fn at(&self, t: f64x8<S>) -> f64x8<S> {
-        match self.constant {
-            Some(constant) => constant,
-            None => self.control.extinction(t),
-        }
-    }
 }
 
 impl<S: Simd> Subtracted<S> for Any<'_, S> {
     #[inline(always)]
     fn at(&self, t: f64x8<S>) -> f64x8<S> {
-        Any::at(self, t)
+        match self.constant {
+            Some(constant) => constant,
+            None => self.control.extinction(t),
+        }
     }
 }
 

@@ -18,11 +18,12 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let ratio =
         |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
     let incidence = *setup.problem.incidence();
+    let kinks = rule.kinks(setup.problem.albedo());
     Walk {
         incidence,
         albedo: setup.problem.albedo(),
         rule,
-        pieces: Pieces::new(&setup.mesh, &setup.sampling, &[incidence.light]),
+        pieces: Pieces::new(&setup.mesh, &setup.sampling, &kinks, &[incidence.light]),
         largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
         depth: setup.mesh.optical_depth().value,
         laws: setup.laws,

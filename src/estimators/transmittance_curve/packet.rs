@@ -14,7 +14,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
-use crate::estimators::packet::product::Any;
+use crate::estimators::packet::product::{Any, Subtracted};
 use crate::estimators::packet::{Request, pays};
 use crate::estimators::places::{self, Place, Places};
 use crate::estimators::walk::Books;

@@ -9,7 +9,7 @@
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Law, Subject};
+use super::{Ask, BLURRED, Check, Kind, Law, Subject};
 use crate::harness::counted::Counted;
 use crate::harness::plan::BLOCK;
 use crate::numeric::sum::sum_in_lanes;
@@ -63,7 +63,8 @@ impl Check for Dispersion {
         let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
         let needed = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
         let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
-        if subject.expect_biased || is_faint(subject, channel) || !enough {
+        let is_blurred = moments.error > BLURRED;
+        if subject.expect_biased || is_faint(subject, channel) || is_blurred || !enough {
             return Vec::new();
         }
         let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());

@@ -40,7 +40,8 @@ pub struct Classes {
     ends: Vec<f64>,
     /// How many classes.
     total: usize,
-    /// Equal cells from the first end to the last but one: how many ends surely lie before each.
+    /// Equal cells from the first end to the last but one, one before and one behind them: how many ends surely
+    /// lie before each.
     guide: Vec<u16>,
     /// Where the cells begin.
     first: f64,
@@ -73,8 +74,8 @@ impl Classes {
         // A distance that rounding puts into the next cell still finds its class ahead.
         let before = |cell: usize| first + width * (cell as f64 - 1.0 - SLACK);
         let passed = |cell| ends.partition_point(|&end| end < before(cell));
-        // Fewer than there are is a guide, too. All that is farther than the ends has the last cell: rays that
-        // escape come often, and at no rule, which would mislead a branch.
+        // Fewer than there are is a guide, too. What is farther by a cell has the last one: rays that escape
+        // come often, and by no rule, which would mislead a branch.
         let guide = (0..=cells + 2).map(|cell| u16::try_from(passed(cell)).unwrap_or(u16::MAX));
         let scale = if width > 0.0 { 1.0 / width } else { 0.0 };
         let (guide, last) = (guide.collect(), (cells + 2) as f64);

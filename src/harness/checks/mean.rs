@@ -61,7 +61,7 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     let (truth, scale) = (channel.truth.value, 1.0 / channel.unit);
     let floor = floor(subject, channel);
     let blur = channel.truth.error / channel.unit;
-    if blur > subject.tolerance.mean.unwrap_or(CAP) {
+    if blur.is_nan() || blur > subject.tolerance.mean.unwrap_or(CAP) {
         // Whatever the draws say, it would be within the truth's own error.
         return Kind::Untestable(format!("the exact answer is known to {blur:.1e} only"));
     }

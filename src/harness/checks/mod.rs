@@ -123,6 +123,9 @@ impl Observe {
     }
 }
 
+/// A variance that is known worse than this, relative, is nothing to compare the spread of draws with.
+const BLURRED: f64 = 1e-2;
+
 /// A quantity y of each draw that has mean 0 and a known variance when all is well.
 pub struct Scalar {
     /// y.

@@ -11,7 +11,7 @@
 //! first L = 1024 draws of each block.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Law, Subject};
+use super::{Ask, BLURRED, Check, Kind, Law, Subject};
 use crate::harness::counted::Counted;
 use crate::harness::plan::BLOCK;
 use crate::stats::correlation;
@@ -74,7 +74,8 @@ impl Check for Streams {
         let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
         let enough = enough && by_one <= MOST_BY_ONE;
         let enough = enough && subject.is_in_turn;
-        if subject.expect_biased || is_faint(subject, channel) || !enough {
+        let is_blurred = moments.error > BLURRED;
+        if subject.expect_biased || is_faint(subject, channel) || is_blurred || !enough {
             return Vec::new();
         }
         let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());

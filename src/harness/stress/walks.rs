@@ -276,16 +276,6 @@ fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
         let mesh = Mesh::new(medium);
         let (flown, extinction) =
             (Piecewise::constant(sampling, mesh.support()), Piecewise::lines(&knots, &values));
-        let phase = Phase::Isotropic(Isotropic);
-        let walk = Walk {
-            incidence: Incidence { light: Light::Diffuse, phase },
-            albedo,
-            rule,
-            pieces: Pieces::new(&mesh, &flown, lights),
-            largest_ratio: most,
-            depth: mesh.optical_depth().value,
-            laws: false,
-        };
         // Where r passes 1 its moments have kinks.
         let mut breaks = knots.clone();
         for (knots, values) in knots.windows(2).zip(values.windows(2)) {
@@ -304,12 +294,30 @@ fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
             if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
         };
         let leaving = |both: &[f64; 2]| both.map(Wide::from);
-        let truth =
-            Ordinates::new(Wide::from(walk.depth), below_one(Wide::from(albedo)), ORDINATES);
+        let depth = mesh.optical_depth().value;
+        let truth = Ordinates::new(Wide::from(depth), below_one(Wide::from(albedo)), ORDINATES);
         let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
         let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect());
         let exact: Vec<Leaving> = truth.into_iter().chain(higher).collect();
-        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
+        // Layers are thinner where light grazes: others have them as they are without.
+        let grazes = |i: &usize| matches!(lights[*i], Light::Collimated(cosine) if cosine < 0.1);
+        let (grazing, steep): (Vec<usize>, Vec<usize>) = (0..lights.len()).partition(grazes);
+        for group in [grazing, steep] {
+            let lights: Vec<Light> = group.iter().map(|&i| lights[i]).collect();
+            let exact: Vec<Leaving> =
+                exact.iter().map(|all| group.iter().map(|&i| all[i]).collect()).collect();
+            let phase = Phase::Isotropic(Isotropic);
+            let walk = Walk {
+                incidence: Incidence { light: Light::Diffuse, phase },
+                albedo,
+                rule,
+                pieces: Pieces::new(&mesh, &flown, &rule.kinks(albedo), &lights),
+                largest_ratio: most,
+                depth,
+                laws: false,
+            };
+            compare((&mut kinds, &mut none), &walk, &lights, &exact, None, &what);
+        }
     }
     vec![kinds.second, kinds.fourth]
 }

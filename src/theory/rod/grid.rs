@@ -124,10 +124,9 @@ impl<'a> Walk<'a> {
         let cut = mesh.refined(&cuts, &|_, _| Vec::new());
         let mut kinks = Vec::new();
         if let Some(sampling) = sampling {
-            kinks.extend(cut.roots(|t, sigma| sigma - sampling.value(t)));
-            if rule == ParticleRule::Adaptive {
-                let limit = |t: f64| 0.5 * (1.0 + rod.albedo().value(t));
-                kinks.extend(cut.roots(|t, sigma| sigma * limit(t) - sampling.value(t)));
+            for kink in 0..rule.kinks(1.0).len() {
+                let ratio = |t: f64| rule.kinks(rod.albedo().value(t))[kink];
+                kinks.extend(cut.roots(|t, sigma| sigma - ratio(t) * sampling.value(t)));
             }
         }
         let cut = cut.refined(&kinks, &|_, _| Vec::new());

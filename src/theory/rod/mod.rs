@@ -55,7 +55,9 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
         (Some([r, _]), Seen::Reflected) => Some(r),
         (Some([_, t]), Seen::Transmitted) => Some(t),
         (Some([r, t]), Seen::Absorbed) => {
-            Some(Known::new((1.0 - r.value) - t.value, r.error + t.error + f64::EPSILON))
+            // Of a white rod rounding may leave less than nothing.
+            let rest = ((1.0 - r.value) - t.value).max(0.0);
+            Some(Known::new(rest, r.error + t.error + f64::EPSILON))
         }
         _ => solved.next().map(|[value, error]| Known::new(value, error)),
     });
@@ -229,7 +231,7 @@ fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     if !four.is_finite() || !is_resolved {
         return Moments { scale: m, relative: [second, f64::INFINITY, f64::INFINITY], error };
     }
-    let [fourth, of_fourth] = not_negative(fourth, off);
+    let [fourth, of_fourth] = not_negative(fourth.max(second * second), off);
     Moments { scale: m, relative: [second, third, fourth], error: error.max(of_fourth) }
 }
 

@@ -87,7 +87,7 @@ impl Resolution {
     /// errors are ten to a hundred times larger, tell.
     pub const COARSE: Self =
         Self { faintest: 1e-5, directions: 16, first_layer: 1e-10, gains: [0.6, 4.0] };
-    /// For moments where r varies, of which thirty-six layers are solved, and for differences.
+    /// For moments where r varies, of which a hundred layers and more are solved, and for differences.
     pub const LAYERED: Self =
         Self { faintest: 1e-4, directions: 12, first_layer: 1e-7, gains: [0.6, 4.0] };
 
@@ -154,15 +154,16 @@ pub fn solve_all(
     let fine = at(resolution)?;
     let coarse = at(resolution.coarser())?;
     let coarsest = at(resolution.coarsest())?;
-    let half = at(resolution.half())?;
+    // So few directions may find echoes that are not there.
+    let half = at(resolution.half());
     let depth: f64 = slices.iter().map(|slice| slice.flown * slice.lost()).sum();
     let thick = (depth / THICK).max(1.0);
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     let answer = |i: usize| {
         // What is known of the first layer and of rounding is added.
         let known = |of: &dyn Fn(&Energy) -> f64| {
-            let [fine, coarse, coarsest, half] =
-                [&fine[i], &coarse[i], &coarsest[i], &half[i]].map(of);
+            let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
+            let half = half.as_ref().map_or(fine, |half| of(&half[i]));
             let [of_coarsest, of_half] = resolution.gains;
             let differences = (SAFETY * (fine - coarse).abs())
                 .max((fine - coarsest).abs() / of_coarsest)

@@ -1,8 +1,8 @@
 //! A slab cut into layers on which the ratio `r = σ_t/σ̂` is one number, or nearly so.
 //!
-//! Where r varies, layers end where it passes 1, at which the moments of collisions have kinks, and the
-//! first is halved again and again towards the top: grazing light gets no deeper than μ₀ free paths, and
-//! sees r there rather than the mean of a layer.
+//! Where r varies, layers end where the moments of collisions have kinks, as at r = 1, and the first is halved
+//! again and again towards the top: grazing light gets no deeper than μ₀ free paths, and sees r there rather
+//! than the mean of a layer.
 
 use super::layer::Slice;
 use crate::media::Piecewise;
@@ -16,7 +16,7 @@ use crate::theory::particle::Odds;
 const SAME: f64 = 1e-12;
 /// More layers than this are averaged.
 const MOST_EXACT: usize = 16;
-/// Layers of the coarser cut where r varies: so many, or two for each smooth panel of σ_t, but not more
+/// Layers of the coarser cut where r varies, before the first is halved: so many, or two for each smooth panel of σ_t, but not more
 /// than the most.
 const COARSE: [usize; 2] = [12, 48];
 /// More breaks than this are averaged over.
@@ -72,9 +72,10 @@ pub enum Pieces {
 }
 
 impl Pieces {
-    /// The layers of a medium under a sampling extinction, for any of the given lights.
+    /// The layers of a medium under a sampling extinction, for a walk whose moments have kinks at some ratios
+    /// and any of the given lights.
     #[must_use]
-    pub fn new(mesh: &Mesh, sampling: &Piecewise, lights: &[Light]) -> Self {
+    pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
         let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
         let mut exact: Vec<Piece> = Vec::new();
         let mut is_exact = true;
@@ -94,26 +95,37 @@ impl Pieces {
                 _ => exact.push(Piece::of(flown, first)),
             }
             if !is_exact || exact.len() > MOST_EXACT {
-                return Self::Graded(graded(&cut, sampling, lights));
+                return Self::Graded(graded(&cut, sampling, kinks, lights));
             }
         }
         Self::Exact(exact)
     }
 }
 
-/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂ and where these are equal if such
-/// places are few, and the same layers cut in two.
-fn graded(cut: &Mesh, sampling: &Piecewise, lights: &[Light]) -> [Vec<Piece>; 2] {
+/// Layers of about equal thickness, which end at the breaks of σ_t and σ̂, if these are few, and at kinks, if
+/// they are still few with them; and the same layers cut in two.
+fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> [Vec<Piece>; 2] {
     let support = cut.support();
-    let mut breaks = cut.medium().breaks();
-    breaks.extend(sampling.knots());
-    breaks.extend(cut.roots(|t, sigma| sigma - sampling.value(t)));
-    breaks.retain(|&t| support.contains_inside(t));
-    breaks.extend([support.from, support.to]);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup();
-    let few = breaks.len() <= MOST_BREAKS;
-    let stretches = if few { breaks.clone() } else { vec![support.from, support.to] };
+    let within = |mut breaks: Vec<f64>| {
+        breaks.retain(|&t| support.contains_inside(t));
+        breaks.extend([support.from, support.to]);
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
+    };
+    let mut knots = cut.medium().breaks();
+    knots.extend(sampling.knots());
+    let passed = |&ratio: &f64| {
+        cut.roots(|t, sigma| {
+            let (kink, off) = (ratio * sampling.value(t), sigma - ratio * sampling.value(t));
+            // Where both are one field rounding passes nothing.
+            if off.abs() <= SAME * kink { 0.0 } else { off }
+        })
+    };
+    let both = knots.iter().copied().chain(kinks.iter().flat_map(passed)).collect();
+    let (knots, breaks) = (within(knots), within(both));
+    let few = [&breaks, &knots].into_iter().find(|breaks| breaks.len() <= MOST_BREAKS);
+    let stretches = few.cloned().unwrap_or_else(|| vec![support.from, support.to]);
     let layers = (2 * cut.panels().len()).clamp(COARSE[0], COARSE[1]);
     let mut ends = vec![support.from];
     for stretch in stretches.windows(2) {
@@ -130,19 +142,22 @@ fn graded(cut: &Mesh, sampling: &Piecewise, lights: &[Light]) -> [Vec<Piece>; 2]
         Light::Diffuse => STEEP,
     };
     let least = lights.iter().map(cosine).fold(STEEP, f64::min);
+    let flown = |ends: &[f64]| piece(ends[0], ends[1]).map_or(0.0, |piece| piece.flown);
     for _ in 0..HALVINGS {
-        if piece(ends[0], ends[1]).is_none_or(|first| first.flown <= least) {
+        // Light passes what has no collisions.
+        let Some(first) = ends.windows(2).position(|ends| flown(ends) > 0.0) else { break };
+        if flown(&ends[first..]) <= least {
             break;
         }
-        ends.insert(1, 0.5 * (ends[0] + ends[1]));
+        ends.insert(first + 1, 0.5 * (ends[first] + ends[first + 1]));
     }
     [1, 2].map(|times| {
-        let cut = |ends: &[f64]| -> Vec<Piece> {
+        let split = |ends: &[f64]| -> Vec<Piece> {
             let step = (ends[1] - ends[0]) / f64::from(times);
             let from = |i: i32| if i == times { ends[1] } else { ends[0] + step * f64::from(i) };
             (0..times).filter_map(|i| piece(from(i), from(i + 1))).collect()
         };
-        ends.windows(2).flat_map(cut).collect()
+        ends.windows(2).flat_map(split).collect()
     })
 }
 

@@ -268,7 +268,6 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         let off = second.error + 2.0 * blur * a;
         if c.is_infinite() || b.is_infinite() {
             let [variance, error] = not_negative(a - 1.0, off);
-            let error = if error.is_nan() { 0.0 } else { error };
             let higher = f64::INFINITY;
             return Moments { scale: t, relative: [variance, higher, higher], error };
         }
@@ -276,7 +275,7 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
         let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
         let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding;
-        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max((a - 1.0).powi(2));
+        let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
         let [peak, of_peak] = not_negative(peak, off);
         Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
     });
