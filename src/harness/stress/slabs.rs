@@ -17,7 +17,7 @@ const PARTS: u64 = 16;
 const ORDINATES: usize = 72;
 
 /// Lights on one slab.
-const LIGHTS: usize = 8;
+pub(super) const LIGHTS: usize = 8;
 
 /// All rows.
 #[must_use]

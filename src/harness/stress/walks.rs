@@ -15,7 +15,7 @@ use super::costs::stated;
 use super::ordinates::Ordinates;
 use super::peierls::Peierls;
 use super::rods::{moments_of, of_relative, of_stated};
-use super::slabs::{lights, phase};
+use super::slabs::{LIGHTS, lights, phase};
 use super::{Dice, Effort, Measure, Row, in_parts, text};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Wide};
@@ -245,6 +245,17 @@ fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
     vec![kinds.second, kinds.fourth, lookups]
 }
 
+/// Lights that graze, or none of them: layers are thinner for all where one does.
+fn alike(dice: &mut Dice) -> Vec<Light> {
+    let all_graze = dice.below(2) == 0;
+    let cosine = |dice: &mut Dice| {
+        if all_graze { dice.sized(-4.0, -1.0) } else { dice.between(0.1, 1.0) }
+    };
+    let diffuse = (!all_graze).then_some(Light::Diffuse);
+    let others = (0..LIGHTS).map(|_| Light::Collimated(cosine(dice)));
+    diffuse.into_iter().chain(others).take(LIGHTS).collect()
+}
+
 /// r that varies: Peierls' equation.
 fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
     let range =
@@ -264,7 +275,7 @@ fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
             (0..=cuts).map(|_| sampling * most * dice.between(0.0, 1.0)).collect();
         let highest = dice.below(cuts + 1);
         values[highest] = sampling * most;
-        let lights = &lights(dice);
+        let lights = &alike(dice);
         let text = format!(
             "medium.piecewise-linear = {{ knots = {knots:?}, values = {values:?} }}\nspan = [0, 1]"
         );
@@ -299,25 +310,17 @@ fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
         let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
         let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect());
         let exact: Vec<Leaving> = truth.into_iter().chain(higher).collect();
-        // Layers are thinner where light grazes: others have them as they are without.
-        let grazes = |i: &usize| matches!(lights[*i], Light::Collimated(cosine) if cosine < 0.1);
-        let (grazing, steep): (Vec<usize>, Vec<usize>) = (0..lights.len()).partition(grazes);
-        for group in [grazing, steep] {
-            let lights: Vec<Light> = group.iter().map(|&i| lights[i]).collect();
-            let exact: Vec<Leaving> =
-                exact.iter().map(|all| group.iter().map(|&i| all[i]).collect()).collect();
-            let phase = Phase::Isotropic(Isotropic);
-            let walk = Walk {
-                incidence: Incidence { light: Light::Diffuse, phase },
-                albedo,
-                rule,
-                pieces: Pieces::new(&mesh, &flown, &rule.kinks(albedo), &lights),
-                largest_ratio: most,
-                depth,
-                laws: false,
-            };
-            compare((&mut kinds, &mut none), &walk, &lights, &exact, None, &what);
-        }
+        let phase = Phase::Isotropic(Isotropic);
+        let walk = Walk {
+            incidence: Incidence { light: Light::Diffuse, phase },
+            albedo,
+            rule,
+            pieces: Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights),
+            largest_ratio: most,
+            depth,
+            laws: false,
+        };
+        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
     }
     vec![kinds.second, kinds.fourth]
 }
