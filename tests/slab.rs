@@ -207,10 +207,12 @@ fn through(light: Light, pieces: Vec<Piece>) -> Walk {
     }
 }
 
+/// The mean of the lookups. The gate meets it with 1e9 draws to 1e-5 at best; the statement is that of ten
+/// directions and of eight, and far above what sixteen are off.
 fn lookups(walk: &Walk) -> Known {
     let truth = cached(&walk.incidence, Known::exact(1.0), 0.8).expect("finite");
     let law = walk.predict(&truth).lookups.expect("r is constant in each layer");
-    assert!(law.error < 1e-6, "{:e}", law.error);
+    assert!(law.error < 1e-5, "{:e}", law.error);
     Known::new(law.mean, law.mean * law.error)
 }
 
@@ -229,9 +231,10 @@ fn a_walk_without_end_looks_up_the_mean_chord() {
     };
     let (there, back) = (of(&[0, 1, 2]), of(&[2, 1, 0]));
     let both = there + back;
-    assert!(is(both, 2.0 * 2.0 * 2.0), "{both:?}");
+    assert!(is(both, 2.0 * 2.0 * 2.0) && (both.value - 8.0).abs() < 1e-8, "{both:?}");
     assert!((there.value - back.value).abs() > 1e-3);
-    assert!(is(lookups(&through(Light::Diffuse, vec![Piece::of(1.7, 0.5)])), 3.4));
+    let alone = lookups(&through(Light::Diffuse, vec![Piece::of(1.7, 0.5)]));
+    assert!(is(alone, 3.4) && (alone.value - 3.4).abs() < 1e-8, "{alone:?}");
 }
 
 #[test]
@@ -276,11 +279,13 @@ fn layers_of_one_kind_are_one_layer() {
         moments(vec![Piece::of(1.6, 0.7)]),
         moments(vec![Piece::of(0.5, 0.7), Piece::of(0.1, 0.7), Piece::of(1.0, 0.7)]),
     );
-    for (a, b) in whole.0.iter().zip(&cut.0) {
+    let same = |a: &Known, b: &Known| {
         assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
-    }
-    let (a, b) = (whole.1, cut.1);
-    assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
+        // With the same directions only the first layers differ.
+        assert!((a.value / b.value - 1.0).abs() < 1e-9, "{a:?} {b:?}");
+    };
+    whole.0.iter().zip(&cut.0).for_each(|(a, b)| same(a, b));
+    same(&whole.1, &cut.1);
 }
 
 #[test]
