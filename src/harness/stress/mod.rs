@@ -26,7 +26,7 @@
 //! | rods: truths, moments, lookups | [`rods`], [`costs`] | closed forms, 32 digits | 94,000; 2,200; 2,300 |
 //! | rods: orders, flux, absorption; moments | [`inside`] | power series, 32 digits | 4,000; 1,400 |
 //! | slabs: R, T, collisions | [`slabs`] | twice the resolution; ordinates, 32 digits | 1,150; 1,540 |
-//! | walks in slabs: moments | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation | 1,980; 1,930; 1,540 |
+//! | walks in slabs: moments | [`walks`] | ordinates, 32 digits; more directions; Peierls' equation; more directions where r varies | 1,980; 1,930; 1,540; 510 |
 //! | walks in slabs: lookups | [`walks`] | ordinates, 32 digits; more directions | 500; 480 |
 //! | light in balls | [`balls`] | ordinates, 32 digits; white light; a finer solution | 1,150; 1,540; 1,320 |
 //! | point sources in balls: no verdict asks | [`balls`] | a finer solution | 1,020 |

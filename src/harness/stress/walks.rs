@@ -2,8 +2,8 @@
 //!
 //! The k-th moments of a walk are what leaves another slab, whose albedo may exceed 1. Where r is one number
 //! and light is scattered evenly, discrete ordinates in 32 digits know it, and whether it is finite, see
-//! `ordinates`; where r varies, Peierls' equation, see `peierls`. Other phase functions in layers of other r
-//! are solved again with half as many directions again and a thinner first layer.
+//! `ordinates`; where r varies, Peierls' equation, see `peierls`. Other phase functions, in layers of other r
+//! and where r varies, are solved again with half as many directions again and a thinner first layer.
 //!
 //! ```text
 //! E[X^k]:  ∫σ̂(1 − Q_k) thick, of the albedo S_k/(1 − Q_k)
@@ -19,7 +19,7 @@ use super::slabs::{LIGHTS, lights, phase};
 use super::{Dice, Effort, Measure, Row, in_parts, text};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Wide};
-use crate::phase::{Phase, isotropic::Isotropic};
+use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
 use crate::problems::slab::{Incidence, Light};
 use crate::theory::particle::ParticleRule;
 use crate::theory::slab::layer::Slice;
@@ -34,6 +34,8 @@ const WHITE: f64 = 1e-14;
 /// Half as many directions again as moments take, and a first layer of a hundredth.
 const FINER: Resolution =
     Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
+/// The same where r varies, of which many layers are solved.
+const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FINER };
 /// Fainter light is not resolved to 1e-4, and refused.
 const FAINT: f64 = 1e-9;
 
@@ -46,6 +48,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let mut rows = even(dice, some(4, 4));
         rows.extend(finer(dice, some(8, 4)));
         rows.extend(graded(dice, some(8, 3)));
+        rows.extend(ramps(dice, some(8, 1)));
         rows
     })
 }
@@ -243,6 +246,71 @@ fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
         compare(rows, &walk, lights, &exact, collisions.as_deref(), &what);
     }
     vec![kinds.second, kinds.fourth, lookups]
+}
+
+/// r that varies, and other phase functions: the same layers with more directions.
+fn ramps(dice: &mut Dice, trials: u32) -> Vec<Row> {
+    let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, τ = 1e-3 … 5; same layers, half as many directions again";
+    let mut kinds = Kinds::new(range);
+    // Lookups are not predicted here.
+    let mut none = Row::new("", "", Measure::Count, 0.0);
+    for _ in 0..trials {
+        let (flown, albedo) = (dice.sized(-3.0, 0.7), albedo(dice));
+        let ends = [dice.between(0.0, 1.4), dice.between(0.0, 1.4)];
+        let phase = match HenyeyGreenstein::new(dice.between(-0.6, 0.6)) {
+            Some(phase) if dice.below(4) > 0 => Phase::HenyeyGreenstein(phase),
+            _ => Phase::Isotropic(Isotropic),
+        };
+        let (rule, lights) = (rule(dice, f64::INFINITY), &lights(dice));
+        let cut = |count: u32| -> Vec<Piece> {
+            let ratio = |place: f64| ends[0] + (ends[1] - ends[0]) * place / f64::from(count);
+            let layer = |i: u32| {
+                let middle = f64::from(i) + 0.5;
+                let nodes = [middle - 0.75f64.sqrt() / 3.0, middle + 0.75f64.sqrt() / 3.0];
+                let ratios = nodes.map(|place| [0.5, ratio(place)]).to_vec();
+                Piece { flown: flown / f64::from(count), ratios }
+            };
+            (0..count).map(layer).collect()
+        };
+        let cuts = [cut(12), cut(24)];
+        let of_power = |k: u32| -> Option<Leaving> {
+            let slice = |piece: &Piece| {
+                let moments = |&[share, ratio]: &[f64; 2]| {
+                    moments_of(rule, Wide::from(ratio), albedo, k).map(|x| share * x.value())
+                };
+                let [straight, scattered] = piece
+                    .ratios
+                    .iter()
+                    .map(moments)
+                    .fold([0.0; 2], |sums, both| [sums[0] + both[0], sums[1] + both[1]]);
+                Slice { flown: piece.flown, straight, scattered, score: 0.0 }
+            };
+            let [coarse, fine] = cuts.each_ref().map(|cut| {
+                let slices: Vec<Slice> = cut.iter().map(slice).collect();
+                slab::energies(&phase, lights, &slices, LAYERED)
+            });
+            let both = |(coarse, fine): (Energy, Energy)| {
+                let sides =
+                    [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
+                sides.map(|[coarse, fine]| Wide::from(fine + (fine - coarse) / 3.0))
+            };
+            Some(coarse?.into_iter().zip(fine?).map(both).collect())
+        };
+        let exact: Vec<Leaving> = (1..=4).map_while(of_power).collect();
+        let walk = Walk {
+            incidence: Incidence { light: Light::Diffuse, phase },
+            albedo,
+            rule,
+            // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
+            largest_ratio: 1.4,
+            pieces: Pieces::Graded(cuts.clone()),
+            depth: 0.5 * flown * (ends[0] + ends[1]),
+            laws: false,
+        };
+        let what = format!("{rule:?}, ∫σ̂ = {flown:e}, r = {ends:?}, a = {albedo:e}, {phase:?}");
+        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
+    }
+    vec![kinds.second, kinds.fourth]
 }
 
 /// Lights that graze, or none of them: layers are thinner for all where one does.

@@ -5,7 +5,8 @@
 //! layer where `r = σ_t/σ̂` changes from layer to layer. Of rules that leave no weight at a null
 //! collision, `r ≤ 1`, these are τ and `S_k` at r = 1, whatever σ_t and σ̂. Elsewhere, where r varies
 //! continuously, layers have the mean `Q_k` and `S_k`; the error is of second order in their
-//! thickness, and is extrapolated from two cuts and bounded by their difference.
+//! thickness, and is extrapolated from two cuts and bounded by their difference and by what directions are
+//! missing.
 //!
 //! A walk leaves on one side only: `X_R X_T = 0`, which makes the covariance.
 //!
@@ -133,11 +134,11 @@ impl Walk {
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
                     return None;
                 }
-                let [coarse, fine] = cuts
-                    .each_ref()
-                    .map(|cut| energies(phase, lights, &layers(cut), Resolution::LAYERED));
-                let pairs = coarse?.into_iter().zip(fine?);
-                let both = |(coarse, fine): (Energy, Energy)| {
+                let [coarse, fine] = cuts.each_ref().map(|cut| layers(cut));
+                let coarse = solve_all(phase, lights, &coarse, Resolution::LAYERED)?;
+                let fine = energies(phase, lights, &fine, Resolution::LAYERED)?;
+                let pairs = coarse.into_iter().zip(fine);
+                let both = |(coarse, fine): (Answer, Energy)| {
                     [
                         extrapolated(coarse.reflected, fine.reflected),
                         extrapolated(coarse.transmitted, fine.transmitted),
@@ -225,9 +226,11 @@ fn predicted(
     }
 }
 
-/// What two cuts say together: the error of the finer one is a quarter of the other's.
-fn extrapolated(coarse: f64, fine: f64) -> Known {
-    Known::new(fine + (fine - coarse) / 3.0, (fine - coarse).abs() + 1e-4 * fine.abs())
+/// What two cuts say together: the error of the finer one is a quarter of the other's, and what directions
+/// are missing is the same in both.
+fn extrapolated(coarse: Known, fine: f64) -> Known {
+    let step = fine - coarse.value;
+    Known::new(fine + step / 3.0, step.abs() + coarse.error + 1e-4 * fine.abs())
 }
 
 /// The step of θ in units of the number of collisions over which the law decays.
