@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Windows of some milliseconds on one thread and on two take turns, in rounds over all experiments,
-//! so that what drifts on the machine drifts for all of them. The first line is a loop of
+//! so that what drifts on the machine drifts for all of them. The last line is a loop of
 //! multiply-adds in registers, which shares nothing: where it gains less than twice, the machine, or
 //! its host, has no second processor to give at the time.
 

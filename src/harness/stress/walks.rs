@@ -250,7 +250,7 @@ fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
 
 /// r that varies, and other phase functions: the same layers with more directions.
 fn ramps(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, τ = 1e-3 … 5; same layers, half as many directions again";
+    let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
     let mut kinds = Kinds::new(range);
     // Lookups are not predicted here.
     let mut none = Row::new("", "", Measure::Count, 0.0);
