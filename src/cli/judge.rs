@@ -4,36 +4,44 @@ use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, ValueEnum};
+use trueflight::files;
 use trueflight::harness::case::Case;
-use trueflight::harness::foreign::claim::{Choice, Claim, ROUNDING};
+use trueflight::harness::foreign::claim::{Claim, Given, Lookups, ROUNDING};
 use trueflight::harness::foreign::judge::{Trial, Wanted};
 use trueflight::harness::foreign::judgement::Judgement;
-use trueflight::harness::foreign::{self, Column, Draws, Format};
+use trueflight::harness::foreign::{self, Choice, Column, Draws, Format};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::source::CaseError;
 use trueflight::report::console::judgement;
+use trueflight::report::judgement_junit;
 
-use super::{Console, output, selection};
+use super::verdict::Inconclusive;
+use super::{Console, USAGE, output, selection};
+
+/// How many draws are read of a pipe, which need not end.
+const OF_A_PIPE: u64 = 1 << 26;
 
 /// Arguments of `judge`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// File of draws (.csv or .txt, .npy, .f64 or .bin or .raw), or `-` for a pipe with --input.
-    /// Reading stops at the decision: a writer at the other end of a pipe may see it close early
-    #[arg(value_name = "FILE")]
-    file: PathBuf,
+    /// Files of independent draws (.csv or .txt, .npy, .f64 or .bin or .raw), or `-` for a pipe with
+    /// --input. Several files share --alpha
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
     /// What the mean should be
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
     #[arg(required_unless_present = "case")]
     truth: Option<f64>,
-    /// The variance of one draw; without it, it is estimated and not tested
-    #[arg(long, value_name = "V", allow_hyphen_values = true, conflicts_with = "case")]
-    #[arg(group = "claimed")]
+    /// The variance of one draw, or of one average with --batch; without it, it is not tested
+    #[arg(long, value_name = "V", allow_hyphen_values = true, group = "claimed")]
     variance: Option<f64>,
-    /// The kurtosis of one draw (3 for the normal law); without it, it is estimated
-    #[arg(long, value_name = "K", allow_hyphen_values = true, conflicts_with = "case")]
+    /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it
+    #[arg(long, value_name = "K", allow_hyphen_values = true)]
     kurtosis: Option<f64>,
-    /// Take truth, variance and kurtosis from theory: a case file or a built-in case
+    /// Where all correct draws lie, as in 0,1 or 0,inf: a ground for a verdict without a variance
+    #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
+    range: Option<[f64; 2]>,
+    /// Take truth, variance, kurtosis and lookups from theory: a case file or a built-in case
     #[arg(long, value_name = "CASE", requires = "estimator", group = "claimed")]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
@@ -45,9 +53,17 @@ pub struct Arguments {
     /// The channel of a draw, where it has several
     #[arg(long, value_name = "NAME", requires = "case")]
     channel: Option<String>,
+    /// Take the case's truth alone, for an estimator of your own
+    #[arg(long, requires = "case")]
+    mean_only: bool,
     /// Seed of the case's pilot rays, where σ̂ is learned from them
     #[arg(long, default_value_t = 1, value_name = "N", requires = "case")]
     seed: u64,
+    /// Judge averages of N consecutive draws: for stratified or quasi-random draws, or passes of a
+    /// renderer. --variance and --kurtosis are then those of averages; of a --case the truth is taken
+    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(value_parser = clap::value_parser!(u64).range(1..=1 << 40))]
+    batch: u64,
     /// The bias that a pass excludes, relative to the truth (absolute for a truth of 0) [default:
     /// what the file's draws can see, at most 0.05; for a pipe 0.01]
     #[arg(long, value_name = "E", allow_hyphen_values = true)]
@@ -55,7 +71,7 @@ pub struct Arguments {
     /// The same for the variance, relative to it [default: what the draws can see, at most 0.2]
     #[arg(long, value_name = "E", allow_hyphen_values = true, requires = "claimed")]
     variance_tolerance: Option<f64>,
-    /// Chance that correct draws fail
+    /// Chance that correct draws fail, all files together
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = selection::alpha)]
     #[arg(allow_hyphen_values = true)]
     alpha: f64,
@@ -65,15 +81,43 @@ pub struct Arguments {
     /// Column of a table, by name or by place from 0 on
     #[arg(long, value_name = "COLUMN")]
     column: Option<String>,
+    /// Column of a table with the number of lookups of each draw
+    #[arg(long, value_name = "COLUMN")]
+    lookups: Option<String>,
+    /// What the mean number of lookups should be
+    #[arg(long, value_name = "M", requires = "lookups", conflicts_with = "case")]
+    #[arg(allow_hyphen_values = true)]
+    expected_lookups: Option<f64>,
+    /// Its variance from draw to draw
+    #[arg(long, value_name = "V", requires = "expected_lookups", allow_hyphen_values = true)]
+    lookups_variance: Option<f64>,
     /// How the draws are written [default: by the file's ending]
     #[arg(long, value_enum, value_name = "FORMAT")]
     input: Option<Input>,
-    /// Read to the end, also after the decision
+    /// Stop reading as soon as all is decided: what comes later is not seen
     #[arg(long)]
-    all: bool,
+    stop_early: bool,
+    /// How many draws are read at most [default: all of a file, 67108864 of a pipe]
+    #[arg(long, value_name = "N", value_parser = selection::draws, allow_hyphen_values = true)]
+    draws: Option<u64>,
+    /// What an inconclusive verdict counts as [default: exit code 3]
+    #[arg(long, value_enum, value_name = "AS")]
+    inconclusive: Option<Inconclusive>,
+    /// Write a JUnit report
+    #[arg(long, value_name = "FILE")]
+    junit: Option<PathBuf>,
     /// How the verdict is printed
     #[arg(long, value_enum, default_value_t)]
     format: Shown,
+}
+
+/// The two ends of a range.
+fn range(text: &str) -> Result<[f64; 2], String> {
+    let wrong = || format!("`{text}` is no range; give LOW,HIGH as in 0,1 or 0,inf");
+    let (low, high) = text.split_once(',').ok_or_else(wrong)?;
+    let end = |text: &str| text.trim().parse::<f64>().map_err(|_| wrong());
+    let (low, high) = (end(low)?, end(high)?);
+    if low < high { Ok([low, high]) } else { Err(wrong()) }
 }
 
 /// How draws are written.
@@ -99,66 +143,130 @@ enum Shown {
 
 /// Reads, judges, prints.
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
-    let is_pipe = arguments.file == Path::new("-");
-    let format = arguments.input_format(is_pipe)?;
     let claim = arguments.claim()?;
     let wanted = Wanted {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
-        alpha: arguments.alpha,
-        all: arguments.all,
+        alpha: arguments.alpha / arguments.files.len() as f64,
+        batch: arguments.batch,
+        stop_early: arguments.stop_early,
+        most: arguments.draws,
     };
     // What is wrong with the question is said before anything is read.
     Trial::new(claim, wanted, None)?;
-    let (name, mut draws, length) = if is_pipe {
-        let draws = Draws::from_reader(std::io::stdin(), "stdin", format)?;
-        let length = draws.known_length();
-        ("stdin".to_owned(), draws, length)
-    } else {
-        let path = &arguments.file;
-        let length = match (Draws::open(path, format.clone())?.known_length(), &format) {
-            (None, Format::Csv { .. }) if arguments.tolerance.is_none() && path.is_file() => {
-                Some(foreign::count(path, format.clone())?)
-            }
-            (length, _) => length,
-        };
-        (path.display().to_string(), Draws::open(path, format)?, length)
-    };
-    let judgement = Trial::new(claim, wanted, length)?.judge(&mut draws)?;
-    show(&judgement, &name, arguments.format, console)?;
-    Ok(match judgement.verdict {
+    if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
+        anyhow::bail!("there is one pipe; give `-` once");
+    }
+    if let Some(path) = &arguments.junit {
+        let wrong = || format!("cannot write {}; give another file with --junit", path.display());
+        if arguments.files.iter().any(|file| file == path) {
+            return Err(anyhow::anyhow!("it holds draws").context(wrong()));
+        }
+        files::writable(path).with_context(wrong)?;
+    }
+    let (mut judged, mut errors) = (Vec::new(), Vec::new());
+    for file in &arguments.files {
+        match arguments.judge(file, claim, wanted) {
+            Ok(judgement) => judged.push((name(file), judgement)),
+            Err(error) => errors.push(error),
+        }
+    }
+    show(&judged, arguments, console)?;
+    if let Some(path) = &arguments.junit {
+        let text = judgement_junit::text(&judged, Inconclusive::in_junit(arguments.inconclusive))?;
+        files::replace(path, text.as_bytes())
+            .with_context(|| format!("cannot write {} (--junit)", path.display()))?;
+    }
+    errors.iter().for_each(output::complain);
+    if !errors.is_empty() {
+        return Ok(USAGE);
+    }
+    Ok(match worst(&judged) {
         Verdict::Fail => 1,
         Verdict::Pass => 0,
-        _ => 3,
+        _ => match arguments.inconclusive {
+            None => 3,
+            Some(Inconclusive::Fail) => 1,
+            Some(Inconclusive::Pass) => 0,
+        },
     })
 }
 
+fn is_pipe(file: &Path) -> bool {
+    file == Path::new("-")
+}
+
+fn name(file: &Path) -> String {
+    if is_pipe(file) { "stdin".to_owned() } else { file.display().to_string() }
+}
+
+/// Fail before inconclusive before pass.
+fn worst(judged: &[(String, Judgement)]) -> Verdict {
+    let any = |verdict| judged.iter().any(|(_, judgement)| judgement.verdict == verdict);
+    let order = [Verdict::Fail, Verdict::Inconclusive];
+    order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)
+}
+
 impl Arguments {
-    fn input_format(&self, is_pipe: bool) -> anyhow::Result<Format> {
+    /// Reads a file and judges it.
+    fn judge(&self, file: &Path, claim: Claim, wanted: Wanted) -> anyhow::Result<Judgement> {
+        let format = self.input_format(file)?;
+        if is_pipe(file) {
+            let mut draws = Draws::from_reader(std::io::stdin(), "stdin", format)?;
+            let length = draws.known_length();
+            let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
+            let wanted = Wanted { most, ..wanted };
+            return Ok(Trial::new(claim, wanted, length)?.judge(&mut draws)?);
+        }
+        let length = match (Draws::open(file, format.clone())?.known_length(), &format) {
+            (None, Format::Csv { .. }) if self.tolerance.is_none() && file.is_file() => {
+                Some(foreign::count(file, format.clone())?)
+            }
+            (length, _) => length,
+        };
+        let mut draws = Draws::open(file, format)?;
+        Ok(Trial::new(claim, wanted, length)?.judge(&mut draws)?)
+    }
+
+    fn input_format(&self, file: &Path) -> anyhow::Result<Format> {
+        let is_pipe = is_pipe(file);
+        let plain = Format::Csv { column: None, lookups: None };
         let format = match self.input {
-            Some(Input::Csv) => Some(Format::Csv { column: None }),
+            Some(Input::Csv) => Some(plain),
             Some(Input::Npy) => Some(Format::Npy),
             Some(Input::F64) => Some(Format::Raw),
             None if is_pipe => None,
-            None => Format::of_path(&self.file),
+            None => Format::of_path(file),
         };
-        let file = self.file.display();
-        let place = if is_pipe { "a pipe".to_owned() } else { format!("{file}") };
+        let place = if is_pipe { "a pipe".to_owned() } else { file.display().to_string() };
         let format = format.with_context(|| {
             format!("the name of {place} does not tell its format; add --input csv, npy or f64")
         })?;
-        let column = self.column.as_deref().and_then(|text| text.parse::<Column>().ok());
-        match (format, column) {
-            (Format::Csv { .. }, column) => Ok(Format::Csv { column }),
-            (format, None) => Ok(format),
-            _ => anyhow::bail!("only csv has columns; leave --column out"),
+        let column = |text: &Option<String>| text.as_deref()?.parse::<Column>().ok();
+        match (format, column(&self.column), column(&self.lookups)) {
+            (Format::Csv { .. }, column, lookups) => Ok(Format::Csv { column, lookups }),
+            (format, None, None) => Ok(format),
+            _ => anyhow::bail!("only csv has columns; leave --column and --lookups out"),
         }
     }
 
     fn claim(&self) -> anyhow::Result<Claim> {
         let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
-            let truth = self.truth.unwrap_or(f64::NAN);
-            return Ok(Claim::new(truth, self.variance, self.kurtosis, self.rounding)?);
+            let lookups = match (&self.lookups, self.expected_lookups) {
+                (Some(_), None) => anyhow::bail!(
+                    "what the lookups should be is not known; give --expected-lookups or --case"
+                ),
+                (_, mean) => mean,
+            };
+            let variance = self.lookups_variance;
+            return Ok(Claim::new(&Given {
+                truth: self.truth.unwrap_or(f64::NAN),
+                variance: self.variance,
+                kurtosis: self.kurtosis,
+                range: self.range,
+                lookups: lookups.map(|mean| Lookups { mean, variance, error: 0.0 }),
+                rounding: self.rounding,
+            })?);
         };
         let cases = selection::read_case(name).map_err(|errors| {
             let shown = errors.iter().map(|error| match error {
@@ -173,16 +281,68 @@ impl Arguments {
         };
         let channel = self.channel.as_deref();
         let choice = Choice { estimator, swept: self.swept, channel, seed: self.seed };
-        Ok(Claim::of_case(case, &choice, self.rounding)?)
+        let theory = Claim::of_case(case, &choice, self.rounding)?;
+        let takes_all = !self.mean_only && self.batch == 1;
+        if takes_all && (self.variance.is_some() || self.kurtosis.is_some()) {
+            anyhow::bail!(
+                "--case has a variance and a kurtosis; leave out --variance and --kurtosis, or add \
+                 --mean-only"
+            );
+        }
+        if self.lookups.is_some() && (theory.lookups.is_none() || !takes_all) {
+            anyhow::bail!("of the lookups --case says nothing here; leave --lookups out");
+        }
+        let lookups = theory.lookups.filter(|_| self.lookups.is_some());
+        let (variance, kurtosis) = (self.variance, self.kurtosis);
+        let claim = if takes_all {
+            Claim { lookups, ..theory }
+        } else {
+            // Checked as numbers of the caller's are.
+            Claim::new(&Given { truth: theory.truth, variance, kurtosis, ..Given::default() })?;
+            Claim { variance, kurtosis, variance_error: 0.0, ..theory.of_mean_alone() }
+        };
+        Ok(claim.within(self.range)?)
     }
 }
 
-fn show(judgement: &Judgement, name: &str, form: Shown, console: &Console) -> anyhow::Result<()> {
-    match form {
-        Shown::Table if console.quiet => Ok(()),
+/// Prints one verdict by itself, several with what they come to.
+fn show(
+    judged: &[(String, Judgement)],
+    arguments: &Arguments,
+    console: &Console,
+) -> anyhow::Result<()> {
+    let is_one = arguments.files.len() == 1;
+    match arguments.format {
+        Shown::Table if console.quiet || judged.is_empty() => Ok(()),
         Shown::Table => {
-            output::print(&judgement::block(judgement, name, output::pen(console).width))
+            let width = output::pen(console).width;
+            let blocks: Vec<String> = judged
+                .iter()
+                .map(|(name, judgement)| judgement::block(judgement, name, width))
+                .collect();
+            let all = if is_one {
+                String::new()
+            } else {
+                judgement::together(judged, worst(judged), arguments.alpha)
+            };
+            output::print(&(blocks.join("\n") + &all))
         }
-        Shown::Json => output::print(&(serde_json::to_string_pretty(judgement)? + "\n")),
+        Shown::Json => {
+            let text = match judged {
+                [] => return Ok(()),
+                [(_, judgement)] if is_one => serde_json::to_string_pretty(judgement)?,
+                _ => {
+                    let files: Vec<serde_json::Value> = judged
+                        .iter()
+                        .map(|(file, judgement)| serde_json::json!({ "file": file, "judgement": judgement }))
+                        .collect();
+                    let (verdict, alpha) = (worst(judged), arguments.alpha);
+                    let all =
+                        serde_json::json!({ "verdict": verdict, "alpha": alpha, "files": files });
+                    serde_json::to_string_pretty(&all)?
+                }
+            };
+            output::print(&(text + "\n"))
+        }
     }
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use trueflight::harness::self_test::{SelfTest, calibration, mutation};
+use trueflight::harness::self_test::{SelfTest, calibration, mutation, streams};
 use trueflight::report::{self, self_test as page};
 
 use super::Console;
@@ -13,14 +13,20 @@ use super::output;
 /// Independent runs of the long calibration.
 const LONG: u64 = 10_000;
 
+/// Streams of each law in the long form.
+const MANY: u64 = 1000;
+
 /// Arguments of `self-test`.
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Independent runs of the calibration
     #[arg(long, default_value_t = 400, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     runs: u64,
-    /// Calibrate with 10 000 independent runs
-    #[arg(long, conflicts_with = "runs")]
+    /// Streams of correct foreign draws of each law
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    streams: u64,
+    /// Calibrate with 10 000 independent runs, and judge 1000 streams of each law
+    #[arg(long, conflicts_with_all = ["runs", "streams"])]
     long: bool,
     /// Seed of the mutants' draws
     #[arg(long, default_value_t = 1, value_name = "N")]
@@ -28,12 +34,12 @@ pub struct Arguments {
     /// Threads [default: one per processor]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Also write the two tables as CSV into this folder
+    /// Also write the tables as CSV into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-/// Calibrates, draws all mutants, and prints two tables.
+/// Calibrates, draws all mutants, and prints the tables.
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     if let Some(out) = &arguments.out {
         output::writable(out)?;
@@ -41,13 +47,18 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let threads = arguments.threads.map_or(0, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let runs = if arguments.long { LONG } else { arguments.runs };
+    let many = if arguments.long { MANY } else { arguments.streams };
     let begin = Instant::now();
     let found = pool.install(|| -> anyhow::Result<SelfTest> {
         let bar = output::progress("calibrating", "runs", runs, console);
         let calibration = calibration::calibrate(runs, &|n| bar.inc(n))?;
         bar.finish_and_clear();
+        let laws = streams::LAWS.len() as u64;
+        let bar = output::progress("judging", "streams", many * laws, console);
+        let streams = streams::all(many, &|n| bar.inc(n));
+        bar.finish_and_clear();
         let mutants = mutation::all(arguments.seed)?;
-        Ok(SelfTest { calibration, mutants, seconds: begin.elapsed().as_secs_f64() })
+        Ok(SelfTest { calibration, streams, mutants, seconds: begin.elapsed().as_secs_f64() })
     })?;
     let written = match &arguments.out {
         Some(out) => report::write(&page::artifacts(&found)?, out),

@@ -54,6 +54,7 @@ fn of_experiment(
         .filter_map(|(question, total)| of_question(plan, case, planned, drawn, question, total))
         .collect();
     rely_on_variance(&mut findings);
+    acquit(plan, &mut findings);
     rely_on_pilots(planned, &mut findings);
     if planned.expect_biased {
         shown_anywhere(&mut findings);
@@ -286,6 +287,30 @@ fn rely_on_variance(findings: &mut [Finding]) {
         } else {
             finding.verdict = Verdict::Inconclusive;
             "the mean relies on a variance that does not pass".clone_into(&mut finding.reason);
+        }
+    }
+}
+
+/// A mean that is off only in units of a variance that is refuted as too small is not accused: were its
+/// spread what the draws show, it would not fail.
+fn acquit(plan: &Plan, findings: &mut [Finding]) {
+    let refuted: Vec<(String, f64)> = findings
+        .iter()
+        .filter(|finding| finding.check == "variance" && finding.verdict == Verdict::Fail)
+        .filter_map(|finding| Some((finding.channel.clone(), finding.gate?.mean)))
+        .filter(|(_, excess)| *excess > 0.0)
+        .collect();
+    for finding in findings.iter_mut() {
+        let accused = finding.check == "mean" && finding.verdict == Verdict::Fail;
+        let excess = refuted.iter().find(|(channel, _)| *channel == finding.channel);
+        let Some(((_, excess), gate)) = excess.zip(finding.gate).filter(|_| accused) else {
+            continue;
+        };
+        let observed = gate.variance * (1.0 + excess) - gate.mean * gate.mean;
+        let evidence = 0.5 * gate.mean * gate.mean * gate.draws as f64;
+        if evidence < plan.levels.ln_fail * observed && !finding.expects_bias {
+            finding.verdict = Verdict::Inconclusive;
+            "the mean rests on a variance that is refuted".clone_into(&mut finding.reason);
         }
     }
 }

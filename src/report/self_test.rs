@@ -1,19 +1,21 @@
-//! The self-test's two tables: promises and mutants, on the screen and as CSV.
+//! The self-test's tables: promises, streams and mutants, on the screen and as CSV.
 
 use std::fmt::Write;
 
 use crate::harness::self_test::calibration::Rate;
-use crate::harness::self_test::{Calibration, Caught, SelfTest};
+use crate::harness::self_test::streams::ALPHA;
+use crate::harness::self_test::{Calibration, Caught, Fared, SelfTest};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
 use crate::report::rows::table as csv;
 use crate::report::{Artifact, ReportError};
 
-/// The two tables for the screen.
+/// The tables for the screen.
 #[must_use]
 pub fn table(found: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
     promises(&mut text, pen, &found.calibration);
+    streams(&mut text, pen, &found.streams);
     mutants(&mut text, pen, &found.mutants);
     let verdict = if found.holds() {
         pen.paint(Paint::Green, "every promise is kept and every mutant is caught")
@@ -70,6 +72,38 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     text.push('\n');
 }
 
+fn streams(text: &mut String, pen: Pen, streams: &[Fared]) {
+    let failed: u64 = streams.iter().map(|fared| fared.failed).sum();
+    let judged: u64 = streams.iter().map(|fared| fared.streams).sum();
+    let title = format!(
+        "foreign draws: {failed} of {judged} verdicts on correct streams of hard laws fail"
+    );
+    let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
+    let column = |head, right, field: fn(&Fared) -> String| Column {
+        head,
+        right,
+        rank: 0,
+        fields: streams.iter().map(|fared| Field::plain(field(fared))).collect(),
+    };
+    let kept = streams.iter().map(|fared| {
+        let (word, paint) =
+            if fared.is_kept() { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
+        Field { text: word.to_owned(), paint }
+    });
+    let mut grid = Grid {
+        columns: vec![
+            column("law", false, |fared| fared.law.clone()),
+            column("known", false, |fared| fared.known.clone()),
+            column("pass", true, |fared| fared.passed.to_string()),
+            column("fail", true, |fared| fared.failed.to_string()),
+            column("inconclusive", true, |fared| fared.inconclusive.to_string()),
+        ],
+    };
+    grid.push("", kept.collect());
+    grid.fit(pen.width);
+    let _ = writeln!(text, "{}", grid.render(pen));
+}
+
 /// All rates that were promised.
 fn rates(calibration: &Calibration) -> impl Iterator<Item = &Rate> {
     let shares = calibration.uniformity.iter().flat_map(|check| &check.below);
@@ -118,7 +152,7 @@ fn place(mutant: &Caught) -> String {
     format!("{case}: {}", mutant.estimator)
 }
 
-/// The two tables as CSV files.
+/// The tables as CSV files.
 ///
 /// # Errors
 ///
@@ -139,6 +173,15 @@ pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     });
     let header = ["what", "count", "trials", "low_99", "high_99", "promise", "kept"];
     let calibration = csv("the calibration", header, rates)?;
+    let rows = found.streams.iter().map(|fared| {
+        let counts = [fared.streams, fared.passed, fared.failed, fared.inconclusive];
+        let mut row = vec![fared.law.clone(), fared.known.clone()];
+        row.extend(counts.map(|count| count.to_string()));
+        row.extend([exact(ALPHA), fared.is_kept().to_string()]);
+        row
+    });
+    let header = ["law", "known", "streams", "pass", "fail", "inconclusive", "promise", "kept"];
+    let streams = csv("the streams", header, rows)?;
     let rows = found.mutants.iter().map(|mutant| {
         let draws = mutant.draws.map(|draws| draws.to_string()).unwrap_or_default();
         let words = [mutant.name, mutant.bug, mutant.case, mutant.estimator, mutant.check];
@@ -152,6 +195,7 @@ pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
         |path: &str, text: String| Artifact { path: path.into(), bytes: text.into_bytes() };
     Ok(vec![
         artifact("self-test/calibration.csv", calibration),
+        artifact("self-test/foreign-streams.csv", streams),
         artifact("self-test/mutants.csv", mutants),
     ])
 }

@@ -157,6 +157,13 @@ impl Gains {
     }
 }
 
+impl From<Gains> for super::capital::Gains {
+    fn from(gains: Gains) -> Self {
+        let Gains { against, pass: [above, below] } = gains;
+        Self { against: against.to_vec(), pass: [vec![above], vec![below]] }
+    }
+}
+
 impl Evidence {
     /// Before the first draw.
     pub const NONE: Self = Self { ln_e: 0.0, ln_pass: [0.0; 2] };

@@ -1,16 +1,20 @@
 //! Statistics that have never heard of light. Floor 1.
 
 pub mod anderson_darling;
+pub mod betting;
 pub mod binomial;
+pub mod capital;
 pub mod catoni;
 pub mod census;
 pub mod chi_square;
 pub mod correlation;
 pub mod gate;
+pub mod independence;
 pub mod multiplicity;
 pub mod normal;
 pub mod powers;
 pub mod reflection;
+pub mod replays;
 pub mod tally;
 pub mod ties;
 

@@ -56,6 +56,12 @@ impl Powers {
         self.raw(1)
     }
 
+    /// The mean of y².
+    #[must_use]
+    pub fn mean_square(&self) -> f64 {
+        self.raw(2)
+    }
+
     /// s², with `n − 1` in the denominator.
     #[must_use]
     pub fn variance(&self) -> f64 {
@@ -71,6 +77,12 @@ impl Powers {
         let fourth = m4 - 4.0 * m * m3 + 6.0 * m * m * m2 - 3.0 * m * m * m * m;
         // A spread that the subtraction cannot tell from rounding is none.
         if variance > RESOLUTION * m2 { fourth / (variance * variance) } else { f64::INFINITY }
+    }
+
+    /// How many draws make the variance: n over the sample kurtosis; 0 for draws without spread.
+    #[must_use]
+    pub fn bearers(&self) -> f64 {
+        self.draws as f64 / self.kurtosis()
     }
 
     /// The relative standard error of the mean of y²; infinite where all y are 0.

@@ -19,6 +19,19 @@ pub fn ties(values: &mut [f64]) -> usize {
     values.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
+/// `log₂` of how many equally probable values make so many pairs, among draws that come once or twice;
+/// `None` where fewer than 5 come twice or 100 once. Sorts the values. Atoms of a law come more often.
+#[must_use]
+pub fn resolution(values: &mut [f64]) -> Option<f64> {
+    values.sort_unstable_by(f64::total_cmp);
+    let count = |size: usize| {
+        values.chunk_by(|a, b| a == b).filter(|group| group.len() == size).count() as f64
+    };
+    let (once, twice) = (count(1), count(2));
+    let draws = once + 2.0 * twice;
+    (twice >= 5.0 && once >= 100.0).then(|| (0.5 * draws * draws / twice).log2())
+}
+
 /// The chance of so many ties or more where `expected` are expected: a Poisson number of them.
 #[must_use]
 pub fn p_value(ties: usize, expected: f64) -> f64 {
@@ -52,6 +65,21 @@ mod tests {
 
     fn stream() -> crate::rng::Stream {
         Address { seed: 1, experiment: 0, block: 0, lane: 0 }.stream()
+    }
+
+    #[test]
+    fn coarse_values_show_their_resolution() {
+        let mut rng = stream();
+        let fine: Vec<f64> = (0..16_384).map(|_| unit(&mut rng)).collect();
+        assert_eq!(resolution(&mut fine.clone()), None);
+        for bits in [18, 20, 22] {
+            let steps = f64::from(1 << bits);
+            let mut coarse: Vec<f64> = fine.iter().map(|u| (u * steps).floor() / steps).collect();
+            // An atom does not count.
+            coarse.extend([0.25; 1000]);
+            let found = resolution(&mut coarse).expect("a resolution");
+            assert!((found - f64::from(bits)).abs() < 0.6, "{found} for {bits}");
+        }
     }
 
     #[test]

@@ -9,10 +9,13 @@
 
 use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 
+use super::lines::{CHUNK, LONGEST, Lines};
 use super::{Bytes, Column, ForeignError};
 
-/// How many bytes are asked for at a time.
-const CHUNK: usize = 1 << 17;
+/// How many characters of what is wrong are shown.
+const SHOWN: usize = 40;
+/// How many names of columns are shown.
+const LISTED: usize = 20;
 
 /// An open table.
 pub(super) struct Table {
@@ -23,8 +26,10 @@ pub(super) struct Table {
     /// How many columns the first line has.
     columns: u64,
     record: ByteRecord,
-    /// The draw in `record`, read when the table was opened.
-    first: Option<f64>,
+    /// The column of lookups, if one is read.
+    lookups: Option<usize>,
+    /// The draw in `record` with its lookups, read when the table was opened.
+    first: Option<(f64, f64)>,
 }
 
 impl Table {
@@ -33,23 +38,36 @@ impl Table {
         bytes: Bytes,
         file: &str,
         column: Option<&Column>,
+        lookups: Option<&Column>,
     ) -> Result<Self, ForeignError> {
         let reader = ReaderBuilder::new()
             .has_headers(false)
             .flexible(true)
             .comment(Some(b'#'))
             .buffer_capacity(CHUNK)
-            .from_reader(Lines { bytes, before: 0, start: 0, chunk: Vec::new() });
+            .from_reader(Lines::new(bytes));
         let record = ByteRecord::new();
         let file_name = file.to_owned();
-        let mut table =
-            Self { reader, file: file_name, column: 0, columns: 0, record, first: None };
+        let mut table = Self {
+            reader,
+            file: file_name,
+            column: 0,
+            columns: 0,
+            record,
+            lookups: None,
+            first: None,
+        };
         let empty = || Err(ForeignError::Empty { file: file.to_owned() });
         if !table.advance()? {
             return empty();
         }
         table.columns = table.record.len() as u64;
-        let named = table.choose(column)?;
+        let (place, mut named) = table.choose(column)?;
+        table.column = place;
+        if let Some(lookups) = lookups {
+            let (place, is_named) = table.choose(Some(lookups))?;
+            (table.lookups, named) = (Some(place), named || is_named);
+        }
         if named && !table.advance()? {
             return empty();
         }
@@ -57,36 +75,46 @@ impl Table {
         Ok(table)
     }
 
-    /// Appends the next draws, until the buffer holds `at_most`.
+    /// Appends the next draws with their lookups, until the buffer holds `at_most`.
     pub(super) fn read(
         &mut self,
         draws: &mut Vec<f64>,
+        lookups: &mut Vec<f64>,
         at_most: usize,
     ) -> Result<(), ForeignError> {
-        if at_most > draws.len() {
-            draws.extend(self.first.take());
-        }
-        while draws.len() < at_most && self.advance()? {
-            draws.push(self.draw()?);
+        while draws.len() < at_most {
+            let (draw, count) = match self.first.take() {
+                Some(first) => first,
+                None if self.advance()? => self.draw()?,
+                None => break,
+            };
+            draws.push(draw);
+            if self.lookups.is_some() {
+                lookups.push(count);
+            }
         }
         Ok(())
     }
 
-    /// Finds the column by the first line; answers whether that is a line of names.
-    fn choose(&mut self, column: Option<&Column>) -> Result<bool, ForeignError> {
+    /// Finds a column by the first line; answers whether that is a line of names.
+    fn choose(&self, column: Option<&Column>) -> Result<(usize, bool), ForeignError> {
         let file = || self.file.clone();
         let names: Vec<String> = self.record.iter().map(text).collect();
         let is_name = |field: &[u8]| number(field).is_none() && !like_a_number(field);
         let listed = || {
             let named = self.record.iter().all(|field| field.is_empty() || is_name(field));
-            if named { names.clone() } else { (0..names.len()).map(|k| k.to_string()).collect() }
+            let word = |k: usize| if named { brief(&names[k]) } else { k.to_string() };
+            let rest = names.len().saturating_sub(LISTED);
+            let more = (rest > 0).then(|| format!("… {rest} more"));
+            (0..names.len().min(LISTED)).map(word).chain(more).collect()
         };
-        match column {
-            None if names.len() > 1 => {
-                return Err(ForeignError::ManyColumns { file: file(), columns: listed() });
+        let count = names.len();
+        let place = match column {
+            None if count > 1 => {
+                return Err(ForeignError::ManyColumns { file: file(), count, columns: listed() });
             }
-            None => {}
-            Some(&Column::Index(index)) if index < names.len() => self.column = index,
+            None => 0,
+            Some(&Column::Index(index)) if index < count => index,
             Some(Column::Name(name)) => {
                 let mut found = (0..names.len()).filter(|&k| names[k] == name.trim());
                 if let Some(index) = found.next() {
@@ -95,8 +123,7 @@ impl Table {
                         let name = name.clone();
                         return Err(ForeignError::SameName { file: file(), name, count });
                     }
-                    self.column = index;
-                    return Ok(true);
+                    return Ok((index, true));
                 }
                 let (column, columns) = (Column::Name(name.clone()), listed());
                 return Err(ForeignError::NoColumn { file: file(), column, columns });
@@ -105,14 +132,23 @@ impl Table {
                 let (column, columns) = (column.clone(), listed());
                 return Err(ForeignError::NoColumn { file: file(), column, columns });
             }
-        }
-        Ok(self.record.get(self.column).is_some_and(is_name))
+        };
+        Ok((place, self.record.get(place).is_some_and(is_name)))
     }
 
     /// Reads the next line; false at the end.
     fn advance(&mut self) -> Result<bool, ForeignError> {
+        self.reader.get_mut().begin_line();
         self.reader.read_byte_record(&mut self.record).map_err(|error| {
             let cause = match error.into_kind() {
+                ErrorKind::Io(cause) if cause.kind() == std::io::ErrorKind::FileTooLarge => {
+                    let line = self.reader.position().line();
+                    return ForeignError::LongLine {
+                        file: self.file.clone(),
+                        line,
+                        longest: LONGEST,
+                    };
+                }
                 ErrorKind::Io(cause) => cause,
                 other => std::io::Error::other(format!("{other:?}")),
             };
@@ -120,69 +156,33 @@ impl Table {
         })
     }
 
-    /// The draw in the line at hand.
+    /// The draw in the line at hand, with its lookups.
     #[inline]
-    fn draw(&self) -> Result<f64, ForeignError> {
+    fn draw(&self) -> Result<(f64, f64), ForeignError> {
         if self.record.len() as u64 == self.columns
             && let Some(value) = self.record.get(self.column).and_then(number)
         {
-            return Ok(value);
+            let Some(lookups) = self.lookups else { return Ok((value, 0.0)) };
+            if let Some(count) = self.record.get(lookups).and_then(number) {
+                return Ok((value, count));
+            }
+            return Err(self.fault(lookups));
         }
-        Err(self.fault())
+        Err(self.fault(self.column))
     }
 
-    /// What is wrong with the line at hand.
+    /// What is wrong with the line at hand, in the column if its number of columns is right.
     #[cold]
-    fn fault(&self) -> ForeignError {
+    fn fault(&self, column: usize) -> ForeignError {
         let line = self.reader.get_ref().line(self.reader.position().byte());
         let file = self.file.clone();
         let found = self.record.len() as u64;
         if found != self.columns {
             return ForeignError::RaggedLine { file, line, found, expected: self.columns };
         }
-        let text = self.record.get(self.column).map(text).unwrap_or_default();
-        ForeignError::NotANumber { file, line, column: self.column, text }
+        let text = self.record.get(column).map(text).unwrap_or_default();
+        ForeignError::NotANumber { file, line, column, text: brief(&text) }
     }
-}
-
-/// Remembers the last bytes it passed on, so that a line can be counted when something is wrong with
-/// it: the csv crate's own count is that of the line before, after empty lines or Windows' line ends.
-struct Lines {
-    bytes: Bytes,
-    /// How many lines ended before the chunk.
-    before: u64,
-    /// How many bytes came before the chunk.
-    start: u64,
-    chunk: Vec<u8>,
-}
-
-impl Lines {
-    /// The line, from 1 on, that holds the last of the first `end` bytes.
-    fn line(&self, end: u64) -> u64 {
-        let last = usize::try_from(end.saturating_sub(self.start + 1)).unwrap_or(usize::MAX);
-        1 + self.before + ends(&self.chunk[..last.min(self.chunk.len())])
-    }
-}
-
-impl std::io::Read for Lines {
-    fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        let count = self.bytes.read(buffer)?;
-        // At the end of the source the last chunk stays.
-        if count > 0 {
-            self.before += ends(&self.chunk);
-            self.start += self.chunk.len() as u64;
-            self.chunk.clear();
-            self.chunk.extend_from_slice(&buffer[..count]);
-        }
-        Ok(count)
-    }
-}
-
-/// How many lines end within the bytes.
-fn ends(bytes: &[u8]) -> u64 {
-    // Sums of bytes are fast, and a chunk of 255 cannot overflow one.
-    let few = |chunk: &[u8]| chunk.iter().map(|&byte| u8::from(byte == b'\n')).sum::<u8>();
-    bytes.chunks(255).map(|chunk| u64::from(few(chunk))).sum()
 }
 
 /// The number that a field is.
@@ -197,6 +197,14 @@ fn like_a_number(field: &[u8]) -> bool {
     field.trim_ascii().first().is_none_or(begins)
 }
 
+/// The beginning of a text that may be long.
+fn brief(text: &str) -> String {
+    match text.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
 /// A field as text, to show or to compare.
 fn text(field: &[u8]) -> String {
     String::from_utf8_lossy(field.trim_ascii()).into_owned()
@@ -209,10 +217,13 @@ mod tests {
     use super::super::{Draws, Format, all};
     use super::*;
 
+    fn table(column: Option<&str>) -> Format {
+        Format::Csv { column: column.and_then(|column| column.parse().ok()), lookups: None }
+    }
+
     fn read(text: &str, column: Option<&str>) -> Result<Vec<f64>, ForeignError> {
-        let column = column.and_then(|column| column.parse().ok());
         let reader = Cursor::new(text.as_bytes().to_vec());
-        all(Draws::from_reader(reader, "x.csv", Format::Csv { column })?)
+        all(Draws::from_reader(reader, "x.csv", table(column))?)
     }
 
     fn error(text: &str, column: Option<&str>) -> String {
@@ -320,11 +331,33 @@ mod tests {
     #[test]
     fn draws_before_a_fault_are_given() {
         let reader = Cursor::new(b"1\n2\nx\n".to_vec());
-        let format = Format::Csv { column: None };
+        let format = table(None);
         let mut draws = Draws::from_reader(reader, "x.csv", format).expect("a table");
         let mut buffer = Vec::new();
         assert!(draws.read(&mut buffer, 10).is_err());
         assert_eq!(buffer, [1.0, 2.0]);
         assert_eq!(draws.known_length(), None);
+    }
+
+    #[test]
+    fn little_of_a_bad_line_is_shown() {
+        let long = "x".repeat(60_000);
+        let message = error(&format!("1\n{long}\n"), None);
+        assert!(message.len() < 200 && message.contains("xxx…"), "{message}");
+        let message = error(&format!("{}\n", vec!["1"; 30_000].join(",")), None);
+        assert!(message.len() < 200 && message.contains("30000 columns"), "{message}");
+        let message = error(&format!("{long},T\n1,2\n"), Some("U"));
+        assert!(message.len() < 200, "{message}");
+    }
+
+    #[test]
+    fn lookups_are_read_beside_the_draws() {
+        let reader = Cursor::new(b"X,n\n0.5,3\n0.25,4\n".to_vec());
+        let column = |name: &str| name.parse().ok();
+        let format = Format::Csv { column: column("X"), lookups: column("n") };
+        let mut draws = Draws::from_reader(reader, "x.csv", format).expect("a table");
+        let mut buffer = Vec::new();
+        assert_eq!(draws.read(&mut buffer, 10).expect("draws"), 2);
+        assert_eq!((&buffer[..], draws.lookups()), (&[0.5, 0.25][..], &[3.0, 4.0][..]));
     }
 }

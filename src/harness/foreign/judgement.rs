@@ -21,6 +21,12 @@ pub struct Judgement {
     pub draws: u64,
     /// How many there are, where that is known.
     pub length: Option<u64>,
+    /// Why reading stopped before the end, where it did.
+    pub stopped: Option<Stop>,
+    /// How many consecutive draws are averaged before they are judged.
+    pub batch: u64,
+    /// How many of the last draws fill no average.
+    pub unfilled: u64,
     /// What the mean should be.
     pub truth: f64,
     /// What the tolerance of the mean is relative to.
@@ -31,7 +37,7 @@ pub struct Judgement {
     pub standard_error: Option<f64>,
     /// (mean − truth) in standard errors.
     pub z: Option<f64>,
-    /// The unbiased sample variance.
+    /// The unbiased sample variance, of averages where draws are averaged.
     pub variance: Option<f64>,
     /// The variance claimed.
     pub predicted_variance: Option<f64>,
@@ -41,27 +47,100 @@ pub struct Judgement {
     pub variance_band: Option<f64>,
     /// The sample kurtosis.
     pub kurtosis: Option<f64>,
+    /// The mean number of lookups.
+    pub lookups: Option<f64>,
+    /// The number claimed.
+    pub predicted_lookups: Option<f64>,
     /// The first draw that refutes the claim by itself, counted from 0.
     pub refuted_by: Option<u64>,
-    /// What the gate found of the mean and of the variance.
+    /// How many such draws there are.
+    pub refuting: u64,
+    /// Whether every draw is a number of single precision, and no small set of values.
+    pub single_precision: bool,
+    /// `log₂` of how many values the first draws seem to come from, where they come twice too often for
+    /// all bits of a double.
+    pub resolution: Option<f64>,
+    /// What the gate found of the mean, the variance and the lookups.
     pub findings: Vec<ScalarFinding>,
+    /// Whether the mean changes on the way.
+    pub drift: Option<DriftFinding>,
+    /// Whether the draws depend on each other.
+    pub independence: IndependenceFinding,
+}
+
+/// Why reading stopped before the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Stop {
+    /// All was decided, and the caller wanted no more.
+    Decided,
+    /// As many draws were read as the caller wanted, or as are read of a pipe.
+    Limit,
 }
 
 /// What the gate found of one scalar.
 #[derive(Debug, Clone, Serialize)]
 pub struct ScalarFinding {
-    /// `mean` or `variance`.
+    /// `mean`, `variance` or `lookups`.
     pub check: String,
     /// What is said of it.
     pub verdict: Verdict,
     /// Why.
     pub reason: String,
-    /// Whether its variance was estimated from earlier draws.
+    /// Whether its variance was estimated from earlier draws without a promise of the caller's.
     pub is_estimated: bool,
+    /// The largest kurtosis for which the finding holds, where one had to be assumed.
+    pub assumed_kurtosis: Option<f64>,
     /// Whether correct draws of the planned number pass.
     pub is_promised: bool,
-    /// Where the gate stands; `None` where its variance could not be estimated.
+    /// Where the gate stands; `None` where nothing could be asked of the draws.
     pub gate: Option<GateFinding>,
+}
+
+/// Whether the mean is the same from beginning to end.
+#[derive(Debug, Clone, Serialize)]
+pub struct DriftFinding {
+    /// What is said of it.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: String,
+    /// ln E against draws that have the claimed mean throughout.
+    pub ln_e: f64,
+    /// The ln E at which it fails.
+    pub ln_e_limit: f64,
+    /// The draw from which on the mean most likely differs; `None` without evidence.
+    pub from: Option<u64>,
+    /// By how much, in units of the truth.
+    pub off: f64,
+}
+
+/// Whether draws depend on each other.
+#[derive(Debug, Clone, Default, Serialize)]
+pub struct IndependenceFinding {
+    /// Why they do; empty where nothing was found.
+    pub reason: String,
+    /// ln E against independent draws of one law.
+    pub ln_e: f64,
+    /// The ln E at which draws count as dependent.
+    pub ln_e_limit: f64,
+    /// How many consecutive draws are summed up where the dependence was found.
+    pub scale: Option<u64>,
+    /// The lag, in draws or sums.
+    pub lag: Option<u64>,
+    /// The correlation there.
+    pub correlation: Option<f64>,
+    /// After how many draws the same ones come again.
+    pub replay: Option<u64>,
+    /// From how many averaged draws on no dependence shows.
+    pub batch: Option<u64>,
+}
+
+impl IndependenceFinding {
+    /// Whether a dependence was found.
+    #[must_use]
+    pub fn is_refuted(&self) -> bool {
+        !self.reason.is_empty()
+    }
 }
 
 impl Judgement {

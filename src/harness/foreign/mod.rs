@@ -9,13 +9,22 @@
 //! NaN and ∞ are read as they are: the gate judges them. Whatever keeps a file from being a list of
 //! numbers is a [`ForeignError`]; nothing is skipped.
 
+mod asks;
 pub mod claim;
 mod csv;
+mod dependence;
+mod grounds;
 pub mod judge;
 pub mod judgement;
+mod lines;
 mod npy;
+mod of_case;
 mod raw;
+mod reading;
 mod scalar;
+mod verdict;
+
+pub use of_case::Choice;
 
 use std::convert::Infallible;
 use std::fs::File;
@@ -31,6 +40,8 @@ pub enum Format {
     Csv {
         /// Which column to read; a table of one column needs no choice.
         column: Option<Column>,
+        /// Which column has the lookups of a draw, if any.
+        lookups: Option<Column>,
     },
     /// `NumPy`'s array file.
     Npy,
@@ -71,7 +82,7 @@ impl Format {
     pub fn of_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
-            "csv" | "txt" => Some(Self::Csv { column: None }),
+            "csv" | "txt" => Some(Self::Csv { column: None, lookups: None }),
             "npy" => Some(Self::Npy),
             "f64" | "bin" | "raw" => Some(Self::Raw),
             _ => None,
@@ -156,11 +167,13 @@ pub enum ForeignError {
         shape: String,
     },
     /// A table of several columns, and none was chosen.
-    #[error("{file}: {} columns ({}); choose one by name or index", columns.len(), columns.join(", "))]
+    #[error("{file}: {count} columns ({}); choose one by name or index", columns.join(", "))]
     ManyColumns {
         /// The file.
         file: String,
-        /// Their names, or their places where they have no names.
+        /// How many.
+        count: usize,
+        /// The first of their names, or of their places where they have no names.
         columns: Vec<String>,
     },
     /// The chosen column is not there.
@@ -197,6 +210,16 @@ pub enum ForeignError {
         /// How many the first line has.
         expected: u64,
     },
+    /// A line that does not end.
+    #[error("{file}, line {line}: longer than {longest} bytes; write one draw a line")]
+    LongLine {
+        /// The file.
+        file: String,
+        /// The line; the first is 1.
+        line: u64,
+        /// The longest line that is read.
+        longest: u64,
+    },
     /// A word that is not a number.
     #[error("{file}, line {line}, column {column}: `{text}` is not a number; write it as 1.25e-3")]
     NotANumber {
@@ -223,6 +246,8 @@ type Bytes = Box<dyn Read + Send>;
 /// An open source of draws.
 pub struct Draws {
     source: Source,
+    /// The lookups of the draws that were read last.
+    lookups: Vec<f64>,
 }
 
 enum Source {
@@ -272,13 +297,14 @@ impl Draws {
         length: Option<u64>,
     ) -> Result<Self, ForeignError> {
         let source = match format {
-            Format::Csv { column } => {
-                Source::Csv(Box::new(csv::Table::open(bytes, name, column.as_ref())?))
+            Format::Csv { column, lookups } => {
+                let table = csv::Table::open(bytes, name, column.as_ref(), lookups.as_ref())?;
+                Source::Csv(Box::new(table))
             }
             Format::Npy => Source::Words(npy::open(bytes, name, length)?),
             Format::Raw => Source::Words(raw::open(bytes, name, length)?),
         };
-        Ok(Self { source })
+        Ok(Self { source, lookups: Vec::new() })
     }
 
     /// How many draws there are in all, where the file says so.
@@ -299,11 +325,18 @@ impl Draws {
     /// before.
     pub fn read(&mut self, buffer: &mut Vec<f64>, at_most: usize) -> Result<usize, ForeignError> {
         buffer.clear();
+        self.lookups.clear();
         match &mut self.source {
-            Source::Csv(table) => table.read(buffer, at_most)?,
+            Source::Csv(table) => table.read(buffer, &mut self.lookups, at_most)?,
             Source::Words(words) => words.read(buffer, at_most)?,
         }
         Ok(buffer.len())
+    }
+
+    /// The lookups of the draws that were read last; none where no column has them.
+    #[must_use]
+    pub fn lookups(&self) -> &[f64] {
+        &self.lookups
     }
 }
 
@@ -341,8 +374,8 @@ mod tests {
     #[test]
     fn endings_stand_for_formats() {
         let of = |path: &str| Format::of_path(Path::new(path));
-        assert_eq!(of("a/draws.CSV"), Some(Format::Csv { column: None }));
-        assert_eq!(of("draws.txt"), Some(Format::Csv { column: None }));
+        assert_eq!(of("a/draws.CSV"), Some(Format::Csv { column: None, lookups: None }));
+        assert_eq!(of("draws.txt"), Some(Format::Csv { column: None, lookups: None }));
         assert_eq!(of("draws.v2.npy"), Some(Format::Npy));
         for path in ["x.f64", "x.bin", "x.raw"] {
             assert_eq!(of(path), Some(Format::Raw));

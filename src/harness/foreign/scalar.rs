@@ -1,26 +1,22 @@
 //! One scalar of foreign draws on its way through the gate.
 //!
 //! ```text
-//! known      V_b = V
-//! estimated  V_b = ȳ² + 3 standard errors of it, over the draws before block b
-//!            judged from the first block on before which that error is 10 % or less
+//! E      the mean of the e-values of all grounds that hold (`grounds`);   fail at ln E ≥ ln(K/α)
+//! P±     likewise, of all grounds;                                        pass at both ln P ≥ ln(1/β)
+//! E_c    the same for a change of the mean from any later block on        (`stats::capital`)
 //! ```
 //!
-//! Each block is judged with a `V_b` that was fixed before its first draw, so that the gains of the
-//! blocks add up to evidence as if V were known, *if* every `V_b` is at least the true variance. No
-//! draws can show that it is: events that are so rare that none was drawn yet, and that carry the
-//! variance, make `V_b` too small, a false alarm likely and a pass worthless. What is estimated has
-//! its error rates only asymptotically, and the verdict says so.
+//! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
+//! scalar that has passed may still fail on what comes later.
 
+use super::grounds::{BEARERS, FEW, OfRange, OfVariance, RELIABLE, Spread};
 use super::judgement::ScalarFinding;
 use crate::harness::plan::BLOCK;
 use crate::harness::record::{GateFinding, Verdict};
 use crate::numeric::sum::Sum;
 use crate::stats::Powers;
-use crate::stats::gate::{self, Decision, Design, Evidence, Gains, GateSums};
-
-/// The largest relative standard error of an estimated variance with which draws are judged.
-const RELIABLE: f64 = 0.1;
+use crate::stats::betting::Aim;
+use crate::stats::gate::{self, Decision, Design, Evidence, ln_mean_exp};
 
 /// How many draws a question without a promise takes where no number of draws is planned.
 const UNPLANNED: f64 = 67_108_864.0;
@@ -28,10 +24,14 @@ const UNPLANNED: f64 = 67_108_864.0;
 /// What is asked of a scalar.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ask {
-    /// `mean` or `variance`.
+    /// `mean`, `variance` or `lookups`.
     pub check: &'static str,
-    /// V, where it is known.
-    pub variance: Option<f64>,
+    /// What is known of V; `None` where only the range is to be relied on.
+    pub spread: Option<Spread>,
+    /// Whether it may fail by its spread, or only pass.
+    pub is_hard: bool,
+    /// Where y lies, if it is known.
+    pub range: Option<[f64; 2]>,
     /// ε as the caller has it.
     pub tolerance: Option<f64>,
     /// ε where neither the caller nor a number of draws says.
@@ -53,48 +53,64 @@ pub(super) struct Levels {
     pub ln_pass: f64,
 }
 
+/// A change of the mean.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Change {
+    /// ln `E_c`.
+    pub ln_e: f64,
+    /// The draw from which on the mean differs, and by how much.
+    pub from: u64,
+    pub off: f64,
+}
+
 /// A scalar on its way.
 pub(super) struct Scalar {
-    ask: Ask,
+    pub ask: Ask,
     levels: Levels,
     /// n: how many draws are planned, if anybody knows.
     planned: Option<f64>,
-    /// What came so far, where V is estimated.
-    past: Option<Powers>,
-    /// What is asked, as soon as V is known.
+    past: Powers,
+    of_variance: Option<OfVariance>,
+    of_range: Option<OfRange>,
+    /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
     design: Option<Design>,
     /// Whether n draws suffice for a pass.
     is_promised: bool,
-    gains: Gains,
-    sum: Sum,
-    judged: u64,
-    blocks: u64,
+    /// The sum of y in each block, and how many draws a whole block has.
+    sums: Vec<f64>,
+    block: u64,
     look: u64,
-    evidence: Evidence,
+    /// The decision, and the evidence it was made on.
     decision: Decision,
-    /// Mean of y and number of judged draws at the last look.
+    evidence: Evidence,
+    /// Whether what may not fail would have.
+    is_doubted: bool,
+    change: Change,
+    /// Mean of y and number of draws at the last look before the decision.
     seen: (f64, u64),
 }
 
 impl Scalar {
     pub(super) fn new(ask: Ask, planned: Option<f64>, levels: Levels) -> Self {
         let mut scalar = Self {
-            ask,
             levels,
             planned,
-            past: ask.variance.is_none().then(Powers::default),
+            past: Powers::default(),
+            of_variance: ask.spread.map(|spread| OfVariance::new(spread, ask.is_hard)),
+            of_range: ask.range.map(OfRange::new),
             design: None,
             is_promised: ask.must_pass,
-            gains: Gains::default(),
-            sum: Sum::default(),
-            judged: 0,
-            blocks: 0,
+            sums: Vec::new(),
+            block: 0,
             look: 1,
-            evidence: Evidence::NONE,
             decision: Decision::Open,
+            evidence: Evidence::NONE,
+            is_doubted: false,
+            change: Change { ln_e: 0.0, from: 0, off: 0.0 },
             seen: (0.0, 0),
+            ask,
         };
-        if let Some(variance) = ask.variance {
+        if let Some(Spread::Known(variance)) = ask.spread {
             scalar.start(variance);
         }
         scalar
@@ -102,86 +118,159 @@ impl Scalar {
 
     /// Fixes ε.
     fn start(&mut self, variance: f64) {
-        let skipped = self.past.map_or(0, |past| past.draws()) as f64;
+        let skipped = self.past.draws() as f64;
         let left = self.planned.map(|all| (all - skipped).max(1.0));
         let chosen = left.map_or(self.ask.usual, |n| gate::tolerance_of(variance, n));
         let tolerance = self.ask.tolerance.unwrap_or(chosen.min(self.ask.cap));
         let design = Design::new(variance, tolerance, self.ask.floor);
         let suffices = |n| gate::draws_of(variance, design.tolerance) <= n * (1.0 + 1e-6);
-        self.is_promised |= self.ask.tolerance.is_some() || left.is_none_or(suffices);
+        let can_promise = self.ask.is_hard && left.is_none_or(suffices);
+        self.is_promised |= self.ask.tolerance.is_some() || can_promise;
         self.design = Some(design);
     }
 
-    /// Whether the next block can be judged; fixes V for it where that is estimated.
-    fn prepare(&mut self) -> Option<Design> {
-        if let Some(past) = &self.past {
-            let error = past.square_error();
-            let variance = past.upper_square();
-            if self.design.is_none() {
-                if past.draws() < BLOCK || !(error <= RELIABLE && variance.is_finite()) {
-                    return None;
-                }
-                self.start(variance);
-            }
-            let first = self.design?;
-            // ε may become narrower than promised, never wider.
-            return Some(Design::new(variance, first.tolerance, first.floor));
+    /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range.
+    fn start_by_range(&mut self) {
+        let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
+        let is_reliable = self.past.draws() >= FEW && self.past.square_error() <= RELIABLE;
+        let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
+        let variance = shown.min(ground.widest());
+        if self.past.draws() > 0 && variance.is_finite() {
+            self.start(variance);
         }
-        self.design
     }
 
     /// Adds a block of y.
     pub(super) fn absorb(&mut self, y: &[f64]) {
-        if self.decision != Decision::Open {
-            return;
-        }
-        if let Some(design) = self.prepare() {
-            let mut sums = GateSums::default();
-            sums.absorb(y, &design.arguments());
-            self.gains.add(&design.gains(sums.totals(), y.len() as f64));
-            self.sum.add(y.iter().sum());
-            self.judged += y.len() as u64;
-            self.blocks += 1;
-            if self.blocks == self.look {
-                self.decide();
+        let block = self.sums.len() as u64;
+        if self.decision != Decision::Failed {
+            let bound =
+                self.of_variance.as_mut().and_then(|g| g.variance(&self.past, self.levels.ln_fail));
+            if let Some(variance) = bound
+                && self.design.is_none()
+            {
+                self.start(variance);
+            }
+            self.start_by_range();
+            if let (Some(ground), Some(variance), Some(first)) =
+                (&mut self.of_variance, bound, self.design)
+            {
+                ground.absorb(y, Design::new(variance, first.tolerance, first.floor), block);
+            }
+            if let Some(ground) = &mut self.of_range {
+                let variance = bound.or(ground.variance(&self.past));
+                let aim = self.design.zip(variance);
+                let aim =
+                    aim.map(|(Design { tolerance, .. }, variance)| Aim { tolerance, variance });
+                ground.absorb(y, aim, self.ask.floor);
             }
         }
-        if let Some(past) = &mut self.past {
-            past.absorb(y);
+        self.sums.push(y.iter().sum());
+        self.block = self.block.max(y.len() as u64);
+        self.past.absorb(y);
+        if block + 1 == self.look {
+            self.decide();
+            self.look = (self.look + 1).max(self.look * 115 / 100);
         }
     }
 
     /// A look; the last one comes when the draws end.
     pub(super) fn decide(&mut self) {
-        if self.decision == Decision::Open && self.judged > self.seen.1 {
-            self.evidence = self.gains.evidence();
-            self.decision = self.evidence.decision(self.levels.ln_fail, self.levels.ln_pass);
-            self.seen = (self.sum.value() / self.judged as f64, self.judged);
-            self.look = (self.look + 1).max(self.look * 115 / 100);
+        if self.decision == Decision::Failed || self.past.draws() == 0 {
+            return;
+        }
+        let (mut ln_e, mut ln_change, mut change) = (Vec::new(), Vec::new(), (0.0, 0));
+        let mut ln_pass: [Vec<f64>; 2] = Default::default();
+        let mut soft = f64::NEG_INFINITY;
+        let of_variance =
+            self.of_variance.as_ref().map(|g| (&g.capital, g.ln_share(), g.begin, g.is_hard));
+        let of_range = self.of_range.as_ref().map(|g| (&g.capital, 0.0, 0, true));
+        for (capital, ln_share, begin, is_hard) in of_variance.into_iter().chain(of_range) {
+            for (sides, side) in ln_pass.iter_mut().zip(capital.ln_pass()) {
+                sides.push(side);
+            }
+            if !is_hard {
+                soft = capital.ln_e() + ln_share;
+                continue;
+            }
+            ln_e.push(capital.ln_e() + ln_share);
+            ln_change.push(capital.ln_change() + ln_share);
+            if capital.ln_change() > change.0 {
+                change = (capital.ln_change(), begin + capital.change());
+            }
+        }
+        let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { ln_mean_exp(values) };
+        let evidence =
+            Evidence { ln_e: mean(&ln_e), ln_pass: ln_pass.map(|side| ln_mean_exp(&side)) };
+        let Levels { ln_fail, ln_pass } = self.levels;
+        self.is_doubted |= soft >= ln_fail;
+        let ln_change = mean(&ln_change);
+        if ln_change > self.change.ln_e {
+            let first = usize::try_from(change.1).unwrap_or(usize::MAX).min(self.sums.len());
+            let later: Sum = self.sums[first..].iter().copied().collect();
+            let draws = self.past.draws().saturating_sub(change.1 * self.block).max(1);
+            let off = later.value() / draws as f64;
+            self.change = Change { ln_e: ln_change, from: change.1 * self.block, off };
+        }
+        let decision = evidence.decision(ln_fail, ln_pass);
+        if self.decision == Decision::Open || decision == Decision::Failed {
+            (self.decision, self.evidence) = (decision, evidence);
+            self.seen = (self.past.mean(), self.past.draws());
         }
     }
 
-    /// Whether more draws may change what is said.
+    /// Whether more draws may change what is said, were it decided once and for all.
     pub(super) fn is_open(&self) -> bool {
         let most = self.planned.unwrap_or(UNPLANNED);
-        let (taken, limit) = match (&self.design, &self.past) {
-            (Some(design), _) if self.is_promised => {
-                let planned = gate::draws_of(design.variance, design.tolerance);
-                (self.judged, planned * gate::HORIZON / gate::PLANNED)
+        let limit = match &self.design {
+            Some(design) if self.is_promised => {
+                gate::draws_of(design.variance, design.tolerance) * gate::HORIZON / gate::PLANNED
             }
-            (None, Some(past)) => (past.draws(), most),
-            _ => (self.judged, most),
+            _ => most,
         };
-        self.decision == Decision::Open && (taken as f64) < limit
+        self.decision == Decision::Open && (self.past.draws() as f64) < limit
     }
 
     pub(super) fn has_failed(&self) -> bool {
         self.decision == Decision::Failed
     }
 
+    /// The strongest sign of a change of the mean.
+    pub(super) fn change(&self) -> Change {
+        self.change
+    }
+
+    /// ln E at the last look.
+    pub(super) fn ln_e(&self) -> f64 {
+        self.evidence.ln_e
+    }
+
+    /// Whether the draws do not contradict what was assumed of them.
+    pub(super) fn is_founded(&self) -> bool {
+        let ground = self.of_variance.as_ref();
+        !ground.is_some_and(|ground| ground.is_contradicted(&self.past)) || self.of_range.is_some()
+    }
+
+    /// Whether the mean differs by itself: were the spread what the draws show, it would fail, too.
+    pub(super) fn is_off_by_itself(&self) -> bool {
+        let (off, n) = self.seen;
+        let by_range = self.of_range.as_ref().map_or(0.0, |ground| ground.capital.ln_e());
+        let squares = self.past.mean_square() - off * off;
+        0.5 * off * off * n as f64 >= self.levels.ln_fail * squares
+            || by_range >= self.levels.ln_fail
+    }
+
+    /// The kurtosis that a judgement assumes without a promise of the caller's.
+    pub(super) fn assumed(&self) -> Option<f64> {
+        if self.ask.spread != Some(Spread::Shown) || self.of_range.is_some() && !self.ask.is_hard {
+            return None;
+        }
+        self.of_variance.as_ref().and_then(|ground| ground.kurtosis)
+    }
+
     /// What was found.
-    pub(super) fn finding(&self, read: u64) -> ScalarFinding {
-        let (verdict, reason) = self.verdict(read);
+    pub(super) fn finding(&self) -> ScalarFinding {
+        let (verdict, reason) = self.verdict();
         let gate = self.design.map(|design| GateFinding {
             tolerance: design.tolerance,
             variance: design.variance,
@@ -195,45 +284,85 @@ impl Scalar {
             needed: None,
             is_decided: self.decision != Decision::Open,
         });
-        let is_estimated = self.ask.variance.is_none();
-        let check = self.ask.check.to_owned();
-        ScalarFinding { check, verdict, reason, is_estimated, is_promised: self.is_promised, gate }
+        ScalarFinding {
+            check: self.ask.check.to_owned(),
+            verdict,
+            reason,
+            is_estimated: self.ask.spread == Some(Spread::Shown),
+            assumed_kurtosis: self.assumed(),
+            is_promised: self.is_promised,
+            gate,
+        }
     }
 
-    fn verdict(&self, read: u64) -> (Verdict, String) {
+    /// What is missing where the draws do not show their own spread.
+    fn unknown(&self) -> String {
+        let (n, what) = (self.past.draws(), self.ask.check);
+        let cure = if what == "variance" {
+            "--kurtosis or --range LOW,HIGH"
+        } else {
+            "--variance, --range LOW,HIGH or --kurtosis"
+        };
+        let bearers = self.past.bearers().floor().max(0.0);
+        match self.ask.spread {
+            Some(Spread::Kurtosis(kurtosis)) => format!(
+                "the spread of the {what} is not known: with a kurtosis of {kurtosis} it needs a first \
+                 block of draws, {:.0} of them or more, and others after it; there are {n}",
+                80.0 * kurtosis
+            ),
+            _ => format!(
+                "the spread of the {what} is not known: {bearers} of {n} draws carry it, and {BEARERS} \
+                 of more than {BLOCK} are needed; give {cure}"
+            ),
+        }
+    }
+
+    fn verdict(&self) -> (Verdict, String) {
         let what = self.ask.check;
-        let Some(design) = self.design else {
-            let verdict =
-                if self.ask.must_pass { Verdict::Inconclusive } else { Verdict::Underpowered };
-            let reason = format!(
-                "the spread of the {what} cannot be estimated from {read} draws: it needs more than \
-                 {BLOCK}, and a relative standard error of the spread below {RELIABLE}"
-            );
-            return (verdict, reason);
+        let weak = if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
+        let ground = self.of_variance.as_ref();
+        let relies_on_shown = ground.is_some_and(|ground| ground.is_contradicted(&self.past));
+        let Some(design) = self.design.filter(|_| self.is_founded()) else {
+            let weak = if self.ask.must_pass { Verdict::Inconclusive } else { weak };
+            return (weak, self.unknown());
         };
         let (off, n) = self.seen;
         match self.decision {
-            Decision::Passed => (Verdict::Pass, String::new()),
             Decision::Failed => {
-                let z = off / (design.variance / n as f64).sqrt();
+                // Where V is only bounded by a range, the draws' own spread says more.
+                let known = matches!(self.ask.spread, Some(Spread::Known(_)));
+                let spread = if known { design.variance } else { self.past.variance() };
+                let z = off / (spread / n as f64).sqrt();
                 let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
+                let z = if z.is_finite() {
+                    format!(", {z:+.1} standard errors")
+                } else {
+                    String::new()
+                };
                 let reason = format!(
-                    "the {what} is off by {off:+.2e}, {z:+.1} standard errors \
-                     (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
+                    "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
                 );
                 (Verdict::Fail, reason)
             }
+            _ if self.is_doubted && !relies_on_shown => {
+                let reason = format!(
+                    "the {what} looks off by {:+.2e}, but no number of draws can show that without \
+                     --kurtosis or --range LOW,HIGH",
+                    self.past.mean()
+                );
+                (Verdict::Inconclusive, reason)
+            }
+            Decision::Passed if relies_on_shown && !self.ask.is_hard => (weak, self.unknown()),
+            Decision::Passed => (Verdict::Pass, String::new()),
             Decision::Open => {
                 let planned = gate::draws_of(design.variance, design.tolerance);
                 let longest = planned * gate::HORIZON / gate::PLANNED;
-                let needed = if planned > read as f64 { planned } else { longest };
-                let verdict =
-                    if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
+                let needed = if planned > n as f64 { planned } else { longest };
                 let reason = format!(
                     "the {what} is undecided after {n} draws; a tolerance of {:.2e} needs {needed:.1e}",
                     design.tolerance
                 );
-                (verdict, reason)
+                (weak, reason)
             }
         }
     }

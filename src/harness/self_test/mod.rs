@@ -1,20 +1,25 @@
 //! The gate tested: does it keep its promises on correct estimators, and does it catch known bugs?
 //!
 //! [`calibration`] runs correct experiments many times and compares the rates of false alarms and
-//! false passes with the promise; [`mutation`] draws every known bug in the place of its honest
-//! estimator and asks whether the check that must catch it does.
+//! false passes with the promise; [`streams`] judges correct foreign draws of hard laws; [`mutation`]
+//! draws every known bug in the place of its honest estimator and asks whether the check that must
+//! catch it does.
 
 pub mod calibration;
 pub mod mutation;
+pub mod streams;
 
 pub use calibration::Calibration;
 pub use mutation::Caught;
+pub use streams::Fared;
 
 /// What a self-test found.
 #[derive(Debug, Clone)]
 pub struct SelfTest {
     /// The promises.
     pub calibration: Calibration,
+    /// Correct foreign draws.
+    pub streams: Vec<Fared>,
     /// The bugs.
     pub mutants: Vec<Caught>,
     /// Wall-clock seconds.
@@ -25,6 +30,8 @@ impl SelfTest {
     /// Whether every promise is kept and every bug is caught.
     #[must_use]
     pub fn holds(&self) -> bool {
-        self.calibration.holds() && self.mutants.iter().all(Caught::is_right)
+        self.calibration.holds()
+            && self.streams.iter().all(Fared::is_kept)
+            && self.mutants.iter().all(Caught::is_right)
     }
 }

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::layout::wrapped;
-use crate::harness::foreign::judgement::{Judgement, ScalarFinding};
+use crate::harness::foreign::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
+use crate::harness::record::Verdict;
 use crate::report::number::{count, fixed, short, signed};
 
 /// The widest word at the left.
@@ -24,9 +25,17 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     if let Some(variance) = variance(judgement) {
         line("variance", &variance);
     }
+    if let Some(lookups) = lookups(judgement) {
+        line("lookups", &lookups);
+    }
     for finding in &judgement.findings {
         line("gate", &gate(finding));
     }
+    if let Some(drift) = &judgement.drift {
+        let (word, found, limit) = (drift.verdict.word(), drift.ln_e, drift.ln_e_limit);
+        line("drift", &format!("ln E = {found:.1} of {limit:.1} for a change of the mean: {word}"));
+    }
+    line("order", &order(&judgement.independence));
     for promise in &judgement.guarantees {
         line("promise", promise);
     }
@@ -36,13 +45,54 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     text
 }
 
+/// What several verdicts come to.
+#[must_use]
+pub fn together(judged: &[(String, Judgement)], worst: Verdict, alpha: f64) -> String {
+    let of = |verdict: Verdict| {
+        let count = judged.iter().filter(|(_, judgement)| judgement.verdict == verdict).count();
+        (count > 0).then(|| format!("{count} {}", verdict.word()))
+    };
+    let counts: Vec<String> =
+        [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive].into_iter().filter_map(of).collect();
+    let alpha = short(alpha, 3);
+    format!(
+        "\n{}: {} of {} files, α = {alpha} shared\n",
+        worst.word(),
+        counts.join(", "),
+        judged.len()
+    )
+}
+
 fn draws(judgement: &Judgement, name: &str) -> String {
     let read = count(judgement.draws);
-    match judgement.length {
-        Some(length) if length != judgement.draws => {
-            format!("{read} of {} in {name}; the rest was not needed", count(length))
-        }
-        _ => format!("{read} in {name}"),
+    let of = match judgement.length {
+        Some(length) if length != judgement.draws => format!(" of {}", count(length)),
+        _ => String::new(),
+    };
+    let rest = match judgement.stopped {
+        Some(Stop::Decided) => "; all was decided, and the rest was not read",
+        Some(Stop::Limit) => "; the rest was not read",
+        None => "",
+    };
+    let batch = match judgement.batch {
+        1 => String::new(),
+        batch => format!(", judged as averages of {}", count(batch)),
+    };
+    format!("{read}{of} in {name}{rest}{batch}")
+}
+
+fn lookups(judgement: &Judgement) -> Option<String> {
+    let (found, claimed) = (judgement.lookups?, judgement.predicted_lookups?);
+    Some(format!("{} a draw, {} expected", short(found, 8), short(claimed, 8)))
+}
+
+/// Whether the draws depend on each other.
+fn order(found: &IndependenceFinding) -> String {
+    let evidence = format!("ln E = {:.1} of {:.1}", found.ln_e, found.ln_e_limit);
+    if found.is_refuted() {
+        format!("{evidence}: {}", found.reason)
+    } else {
+        format!("{evidence} against independent draws: nothing found")
     }
 }
 
@@ -76,8 +126,8 @@ fn gate(finding: &ScalarFinding) -> String {
     let Some(gate) = &finding.gate else { return format!("{check} not tested: {word}") };
     let [above, below] = gate.ln_p;
     let estimated = match (finding.is_estimated, check.as_str()) {
-        (true, "mean") => " · variance estimated",
-        (true, _) => " · kurtosis estimated",
+        (true, "variance") => " · kurtosis estimated",
+        (true, _) => " · variance estimated",
         _ => "",
     };
     format!(

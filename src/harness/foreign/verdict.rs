@@ -1,0 +1,216 @@
+//! What is said of foreign draws, and in which order.
+//!
+//! ```text
+//! a draw that refutes the claim by itself   fail, before all else
+//! the draws depend on each other            inconclusive: what the gate says holds for independent draws
+//! variance, mean, lookups, drift            fail; inconclusive; else pass
+//! ```
+//!
+//! A variance that is refuted as too small is named before the mean, and a mean that is off only in
+//! units of that variance is not accused: its evidence rests on what is refuted.
+
+use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
+use super::reading::{Fault, Reading, Refuted};
+use crate::harness::record::Verdict;
+
+/// The verdict of the whole, and what it promises.
+pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
+    put_variance_first(reading, judgement);
+    let is_dependent = judgement.independence.is_refuted();
+    if is_dependent {
+        withhold(judgement);
+    }
+    let said = [Verdict::Fail, Verdict::Inconclusive].into_iter().find_map(|verdict| {
+        let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
+        let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
+        let alike = scalars.chain(drift).filter(|(found, _)| *found == verdict);
+        let reasons: Vec<&str> = alike.map(|(_, reason)| reason.as_str()).collect();
+        (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
+    });
+    (judgement.verdict, judgement.reason) = said.unwrap_or((Verdict::Pass, String::new()));
+    if is_dependent {
+        judgement.verdict = Verdict::Inconclusive;
+        judgement.reason = dependent(&judgement.independence);
+    }
+    if let Some(refuted) = &reading.refuted {
+        judgement.verdict = Verdict::Fail;
+        judgement.reason = fault(reading, refuted, judgement.refuting);
+    }
+    judgement.guarantees = guarantees(reading, judgement);
+}
+
+/// Names a refuted variance before the mean, and acquits a mean that is off only in units of it.
+fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
+    let place = |check: &str| judgement.findings.iter().position(|found| found.check == check);
+    let (Some(at), Some(variance)) = (place("mean"), place("variance")) else { return };
+    let found = &judgement.findings[variance];
+    let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
+    let is_off = reading.mean.as_ref().is_some_and(|mean| mean.is_off_by_itself());
+    if found.verdict != Verdict::Fail || !is_larger || is_off {
+        return;
+    }
+    let accused = &mut judgement.findings[at];
+    if accused.verdict == Verdict::Fail {
+        accused.verdict = Verdict::Inconclusive;
+        accused.reason = "the mean rests on a variance that is refuted".into();
+    }
+    if let Some(drift) = judgement.drift.as_mut().filter(|drift| drift.verdict == Verdict::Fail) {
+        drift.verdict = Verdict::Inconclusive;
+        drift.reason = "whether the mean changes rests on a variance that is refuted".into();
+    }
+    judgement.findings.swap(at, variance);
+}
+
+/// Takes back what the gate says: it holds for independent draws only.
+fn withhold(judgement: &mut Judgement) {
+    let not_judged =
+        |what: &str| format!("the {what} is not judged: the draws are not independent");
+    for found in &mut judgement.findings {
+        found.verdict = Verdict::Inconclusive;
+        found.reason = not_judged(&found.check);
+    }
+    if let Some(drift) = &mut judgement.drift {
+        drift.verdict = Verdict::Inconclusive;
+        drift.reason = not_judged("drift");
+    }
+}
+
+fn dependent(found: &IndependenceFinding) -> String {
+    let cure = match (found.replay, found.batch) {
+        (Some(_), _) => {
+            "write each draw once, and give each pass and thread a seed of its own".into()
+        }
+        (None, Some(batch)) => format!(
+            "judge averages by --batch {batch}, from where on no dependence shows, and give the \
+             variance of averages or a --range"
+        ),
+        (None, None) => "write one average a pass, or judge averages by --batch N".to_owned(),
+    };
+    format!("{}; the mean is not judged: {cure}", found.reason)
+}
+
+/// What is wrong with a draw.
+fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
+    let claim = &reading.trial.claim;
+    let &Refuted { fault, index, value } = refuted;
+    let truth = claim.truth;
+    let said = match fault {
+        Fault::Number if value.is_finite() => {
+            format!("numeric: draw {index} is {value:e}, beyond measure for a truth of {truth:e}")
+        }
+        Fault::Number => format!("numeric: draw {index} is {value}, counted from 0"),
+        Fault::Range => {
+            let [low, high] = claim.range.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
+            format!("range: draw {index} is {value:e}, outside of {low} to {high}")
+        }
+        Fault::Spread => {
+            let bound = reading.trial.bound() * claim.unit;
+            format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding")
+        }
+        Fault::TwoPoint => format!(
+            "variance: draw {index} is {value:e}; with a kurtosis of 1 every draw is one standard \
+             deviation, {:e}, from {truth:e}",
+            claim.variance.unwrap_or_default().sqrt()
+        ),
+        Fault::Lookups => {
+            let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
+            format!("lookups: draw {index} takes {value} lookups, not {wanted}")
+        }
+    };
+    if count > 1 { format!("{said}; {count} draws are like that") } else { said }
+}
+
+/// What the verdict promises, and what it does not.
+fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
+    let mut said = Vec::new();
+    match judgement.finding("mean") {
+        None => said.push(
+            "no spread: every draw read is the truth to rounding, or the verdict is fail".into(),
+        ),
+        Some(mean) => {
+            said.push(failing(reading, judgement, mean));
+            said.extend(missing(judgement, mean));
+        }
+    }
+    let variance = judgement.finding("variance");
+    if variance.is_some_and(|found| found.is_estimated) {
+        said.push(
+            "kurtosis estimated: the variance fails only where it is too large, which needs no \
+             kurtosis; it passes by the squares that were drawn, and rare ones that were not may \
+             carry it"
+                .into(),
+        );
+    }
+    if judgement.single_precision {
+        let what = "single precision: draws have 24 bits; a bias below 6e-8 of a draw cannot show";
+        said.push(what.into());
+    }
+    if judgement.unfilled > 0 {
+        said.push(format!(
+            "the last {} draws fill no average and were not judged",
+            judgement.unfilled
+        ));
+    }
+    if let Some(bits) = judgement.resolution {
+        said.push(format!("resolution: the first draws repeat as if they took 2^{bits:.1} values"));
+    }
+    let draws = judgement.draws;
+    match judgement.stopped {
+        Some(Stop::Decided) => {
+            said.push(format!("stopped early: what comes after {draws} draws was not seen"));
+        }
+        Some(Stop::Limit) => {
+            said.push(format!("stopped at the limit: what comes after {draws} draws was not seen"));
+        }
+        None => {}
+    }
+    said
+}
+
+/// Who fails with which chance.
+fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> String {
+    let claim = &reading.trial.claim;
+    let alpha = judgement.alpha;
+    let draws = if judgement.batch > 1 { "averages" } else { "draws" };
+    let correct = if judgement.finding("variance").is_some() || claim.range.is_some() {
+        format!("correct {draws}")
+    } else {
+        format!("{draws} of the right mean")
+    };
+    let who = match (claim.variance, claim.kurtosis, mean.is_estimated) {
+        (None, Some(most), _) => format!("{correct} with a kurtosis of {most} at most"),
+        (None, None, true) => {
+            let shown = judgement.kurtosis.map_or("no spread".to_owned(), |k| format!("{k:.3}"));
+            let cure = "give --variance, --range LOW,HIGH or --kurtosis for a promise";
+            return match mean.assumed_kurtosis {
+                Some(most) if claim.range.is_none() => format!(
+                    "variance estimated: independent {correct} fail with chance {alpha} at most if \
+                     their kurtosis is {most:.0} at most (they show {shown}); rare events that were not \
+                     drawn may break that: {cure}; the variance itself is not tested"
+                ),
+                _ => format!(
+                    "variance estimated: a {draws} mean that is too small is not refuted, since rare \
+                     events that were not drawn may carry it: {cure}; the variance itself is not tested"
+                ),
+            };
+        }
+        _ => correct,
+    };
+    format!("independent {who} fail with chance {alpha} at most")
+}
+
+/// What a pass of the mean promises.
+fn missing(judgement: &Judgement, mean: &ScalarFinding) -> Option<String> {
+    let beta = judgement.beta;
+    let miss = format!("a mean off by the tolerance passes with chance {beta} at most");
+    match judgement.finding("variance") {
+        None => (!mean.is_estimated).then_some(miss),
+        Some(found) if found.verdict == Verdict::Pass => {
+            Some(format!("{miss}; the variance it relies on passes"))
+        }
+        Some(_) if mean.verdict == Verdict::Pass => {
+            Some(format!("variance assumed: {miss}, if the variance is right"))
+        }
+        Some(_) => None,
+    }
+}

@@ -1,0 +1,187 @@
+//! What bets have gained so far: over all draws, and from a later block on.
+//!
+//! ```text
+//! E   = Σ_j v_j e^{L_j}                                    against the claim for all draws, Σ v_j = 1
+//! E_c = Σ_j v_j Σ_s w_s e^{L_j from block s on} + what has not begun,  w_s = 1/(s(s + 1))
+//! ```
+//!
+//! Both are test martingales where the claim holds for every draw: the second spreads its capital
+//! over the blocks from which on the claim may break, so that a change is seen however long all was
+//! well before it. It costs `ln(s(s + 1))` of evidence for a change at block s.
+//!
+//! Source: J. Shin, A. Ramdas, A. Rinaldo, *E-detectors: a nonparametric framework for sequential
+//! change detection*, New England Journal of Statistics in Data Science 2 (2024), section 2; here with
+//! weights that add up to 1, so that the chance of a false alarm is bounded over all time.
+
+use super::gate::ln_mean_exp;
+
+/// The logarithms of what each bet gained on some draws.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Gains {
+    /// Against a correct mean.
+    pub against: Vec<f64>,
+    /// Against a mean of +ε or more, and of −ε or less.
+    pub pass: [Vec<f64>; 2],
+}
+
+/// What bets have gained; blocks are added in their order.
+#[derive(Debug, Clone, Default)]
+pub struct Capital {
+    /// The share of the capital of each bet; without any all have the same.
+    shares: Gains,
+    sum: Gains,
+    later: Vec<Later>,
+    blocks: u64,
+}
+
+/// The capital of one bet that is spread over later beginnings.
+#[derive(Debug, Clone, Copy)]
+struct Later {
+    /// ln Σ_s w_s e^L.
+    ln_sum: f64,
+    /// The largest term of it, and its s.
+    ln_best: f64,
+    block: u64,
+}
+
+/// `ln(eˣ + eʸ)`.
+fn ln_add(x: f64, y: f64) -> f64 {
+    let (small, large) = if x < y { (x, y) } else { (y, x) };
+    if small == f64::NEG_INFINITY { large } else { large + (small - large).exp().ln_1p() }
+}
+
+/// `ln Σ v e^x` over bets of the given shares; −∞ without bets.
+fn joined(shares: &[f64], x: &[f64]) -> f64 {
+    if x.is_empty() {
+        return f64::NEG_INFINITY;
+    }
+    if shares.is_empty() {
+        return ln_mean_exp(x);
+    }
+    let weighted: Vec<f64> = shares.iter().zip(x).map(|(share, x)| share.ln() + x).collect();
+    ln_mean_exp(&weighted) + (x.len() as f64).ln()
+}
+
+impl Capital {
+    /// Capital that is shared among the bets as given, `against` and each side of `pass` with a sum of 1.
+    #[must_use]
+    pub fn shared(shares: Gains) -> Self {
+        Self { shares, ..Self::default() }
+    }
+
+    /// Adds the gains of the next block. The first block says how many bets there are; a side of the pass may
+    /// begin later.
+    pub fn add(&mut self, gains: &Gains) {
+        let none = Later { ln_sum: f64::NEG_INFINITY, ln_best: f64::NEG_INFINITY, block: 0 };
+        self.later.resize(gains.against.len(), none);
+        let s = self.blocks;
+        let ln_weight = -((s * (s + 1)) as f64).ln();
+        for (later, gain) in self.later.iter_mut().zip(&gains.against) {
+            if s > 0 {
+                later.ln_sum = ln_add(later.ln_sum, ln_weight);
+                if later.ln_best < ln_weight {
+                    (later.ln_best, later.block) = (ln_weight, s);
+                }
+            }
+            later.ln_sum += gain;
+            later.ln_best += gain;
+        }
+        join(&mut self.sum.against, &gains.against);
+        join(&mut self.sum.pass[0], &gains.pass[0]);
+        join(&mut self.sum.pass[1], &gains.pass[1]);
+        self.blocks += 1;
+    }
+
+    /// ln E.
+    #[must_use]
+    pub fn ln_e(&self) -> f64 {
+        if self.sum.against.is_empty() {
+            0.0
+        } else {
+            joined(&self.shares.against, &self.sum.against)
+        }
+    }
+
+    /// ln of the evidence against a mean of +ε or more, and of −ε or less; −∞ where nothing was bet.
+    #[must_use]
+    pub fn ln_pass(&self) -> [f64; 2] {
+        [0, 1].map(|side| joined(&self.shares.pass[side], &self.sum.pass[side]))
+    }
+
+    /// ln `E_c`.
+    #[must_use]
+    pub fn ln_change(&self) -> f64 {
+        if self.later.is_empty() {
+            return 0.0;
+        }
+        let sums: Vec<f64> = self.later.iter().map(|later| later.ln_sum).collect();
+        ln_add(joined(&self.shares.against, &sums), -(self.blocks as f64).ln())
+    }
+
+    /// The block at which a change most likely begins.
+    #[must_use]
+    pub fn change(&self) -> u64 {
+        let best = self.later.iter().max_by(|a, b| a.ln_best.total_cmp(&b.ln_best));
+        best.map_or(0, |later| later.block)
+    }
+}
+
+/// Adds up; what is not there yet has gained nothing.
+fn join(sums: &mut Vec<f64>, gains: &[f64]) {
+    sums.resize(sums.len().max(gains.len()), 0.0);
+    sums.iter_mut().zip(gains).for_each(|(sum, gain)| *sum += gain);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gains(against: f64) -> Gains {
+        Gains { against: vec![against, -against], pass: [vec![], vec![1.0]] }
+    }
+
+    #[test]
+    fn capital_is_a_mean_of_products() {
+        let mut capital = Capital::default();
+        capital.add(&gains(1.0));
+        capital.add(&gains(2.0));
+        assert!((capital.ln_e() - 3f64.cosh().ln()).abs() < 1e-14);
+        assert_eq!(capital.ln_pass(), [f64::NEG_INFINITY, 2.0]);
+        // One beginning so far, of weight 1/2; the other half waits.
+        assert!((capital.ln_change() - (0.5 * 2f64.cosh() + 0.5).ln()).abs() < 1e-14);
+        capital.add(&gains(-1.0));
+        let sums = |s: f64| 0.5 * s.exp() + (-1f64).copysign(s).exp() / 6.0;
+        let expected = 0.5 * (sums(1.0) + sums(-1.0)) + 1.0 / 3.0;
+        assert!((capital.ln_change() - expected.ln()).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_change_is_found_where_it_begins() {
+        let mut capital = Capital::default();
+        let step = |gain: f64| Gains { against: vec![gain], pass: [vec![], vec![]] };
+        (0..20).for_each(|_| capital.add(&step(-1.0)));
+        (0..20).for_each(|_| capital.add(&step(1.5)));
+        assert_eq!(capital.change(), 20);
+        let from = |s: i32| if s < 20 { f64::from(10 + s) } else { 1.5 * f64::from(40 - s) };
+        let sum: f64 = (1..40).map(|s| from(s).exp() / f64::from(s * (s + 1))).sum();
+        assert!((capital.ln_change() - (sum + 1.0 / 40.0).ln()).abs() < 1e-12);
+    }
+
+    #[test]
+    fn shares_are_weights() {
+        let shares = Gains { against: vec![0.75, 0.25], pass: [vec![], vec![1.0]] };
+        let mut capital = Capital::shared(shares);
+        capital.add(&gains(2.0));
+        assert!((capital.ln_e() - (0.75 * 2f64.exp() + 0.25 * (-2f64).exp()).ln()).abs() < 1e-14);
+        assert_eq!(capital.ln_pass(), [f64::NEG_INFINITY, 1.0]);
+    }
+
+    #[test]
+    fn without_gains_there_is_no_evidence() {
+        let mut capital = Capital::default();
+        for _ in 0..100 {
+            capital.add(&gains(0.0));
+        }
+        assert!(capital.ln_e().abs() < 1e-14 && capital.ln_change().abs() < 1e-12);
+    }
+}
