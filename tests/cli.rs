@@ -267,7 +267,7 @@ fn results_are_written_where_they_are_wanted() {
 #[test]
 fn csv_and_json_hold_the_columns_and_nothing_else() {
     let place = Place::new(&[("case.toml", GOOD)]);
-    for command in ["run case.toml --draws 2000", "predict case.toml", "plan case.toml"] {
+    for command in ["run case.toml --draws 2000", "predict case.toml --optimum", "plan case.toml"] {
         let table = place.run(&format!("{command} --format csv"));
         assert!(stdout(&table).starts_with(COLUMNS), "{command}");
         assert_eq!(stderr(&table), "", "{command}");
@@ -279,6 +279,8 @@ fn csv_and_json_hold_the_columns_and_nothing_else() {
         for column in COLUMNS.split(',') {
             assert!(rows[0].contains_key(column), "{command}: no {column}");
         }
+        assert!(rows[0]["moments_error"].is_number(), "{command}");
+        assert_eq!(rows[0]["best_fom"].is_number(), command.ends_with("optimum"), "{command}");
         // What is unknown is empty, and never zero.
         if !command.starts_with("run") {
             assert_eq!(rows[0]["mean"], serde_json::Value::Null, "{command}");

@@ -7,6 +7,7 @@ pub mod bench;
 pub mod changes;
 pub mod console;
 pub mod gallery;
+pub mod labels;
 pub mod number;
 pub mod plots;
 pub mod rows;
