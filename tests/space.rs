@@ -314,15 +314,11 @@ fn rays_that_are_not_walked_need_not_be_given() {
         }
     }
     // Where the length counts it is asked for, and so is a ray that says where light is looked for.
-    for (problem, ray) in [("transmittance", "ray = { origin = [0, 0, 0], direction = [0, 0, 1] }")]
-    {
-        let text = format!(
-            "title = \"rays\"\n[problem.{problem}]\nvolume.eq21 = {{}}\n{ray}\n\
-             estimators = [{{ closed-form = {{}} }}]"
-        );
-        let wrong = common::mistakes(&text).expect("a mistake").render(false);
-        assert!(wrong.contains("`length` is missing"), "{wrong}");
-    }
+    let text = "title = \"rays\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
+                ray = { origin = [0, 0, 0], direction = [0, 0, 1] }\n\
+                estimators = [{ closed-form = {} }]";
+    let wrong = common::mistakes(text).expect("a mistake").render(false);
+    assert!(wrong.contains("`length` is missing"), "{wrong}");
     let text = "title = \"rays\"\n[problem.furnace]\nvolume.eq21 = {}\nalbedo = 1\n\
                 phase.isotropic = {}\nsampling.constant.value = 1\n\
                 estimators = [{ particle.rule = \"analog\" }]";

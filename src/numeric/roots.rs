@@ -137,16 +137,16 @@ pub fn least(
         let u = (place, f(place));
         if u.1 <= x.1 {
             if u.0 < x.0 {
-                high = x.0
+                high = x.0;
             } else {
-                low = x.0
+                low = x.0;
             }
             (v, w, x) = (w, x, u);
         } else {
             if u.0 < x.0 {
-                low = u.0
+                low = u.0;
             } else {
-                high = u.0
+                high = u.0;
             }
             if u.1 <= w.1 || w.0 == x.0 {
                 (v, w) = (w, u);
