@@ -70,3 +70,12 @@ fn the_built_in_suite_is_a_choice_of_the_case_files() {
     assert!(!built_in.is_empty());
     assert!(built_in.is_subset(&files), "{:?}", built_in.difference(&files));
 }
+
+#[test]
+fn cases_call_the_sampling_extinction_what_axes_call_it() {
+    let spelled = |case: &Case| {
+        let text = std::fs::read_to_string(&case.path).expect("the file");
+        text.contains("sigma_samp").then(|| case.name.clone())
+    };
+    none(&shipped().iter().filter_map(spelled).collect::<Vec<_>>());
+}

@@ -2,11 +2,14 @@
 
 mod common;
 
-use common::{case, differs, none, options, predicted, row, rows, verdict};
+use common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
 use trueflight::estimators::rules::Weight;
-use trueflight::harness::Plan;
 use trueflight::harness::record::{Row, Verdict};
+use trueflight::harness::{Options, Plan, curves, judge};
 use trueflight::media::{Control, Piecewise};
+use trueflight::report::console::layout::{self, Pen};
+use trueflight::report::console::{self, View};
+use trueflight::report::troubles::experiment;
 use trueflight::theory::product::Product;
 use trueflight::theory::{Mesh, Prediction, curve};
 
@@ -163,4 +166,182 @@ fn the_unit_does_not_depend_on_which_side_of_the_limit_a_depth_is() {
     let pairs = relative(&rows[0]).into_iter().zip(relative(&rows[1]));
     let differences = pairs.filter_map(|(a, b)| differs("moment", a, b, 1e-11));
     none(&differences.collect::<Vec<_>>());
+}
+
+/// A rod through Eq. 21 by the non-terminating rule.
+fn rod(more: &str) -> String {
+    format!(
+        "title = \"a rod\"\n[problem.rod]\nvolume.eq21 = {{}}\n\
+         ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }}\nforward = 0.5\n\
+         {more}\nestimators = [{{ non-terminating = {{}} }}]"
+    )
+}
+
+fn with_optima(text: &str) -> Vec<Row> {
+    let cases = [case("test", text)];
+    let record = judge::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
+    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
+}
+
+#[test]
+fn every_channel_has_an_optimum_of_its_own() {
+    // Figures of merit at σ̂ = 0.6, 0.61, … 1.6 say where the best is to within a step.
+    let steps: Vec<String> = (60..=160).map(|i| format!("{}", f64::from(i) / 100.0)).collect();
+    let more = format!("albedo = 0.7\nsweep.sampling.values = [{}]", steps.join(", "));
+    let rows = with_optima(&rod(&more));
+    for (channel, sampling, fom) in [("reflectance", 0.902, 0.576), ("transmittance", 0.952, 1.138)]
+    {
+        let of: Vec<&Row> = rows.iter().filter(|row| row.channel == channel).collect();
+        let merit = |row: &Row| row.predicted_fom.expect("a figure of merit");
+        let best = of.iter().max_by(|a, b| merit(a).total_cmp(&merit(b))).expect("rows");
+        let at = best.sampling.expect("σ̂");
+        assert!((at - sampling).abs() < 0.01, "{channel}: best of the sweep at {at}");
+        for row in &of {
+            let [found, found_fom] = [row.best_sampling, row.best_fom].map(|x| x.expect("known"));
+            assert!((found - sampling).abs() < 6e-4, "{channel}: {found}");
+            assert!((found_fom - fom).abs() < 6e-4, "{channel}: {found_fom}");
+            assert!((found - at).abs() < 0.01 && found_fom >= merit(best), "{channel}: {found}");
+        }
+    }
+    // It takes a hundred predictions, and is searched only where it is asked for.
+    let bare = predicted(&rod("albedo = 0.7\nsampling.constant.value = 1"));
+    assert!(bare.iter().all(|row| row.best_sampling.is_none() && row.best_fom.is_none()));
+}
+
+#[test]
+fn an_optimum_at_the_edge_of_a_domain_is_inside() {
+    // Woodcock's V = T(1 − T) at any σ̂ ≥ σ_t, E[M] = (σ̂/σ_t)(1 − T): best at σ_t, below it refused.
+    let rows = with_optima(
+        "title = \"edge\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\n\
+         span = [0, 4]\nsampling.constant.value = 1\nestimators = [{ woodcock = {} }]",
+    );
+    let [best, fom] = [rows[0].best_sampling, rows[0].best_fom].map(|x| x.expect("known"));
+    let t = (-2f64).exp();
+    assert!((0.5..0.5 * (1.0 + 1e-5)).contains(&best), "{best}");
+    assert!((fom * t * (1.0 - t).powi(2) - 1.0).abs() < 1e-5, "{fom}");
+}
+
+#[test]
+fn every_curve_of_a_plot_has_an_optimum_of_its_own() {
+    let cases = [case("test", &rod("albedo = 0.7\nsweep.sampling.values = [0.7, 0.9, 1.5]"))];
+    let of = |optima: bool| {
+        let sweep = curves::sweep(&cases[0], &Options { optima, ..options(1, 1000) }, None);
+        sweep.expect("a sweep").curves
+    };
+    assert!(of(false).iter().all(|curve| curve.optimum.is_none()), "not asked for");
+    let stars: Vec<f64> = of(true)
+        .iter()
+        .map(|curve| {
+            let star = curve.optimum.expect("inside the sweep");
+            let highest = curve.points.iter().map(|point| point.fom).fold(0.0, f64::max);
+            assert!(star.fom >= highest, "{}: {} below {highest}", curve.channel, star.fom);
+            star.x
+        })
+        .collect();
+    assert!((stars[0] - 0.902).abs() < 6e-4 && (stars[1] - 0.952).abs() < 6e-4, "{stars:?}");
+}
+
+#[test]
+fn an_optimum_belongs_to_the_albedo_of_its_row() {
+    let swept = with_optima(&rod("sampling.constant.value = 1\nsweep.albedo.values = [0.2, 0.9]"));
+    for (albedo, of_albedo) in [0.2, 0.9].into_iter().zip(swept.chunks(2)) {
+        let alone = with_optima(&rod(&format!("sampling.constant.value = 1\nalbedo = {albedo}")));
+        for (row, alone) in of_albedo.iter().zip(&alone) {
+            assert_eq!(row.swept, Some(albedo));
+            assert!(row.best_sampling.is_some());
+            assert_eq!(row.best_sampling, alone.best_sampling, "{albedo} {}", row.channel);
+            assert_eq!(row.best_fom, alone.best_fom, "{albedo} {}", row.channel);
+        }
+    }
+}
+
+/// A table of theory, so many columns wide.
+fn table(text: &str, view: View, width: usize) -> String {
+    let cases = [case("test", text)];
+    let record = judge::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let table = console::table(&record, view, Pen { width, colour: false });
+    let widest = table.lines().map(layout::width).max().expect("lines");
+    assert!(widest <= width, "{widest} > {width}:\n{table}");
+    table
+}
+
+#[test]
+fn all_moments_are_shown_on_a_narrow_screen() {
+    let transmittance = "title = \"moments\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\n\
+        sweep.sampling.values = [1, 2]\nestimators = [{ ratio = {} }, \
+        { double.control.explorers.points = 20 }, { single = { rule = \"non-terminating\", albedo = 0.7 } }]";
+    let shown = table(transmittance, View::Moments, 80);
+    for head in ["J₁", "J₂", "J₃", "J₄", "m₂", "m₃", "m₄", "m error", "lookups", "± σ", "n(2)"]
+    {
+        assert!(shown.contains(head), "{head}:\n{shown}");
+    }
+    let slab = "title = \"moments\"\n[problem.slab]\nmedium.constant.extinction = 1\nspan = [0, 2]\n\
+        albedo = 0.9\nphase.isotropic = {}\nincidence.diffuse = {}\n\
+        estimators = [{ non-terminating.sampling.constant.value = 1.25 }, \
+        { analog.sampling.local-majorants.segments = 4 }]";
+    let shown = table(slab, View::Moments, 80);
+    for head in ["m₂", "m₃", "m₄", "m error", "lookups", "± σ", "n(2)"] {
+        assert!(shown.contains(head), "{head}:\n{shown}");
+    }
+}
+
+#[test]
+fn values_of_one_sweep_are_printed_apart() {
+    let text = "title = \"labels\"\n[problem.transmittance]\nmedium.constant.extinction = 0.5\n\
+        span = [0, 4]\nsweep.sampling.values = [0.48639, 0.4864, 0.6]\n\
+        estimators = [{ ratio = {} }, { woodcock = {} }]";
+    for view in [View::Predict, View::Plan, View::Moments] {
+        let shown = table(text, view, 100);
+        for value in ["0.48639", "0.4864 ", "0.6 "] {
+            assert!(shown.contains(value), "{value}:\n{shown}");
+        }
+    }
+    // The reason of both refusals is told with both places.
+    let shown = table(text, View::Predict, 100);
+    assert!(shown.contains("(σ\u{302} 0.48639)") && shown.contains("(σ\u{302} 0.4864)"), "{shown}");
+    let cases = [case("test", text)];
+    let record = judge::planned(&Plan::new(&cases, &options(1, 1000)));
+    let case = &record.results.cases[0];
+    let names: Vec<String> = case.rows.iter().map(|row| experiment(case, row)).collect();
+    for (name, label) in names.iter().zip(["0.48639", "0.4864"]) {
+        assert!(name.starts_with(&format!("ratio, σ\u{302} {label}, ")), "{name}");
+    }
+}
+
+#[test]
+fn hints_offer_only_what_would_be_right() {
+    let of = |field: &str| {
+        let text = format!(
+            "title = \"hints\"\n[problem.transmittance]\n{field}\nspan = [0, 1]\n\
+             estimators = [{{ closed-form = {{}} }}]"
+        );
+        mistakes(&text).expect("a mistake").render(false)
+    };
+    for field in ["medium.foo = {}", ""] {
+        let shown = of(field);
+        for name in ["eq21", "noise", "grid", "radial"] {
+            assert!(!shown.contains(name), "{name}:\n{shown}");
+        }
+    }
+    assert!(
+        of("medium.foo = {}").contains("`piecewise-linear`, `exponential`, `gaussian`, `sines`")
+    );
+    // What is known gets a word of its own, and a volume has all of them.
+    assert!(of("medium.eq21 = {}").contains("this field has no 1-D form"));
+    let volume = of("volume.foo = {}");
+    assert!(
+        ["eq21", "noise", "grid", "radial"].iter().all(|name| volume.contains(name)),
+        "{volume}"
+    );
+    // A point light is known only to be refused.
+    let light = mistakes(
+        "title = \"hints\"\n[problem.sphere]\nvolume.radial = { centre = [0, 0, 0], radius = 1, \
+         coefficients = [1] }\nray = { origin = [0, 0, -2], direction = [0, 0, 1] }\nalbedo = 0.5\n\
+         phase.isotropic = {}\nlight.lamp = {}\nsampling.constant.value = 1\n\
+         estimators = [{ particle.rule = \"analog\" }]",
+    );
+    let light = light.expect("a mistake").render(false);
+    assert!(light.contains("`environment`, `black-sphere`, `distant`"), "{light}");
+    assert!(!light.contains("`point`"), "{light}");
 }

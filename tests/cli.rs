@@ -267,7 +267,7 @@ fn results_are_written_where_they_are_wanted() {
 #[test]
 fn csv_and_json_hold_the_columns_and_nothing_else() {
     let place = Place::new(&[("case.toml", GOOD)]);
-    for command in ["run case.toml --draws 2000", "predict case.toml", "plan case.toml"] {
+    for command in ["run case.toml --draws 2000", "predict case.toml --optimum", "plan case.toml"] {
         let table = place.run(&format!("{command} --format csv"));
         assert!(stdout(&table).starts_with(COLUMNS), "{command}");
         assert_eq!(stderr(&table), "", "{command}");
@@ -279,6 +279,8 @@ fn csv_and_json_hold_the_columns_and_nothing_else() {
         for column in COLUMNS.split(',') {
             assert!(rows[0].contains_key(column), "{command}: no {column}");
         }
+        assert!(rows[0]["moments_error"].is_number(), "{command}");
+        assert_eq!(rows[0]["best_fom"].is_number(), command.ends_with("optimum"), "{command}");
         // What is unknown is empty, and never zero.
         if !command.starts_with("run") {
             assert_eq!(rows[0]["mean"], serde_json::Value::Null, "{command}");
@@ -383,10 +385,10 @@ fn a_second_run_in_the_same_folder_reuses_what_has_not_changed() {
     assert!(plan.contains("have not changed since the last run in results"), "{plan}");
     let second = place.run("run case.toml --draws 50000");
     assert!(stdout(&second).contains("were reused (--fresh makes them anew)"));
-    // Even the times are those of the first run; only the last column tells.
+    // Even the times are those of the first run; only one column tells.
     let told = summary();
-    assert!(told.lines().skip(1).all(|line| line.ends_with(",yes") || line.contains("refused")));
-    assert_eq!(told.replace(",yes\n", ",\n"), drawn);
+    assert!(told.lines().skip(1).all(|line| line.contains(",yes,") || line.contains("refused")));
+    assert_eq!(told.replace(",yes,", ",,"), drawn);
     for changed in ["--fresh", "--seed 2", "--save-baseline main"] {
         let output = place.run(&format!("run case.toml --draws 50000 {changed}"));
         assert!(!stdout(&output).contains("were reused"), "{changed}");

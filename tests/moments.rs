@@ -91,6 +91,7 @@ fn compare(reference: &Reference, mesh: &Mesh) -> Vec<String> {
     let channel = &prediction.channels[0];
     let truth = channel.truth.value;
     let [m2, m3, m4] = channel.moments.expect("moments").relative;
+    let stated = channel.moments_error().expect("an error");
     let count = prediction.lookups.as_ref().expect("a law of the lookups");
     let numbers = || (0..).map(f64::from).zip(&count.pmf);
     let mean: f64 = numbers().map(|(m, p)| m * p).sum();
@@ -98,6 +99,7 @@ fn compare(reference: &Reference, mesh: &Mesh) -> Vec<String> {
     let [j1, j2, j3, j4] = channel.losses.expect("losses");
     // An error of J_k is one of m_k times |J_k| and more.
     let sensitive = 1e-12 * (6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs()).max(1.0);
+    assert!(0.0 < stated && stated <= sensitive, "{}: {stated:e}", reference.name());
     let checks = [
         ("tau", mesh.optical_depth().value, 1e-12),
         ("T", truth, 1e-12),
@@ -106,6 +108,8 @@ fn compare(reference: &Reference, mesh: &Mesh) -> Vec<String> {
         ("J3", j3, 1e-12),
         ("J4", j4, 1e-12),
         ("relvar", m2, sensitive),
+        ("relvar", m2, stated),
+        ("rel_mu4", m4, stated),
         ("rel_mu3", m3, sensitive),
         ("rel_mu4", m4, sensitive),
         ("E_fetch", count.mean, 1e-11),

@@ -247,3 +247,44 @@ fn cases_without_an_answer_are_mistakes() {
         estimators = [{ source-driven = {} }]";
     assert!(mistakes(line).expect("a mistake").render(false).contains("field in space"));
 }
+
+#[test]
+fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
+    let of = |estimator: &str| {
+        common::predicted(&format!(
+            "title = \"cameras\"
+            [problem.single-scattering]
+            volume.constant.extinction = 0.8
+            ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }}
+            light.position = [0.5, 0, 2.5]
+            albedo = 0.9
+            phase.isotropic = {{}}
+            sweep.sampling.values = [1, 2]
+            estimators = [{estimator}]"
+        ))
+    };
+    for name in ["source-driven", "scattering-driven", "source-scattering-mis"] {
+        let bare = of(&format!("{{ {name} = {{}} }}"));
+        let own =
+            of(&format!("{{ {name} = {{ camera = \"exact\", sampling.constant.value = 1.5 }} }}"));
+        assert_eq!((bare.len(), own.len()), (1, 1), "{name}: drawn once");
+        assert_eq!((own[0].sampling, own[0].sampling_kind.as_str()), (None, ""), "{name}");
+        assert_eq!(own[0].predicted_variance, bare[0].predicted_variance, "{name}");
+        // With another camera it is its own σ̂, which the sweep leaves alone.
+        let ratio =
+            of(&format!("{{ {name} = {{ camera = \"ratio\", sampling.constant.value = 1.5 }} }}"));
+        assert_eq!((ratio.len(), ratio[0].sampling), (1, Some(1.5)), "{name}");
+    }
+    // What is written there is read all the same.
+    let wrong = mistakes(
+        "title = \"cameras\"
+        [problem.single-scattering]
+        volume.constant.extinction = 0.8
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+        light.position = [0.5, 0, 2.5]
+        albedo = 0.9
+        phase.isotropic = {}
+        estimators = [{ source-driven = { sampling.constant.value = -1 } }]",
+    );
+    assert!(wrong.expect("a mistake").render(false).contains("`value` is -1"));
+}

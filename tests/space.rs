@@ -262,3 +262,66 @@ fn every_rule_passes_in_every_shipped_case() {
     };
     assert!(n > 100.0 && mean > end(-3.29) && mean < end(3.29), "mean z² of {n} is {mean}");
 }
+
+#[test]
+fn rays_that_are_not_walked_need_not_be_given() {
+    let forms = [
+        (
+            "infinite-medium",
+            "volume.constant.extinction = 1.5\nalbedo = 0.9\nphase.isotropic = {}\nradii = [1, 2]",
+            "ray = { origin = [3, 0, 0], direction = [0, 1, 0], length = 1 }",
+            "",
+        ),
+        (
+            "lambertian",
+            "volume.eq21 = {}\nalbedo = 1\nphase.isotropic = {}",
+            "ray = { origin = [0, 0, -5], direction = [0.1, 0.05, 1], length = 40 }",
+            "",
+        ),
+        (
+            "furnace",
+            "volume.eq21 = {}\nalbedo = 0.7\nphase.isotropic = {}",
+            "ray = { origin = [0, 0, -5], direction = [0.1, 0.05, 1], length = 40 }",
+            "ray = { origin = [0, 0, -5], direction = [0.1, 0.05, 1] }",
+        ),
+        (
+            "sphere",
+            "volume.radial = { centre = [0, 0, 0], radius = 1.5, coefficients = [2, -2] }\n\
+             albedo = 0.9\nphase.isotropic = {}\nlight.environment = {}",
+            "ray = { origin = [0.1, 0.2, -4], direction = [0, 0, 1], length = 6 }",
+            "ray = { origin = [0.1, 0.2, -4], direction = [0, 0, 1] }",
+        ),
+    ];
+    for (problem, scene, whole, part) in forms {
+        let drawn = |ray: &str| {
+            common::rows(
+                &format!(
+                    "title = \"rays\"\n[problem.{problem}]\n{scene}\n{ray}\n\
+                     sampling.constant.value = 2\nestimators = [{{ particle.rule = \"analog\" }}]"
+                ),
+                20_000,
+            )
+        };
+        let (whole, part) = (drawn(whole), drawn(part));
+        assert!(!whole.is_empty() && whole.len() == part.len(), "{problem}");
+        for (a, b) in whole.iter().zip(&part) {
+            assert_ne!(b.verdict, Some(Verdict::Refused), "{problem}: {}", b.reason);
+            // The same to the bit: the ray is no part of a draw.
+            let of = |row: &trueflight::harness::record::Row| {
+                (row.truth, row.mean, row.variance, row.lookups_per_draw)
+            };
+            assert_eq!(of(a), of(b), "{problem} {}", a.channel);
+        }
+    }
+    // Where the length counts it is asked for, and so is a ray that says where light is looked for.
+    let text = "title = \"rays\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
+                ray = { origin = [0, 0, 0], direction = [0, 0, 1] }\n\
+                estimators = [{ closed-form = {} }]";
+    let wrong = common::mistakes(text).expect("a mistake").render(false);
+    assert!(wrong.contains("`length` is missing"), "{wrong}");
+    let text = "title = \"rays\"\n[problem.furnace]\nvolume.eq21 = {}\nalbedo = 1\n\
+                phase.isotropic = {}\nsampling.constant.value = 1\n\
+                estimators = [{ particle.rule = \"analog\" }]";
+    let wrong = common::mistakes(text).expect("a mistake").render(false);
+    assert!(wrong.contains("`ray` is missing"), "{wrong}");
+}

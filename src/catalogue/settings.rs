@@ -235,7 +235,12 @@ impl<'a> Settings<'a> {
     /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Answers
     /// the position of the name and the table behind it.
     pub fn choice(&self, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        let list = quoted(names);
+        self.choice_among(names, names)
+    }
+
+    /// The same where some names are known only to say what is wrong with them: hints list what is `offered`.
+    fn choice_among(&self, names: &[String], offered: &[String]) -> Option<(usize, Settings<'a>)> {
+        let list = quoted(offered);
         let [entry] = self.table else {
             let (span, message) = match self.table {
                 [] => (self.span.clone(), "nothing is chosen here".to_owned()),
@@ -249,7 +254,7 @@ impl<'a> Settings<'a> {
         };
         let Some(index) = names.iter().position(|name| *name == entry.key) else {
             let message = format!("`{}` is not known here", entry.key);
-            let words: Vec<&str> = names.iter().map(String::as_str).collect();
+            let words: Vec<&str> = offered.iter().map(String::as_str).collect();
             let help = suggestion(&entry.key, &words, &format!("one of {list}"));
             self.fault_at(entry.key_span.clone(), "", message, help);
             return None;
@@ -259,8 +264,18 @@ impl<'a> Settings<'a> {
 
     /// A table that must be there and chooses one of several names, as in `phase.isotropic = {}`.
     pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        let entry = self.required(key, &format!("one of {}", quoted(names)))?;
-        self.open(entry)?.choice(names)
+        self.chosen_among(key, names, names)
+    }
+
+    /// The same where hints list what is `offered` of the names.
+    pub fn chosen_among(
+        &self,
+        key: &'static str,
+        names: &[String],
+        offered: &[String],
+    ) -> Option<(usize, Settings<'a>)> {
+        let entry = self.required(key, &format!("one of {}", quoted(offered)))?;
+        self.open(entry)?.choice_among(names, offered)
     }
 
     fn open(&self, entry: &'a Entry) -> Option<Settings<'a>> {

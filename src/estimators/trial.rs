@@ -172,6 +172,8 @@ pub trait Experiment: Send + Sync {
 pub trait Entry<P: Problem>: Send + Sync {
     /// See [`Estimator::inputs`].
     fn inputs(&self) -> Inputs;
+    /// See [`Estimator::INPUTS`].
+    fn may_take(&self) -> Inputs;
     /// See [`Estimator::label`].
     fn label(&self, albedo: bool) -> String;
     /// See [`Estimator::with_albedo`].
@@ -201,6 +203,10 @@ pub trait Entry<P: Problem>: Send + Sync {
 impl<P: Problem, E: Estimator<P>> Entry<P> for E {
     fn inputs(&self) -> Inputs {
         Estimator::inputs(self)
+    }
+
+    fn may_take(&self) -> Inputs {
+        Self::INPUTS
     }
 
     fn label(&self, albedo: bool) -> String {

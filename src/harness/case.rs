@@ -20,7 +20,7 @@
 //! | key | meaning |
 //! |---|---|
 //! | `medium.NAME = { … }` with `span = [from, to]` | a field along a line |
-//! | `volume.NAME = { … }` with `ray = { origin, direction, length }` | a field in space, seen along a ray |
+//! | `volume.NAME = { … }` with `ray = { origin, direction, length }` | a field in space, seen along a ray; some problems need less of it, or no ray |
 //! | `sampling.NAME = { … }` | σ̂, for every estimator that takes one |
 //! | `control.NAME = { … }` | σ_c, for every estimator that takes one |
 //! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
@@ -37,12 +37,18 @@ use super::written::Usual;
 use crate::catalogue::{Domain, Page, Settings};
 use crate::estimators::Order;
 use crate::media::Body;
-use crate::problems::{self, each_problem};
+use crate::problems::{self, Problem, each_problem};
 use crate::rng::name_hash;
 
 macro_rules! readers {
     ($($module:ident :: $Problem:ident,)*) => {
         [$(Scenario::<problems::$Problem>::read),*]
+    };
+}
+
+macro_rules! rays {
+    ($($module:ident :: $Problem:ident,)*) => {
+        [$(<problems::$Problem as Problem>::RAY),*]
     };
 }
 
@@ -129,7 +135,7 @@ impl Case {
         let order = read_kernel(root);
         let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
         let problem = root.chosen("problem", &names).and_then(|(index, settings)| {
-            let body = Body::read(&settings);
+            let body = Body::read_for(&settings, each_problem!(rays)[index]);
             let sweep = read_sweep(&settings);
             let usual = Usual {
                 expect_biased: expect_biased.unwrap_or_default(),

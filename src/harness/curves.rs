@@ -4,23 +4,26 @@ use rayon::prelude::*;
 
 use super::addresses;
 use super::case::Case;
+use super::options::Options;
+use super::plan::{Planned, PlannedCase};
 use super::record::{Curve, CurvePoint, Sweep};
 use super::scenario::{Names, Variation};
 use super::sweep::{SweepAxis, What};
 use crate::theory::Channel;
-use crate::theory::optimum::{Optimum, best_constant};
+use crate::theory::optimum::{Optimum, best_constants};
 
 /// Points of a line.
 const POINTS: usize = 48;
 
 /// The lines of a case with a sweep.
 #[must_use]
-pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
+pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Sweep> {
+    let seed = options.seed;
     let axis = case.sweep.as_ref()?;
     let swept = (0..case.scenario.estimators()).filter(|&i| case.scenario.depends_on(i, axis.what));
     let swept: Vec<usize> = swept.collect();
-    let best = if axis.what == What::Sampling { best_of_each(case, seed) } else { Vec::new() };
     let x = abscissae(axis);
+    let (low, high) = ends(&x);
     let curves = swept
         .par_iter()
         .flat_map_iter(|&estimator| {
@@ -30,14 +33,15 @@ pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
                 .collect();
             let names =
                 case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
-            let inside = |best: &Optimum| {
-                let ends = x.first().zip(x.last());
-                ends.is_some_and(|(&low, &high)| (low..=high).contains(&best.sampling))
+            let is_sought = options.optima && axis.what == What::Sampling;
+            let best = is_sought.then(|| best(case, seed, estimator, None));
+            let optimum = |channel: usize| {
+                let at = best.as_ref()?.get(channel).copied().flatten()?.sampling;
+                let mut points = (low..=high)
+                    .contains(&at)
+                    .then(|| points(case, seed, estimator, Some((What::Sampling, at)), at))?;
+                (channel < points.len()).then(|| points.swap_remove(channel).1)?
             };
-            let optimum = best.get(estimator).copied().flatten().filter(inside).and_then(|best| {
-                let at = best.sampling;
-                points(case, seed, estimator, Some((What::Sampling, at)), at).pop()?.1
-            });
             let named = predicted.iter().max_by_key(|channels| channels.len());
             let named = named.map_or(&[][..], Vec::as_slice);
             let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
@@ -45,8 +49,7 @@ pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
                 control: names.control.clone(),
                 channel: channel.clone(),
                 points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
-                // The figure of merit is that of the last channel.
-                optimum: optimum.filter(|_| index + 1 == named.len()),
+                optimum: optimum(index),
             };
             let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
             if curves.is_empty() { vec![refused(names)] } else { curves }
@@ -61,22 +64,39 @@ pub fn sweep(case: &Case, seed: u64, z_limit: Option<f64>) -> Option<Sweep> {
     })
 }
 
-/// The best constant σ̂ of each estimator; `None` for those that take none of the case's.
+/// The best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or
+/// are refused at every σ̂.
 #[must_use]
-pub fn best_of_each(case: &Case, seed: u64) -> Vec<Option<Optimum>> {
+pub fn best_of_each(case: &PlannedCase, seed: u64) -> Vec<Vec<Option<Optimum>>> {
+    // Experiments that differ in nothing but σ̂ have the same.
+    let asked = |planned: &Planned| {
+        let is_of_sampling =
+            |(what, _): &(What, f64)| matches!(what, What::Sampling | What::SamplingScale);
+        (planned.estimator, planned.variation.filter(|variation| !is_of_sampling(variation)))
+    };
+    let mut questions: Vec<_> = case.experiments.iter().map(asked).collect();
+    questions.dedup();
+    let found: Vec<_> = questions
+        .par_iter()
+        .map(|&(estimator, variation)| best(case.case, seed, estimator, variation))
+        .collect();
+    let answer = |planned: &Planned| {
+        let place = questions.iter().position(|question| *question == asked(planned));
+        place.map(|place| found[place].clone()).unwrap_or_default()
+    };
+    case.experiments.iter().map(answer).collect()
+}
+
+/// The best constant σ̂ of one experiment, channel by channel.
+fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<Option<Optimum>> {
     let scenario = &case.scenario;
-    (0..scenario.estimators())
-        .into_par_iter()
-        .map(|estimator| {
-            if !scenario.depends_on(estimator, What::SamplingScale) {
-                return None;
-            }
-            let pilots = addresses::pilots(seed, case, estimator);
-            best_constant(scenario.natural_scale(estimator, None), |sampling| {
-                scenario.predict(estimator, Some((What::Sampling, sampling)), pilots)
-            })
-        })
-        .collect()
+    if !scenario.depends_on(estimator, What::SamplingScale) {
+        return Vec::new();
+    }
+    let pilots = addresses::pilots(seed, case, estimator);
+    best_constants(scenario.natural_scale(estimator, variation), |sampling| {
+        scenario.predict(estimator, variation, Some(sampling), pilots)
+    })
 }
 
 /// The line of an estimator that is refused everywhere: it has no points.
@@ -94,7 +114,7 @@ fn points(
     x: f64,
 ) -> Vec<(String, Option<CurvePoint>)> {
     let pilots = addresses::pilots(seed, case, estimator);
-    let Some(prediction) = case.scenario.predict(estimator, variation, pilots) else {
+    let Some(prediction) = case.scenario.predict(estimator, variation, None, pilots) else {
         return Vec::new();
     };
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
@@ -110,10 +130,7 @@ fn points(
 
 /// The values at which lines are computed: the sweep's own, and more between them.
 fn abscissae(axis: &SweepAxis) -> Vec<f64> {
-    let (low, high) = axis
-        .values
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let (low, high) = ends(&axis.values);
     let mut x = axis.values.clone();
     if axis.what != What::Points {
         x.extend((0..POINTS).map(|i| {
@@ -124,4 +141,9 @@ fn abscissae(axis: &SweepAxis) -> Vec<f64> {
     x.sort_by(f64::total_cmp);
     x.dedup();
     x
+}
+
+/// The least and the largest of some numbers.
+fn ends(x: &[f64]) -> (f64, f64) {
+    x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
 }

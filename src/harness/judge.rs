@@ -10,10 +10,10 @@ use super::record::{
     Verdict,
 };
 use super::run::{Drawn, Draws};
+use super::theory_rows::{finite, theory_rows};
 use super::{curves, findings, suite, summary};
 use crate::numeric::pack;
 use crate::stats::Tally;
-use crate::theory::optimum::Optimum;
 use crate::theory::{Channel, Prediction};
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
@@ -34,32 +34,41 @@ pub fn planned(plan: &Plan) -> Record {
     let mut record = record(plan, plan.cases.iter().map(|case| (rows(case), None, None)));
     for (case, planned_case) in record.results.cases.iter_mut().zip(&plan.cases) {
         let draws = planned_case.experiments.iter().flat_map(|planned| {
-            let rows = planned.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len());
             let draws = planned.outcome.is_ok().then_some(planned.draws);
-            std::iter::repeat_n(draws, rows)
+            std::iter::repeat_n(draws, planned.channels())
         });
         case.rows.iter_mut().zip(draws).for_each(|(row, draws)| row.draws = draws);
     }
     record
 }
 
-/// What theory says: the rows of a plan with the best constant σ̂ of each estimator.
+/// What theory says: the rows of a plan.
 #[must_use]
 pub fn predicted(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
-        let best = curves::best_of_each(case.case, plan.options.seed);
-        let rows = case.experiments.par_iter().map(|planned| {
-            let optimum = best.get(planned.estimator).copied().flatten();
-            let mut rows = theory_rows(case, planned);
-            for row in rows.iter_mut().filter(|row| row.verdict.is_none()) {
-                row.best_sampling = optimum.map(|best: Optimum| best.sampling);
-                row.best_fom = optimum.map(|best| best.figure_of_merit);
-            }
-            rows
-        });
-        rows.flatten_iter().collect()
+        case.experiments.iter().flat_map(|planned| theory_rows(case, planned)).collect()
     };
     record(plan, plan.cases.iter().map(|case| (rows(case), None, None)))
+}
+
+/// The same with the best constant σ̂ of each experiment and channel, which takes a hundred predictions.
+#[must_use]
+pub fn predicted_with_optima(plan: &Plan) -> Record {
+    let mut record = predicted(plan);
+    let cases = plan.cases.par_iter().map(|case| curves::best_of_each(case, plan.options.seed));
+    let best: Vec<_> = cases.collect();
+    for (found, (case, best)) in record.results.cases.iter_mut().zip(plan.cases.iter().zip(best)) {
+        let of_rows = case.experiments.iter().zip(best).flat_map(|(planned, best)| {
+            let channels = planned.channels();
+            (0..channels).map(move |channel| best.get(channel).copied().flatten())
+        });
+        for (row, best) in found.rows.iter_mut().zip(of_rows) {
+            let best = best.filter(|_| row.verdict.is_none());
+            row.best_sampling = best.map(|best| best.sampling);
+            row.best_fom = best.map(|best| best.figure_of_merit);
+        }
+    }
+    record
 }
 
 /// What a plan drew, judged.
@@ -76,7 +85,7 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
                 drawn_rows(plan, case, planned, drawn, findings)
             });
             let rows: Vec<Row> = rows.collect();
-            let sweep = curves::sweep(case.case, plan.options.seed, Some(plan.levels.z));
+            let sweep = curves::sweep(case.case, &plan.options, Some(plan.levels.z));
             let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
             (rows, sweep, anatomy)
         })
@@ -90,8 +99,7 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
         let both = case.experiments.iter().zip(drawn.iter());
         let rows = both.flat_map(|(planned, drawn)| {
             let time = planned.outcome.is_ok().then_some(drawn.seconds);
-            let rows = planned.outcome.as_ref().map_or(1, |r| r.prediction.channels.len());
-            std::iter::repeat_n((time, drawn.is_reused), rows)
+            std::iter::repeat_n((time, drawn.is_reused), planned.channels())
         });
         (record.timing.rows[timing], record.timing.reused[timing]) = rows.unzip();
     }
@@ -150,82 +158,6 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
         cases,
     };
     Record { results, timing, comparison: None }
-}
-
-/// A longer list of probabilities is left out of the record.
-const LONGEST_LAW: usize = 100;
-
-/// The rows of an experiment with what theory says of each channel.
-fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
-    let blank = Row {
-        estimator: planned.names.estimator.clone(),
-        sampling: planned.names.sampling,
-        sampling_kind: planned.names.sampling_kind.clone(),
-        control: planned.names.control.clone(),
-        swept: planned.variation.map(|(_, value)| value),
-        ..Row::default()
-    };
-    let ready = match &planned.outcome {
-        Ok(ready) => ready,
-        Err(refusal) => {
-            let reason = refusal.to_string();
-            return vec![Row { verdict: Some(Verdict::Refused), reason, ..blank }];
-        }
-    };
-    let prediction = &ready.prediction;
-    let lookups = prediction.lookups.as_ref().map(|law| law.mean);
-    let law = prediction.lookups.as_ref();
-    let kernel = ready.experiment.order().word();
-    let same_as = twin(case, planned).unwrap_or_default();
-    let rows = prediction.channels.iter().map(|channel| {
-        let variance = channel.moments.map(|moments| moments.variance());
-        let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
-        Row {
-            kernel: kernel.to_owned(),
-            sharing: sharing(case, planned),
-            same_as: same_as.clone(),
-            skipped: Some(ready.experiment.skipped()).filter(|&share| share > 0.0),
-            channel: channel.name.clone(),
-            truth: Some(channel.truth.value),
-            truth_error: Some(channel.truth.error),
-            predicted_variance: finite(variance),
-            predicted_lookups: lookups,
-            predicted_skewness: finite(channel.moments.and_then(|m| m.skewness())),
-            predicted_kurtosis: finite(channel.moments.and_then(|m| m.kurtosis())),
-            predicted_fom: finite(fom),
-            stable_share: prediction.stable_share,
-            losses: channel.losses,
-            relative_moments: channel
-                .moments
-                .map_or([None; 3], |moments| moments.relative.map(|m| finite(Some(m)))),
-            lookups_variance: law.map(|law| law.variance),
-            lookups_pmf: law
-                .filter(|law| law.pmf.len() <= LONGEST_LAW)
-                .map_or_else(Vec::new, |law| law.pmf.clone()),
-            rare_event_size: finite(channel.moments.map(|_| channel.tails.rare_event_size)),
-            eighth_moment_ratio: finite(channel.moments.map(|_| channel.tails.eighth_moment_ratio)),
-            log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),
-            ..blank.clone()
-        }
-    });
-    rows.collect()
-}
-
-/// The estimator that an experiment is by definition, where the case has it too.
-fn twin(case: &PlannedCase, planned: &Planned) -> Option<String> {
-    let index = case.experiments.iter().position(|other| std::ptr::eq(other, planned))?;
-    case.twin(index).map(|twin| case.experiments[twin].names.estimator.clone())
-}
-
-/// How many experiments of the case share an experiment's lookups.
-fn sharing(case: &PlannedCase, planned: &Planned) -> Option<u64> {
-    let places = planned.places?;
-    let all = case.experiments.iter().filter(|other| other.places == Some(places)).count();
-    (all > 1).then_some(all as u64)
-}
-
-fn finite(x: Option<f64>) -> Option<f64> {
-    x.filter(|x| x.is_finite())
 }
 
 /// The rows of an experiment with what was drawn and found.

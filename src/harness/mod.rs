@@ -32,6 +32,7 @@ pub mod stress;
 pub mod suite;
 pub mod summary;
 pub mod sweep;
+mod theory_rows;
 mod written;
 
 use crate::catalogue::Catalogue;

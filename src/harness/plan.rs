@@ -143,6 +143,12 @@ impl Planned {
         })
     }
 
+    /// How many rows it has in a record: one per channel, or one that says why it is refused.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len())
+    }
+
     /// The streams of a block.
     #[must_use]
     pub fn streams(&self, block: u64) -> Streams {

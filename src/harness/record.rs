@@ -190,8 +190,8 @@ pub struct Row {
     pub predicted_fom: Option<f64>,
     /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.
     pub stable_share: Option<f64>,
-    /// The constant σ̂ with the largest predicted figure of merit; for the double particle, which
-    /// has no optimum, the σ̂ that reaches 90 % of the limit.
+    /// The constant σ̂ with the largest predicted figure of merit of this channel; for the double particle,
+    /// which has no optimum, the σ̂ that reaches 90 % of the limit. `None` where it is not asked for.
     pub best_sampling: Option<f64>,
     /// The figure of merit there.
     pub best_fom: Option<f64>,
@@ -206,6 +206,9 @@ pub struct Row {
     /// The central moments `μ_k/T^k` of one draw in theory, k = 2, 3, 4; `None` where they are
     /// unknown or overflow.
     pub relative_moments: [Option<f64>; 3],
+    /// A bound on the relative error of the predicted variance and, where that is known, of the fourth
+    /// moment; `None` where it is not bounded.
+    pub moments_error: Option<f64>,
     /// The variance of the number of lookups of one draw in theory.
     pub lookups_variance: Option<f64>,
     /// `P(0), P(1), …` lookups of one draw in theory; empty where unknown or longer than 100.

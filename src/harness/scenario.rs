@@ -44,13 +44,14 @@ pub trait AnyScenario: Send + Sync {
     /// Prepares an experiment; pilot rays and portraits find their random numbers at `address`.
     fn prepare(&self, estimator: usize, variation: Variation, address: Address) -> Prepared;
 
-    /// What theory says of an experiment at a constant σ̂; `None` if it is refused.
+    /// What theory says of an experiment; `None` if it is refused.
     ///
-    /// `Some((What::Sampling, σ̂))` replaces the estimator's own σ̂ too: it asks "what if".
+    /// With `what_if` of that constant σ̂ in place of its own.
     fn predict(
         &self,
         estimator: usize,
         variation: Variation,
+        what_if: Option<f64>,
         pilots: Address,
     ) -> Option<Prediction>;
 
@@ -199,31 +200,37 @@ impl<P: Mutable> Scenario<P> {
         variation: Variation,
         address: Address,
     ) -> Result<Setup<P>, Refusal> {
+        self.setup_at(index, variation, None, address)
+    }
+
+    /// The same, at a constant σ̂ where one is given.
+    fn setup_at(
+        &self,
+        index: usize,
+        variation: Variation,
+        what_if: Option<f64>,
+        address: Address,
+    ) -> Result<Setup<P>, Refusal> {
         let site = Site { body: &self.body, mesh: self.mesh(), address };
         let control = self.with_control(index, variation, |recipe| recipe.prepare(&site))?;
         let takes_sampling = self.written[index].entry.inputs().sampling;
-        let sampling: Option<Piecewise> = match variation {
-            Some((What::Sampling, value)) if takes_sampling => {
-                Some(Piecewise::constant(value, self.mesh().support()))
-            }
-            _ => match self.sampling_of(index) {
-                Some(recipe) => Some(recipe.prepare(&site, &control)?),
-                None => None,
-            },
+        let (constant, factor) = match variation {
+            _ if what_if.is_some() => (what_if, 1.0),
+            Some((What::Sampling, value)) => (Some(value), 1.0),
+            Some((What::SamplingScale, factor)) => (None, factor),
+            _ => (None, 1.0),
         };
-        let factor = match variation {
-            Some((What::SamplingScale, factor)) => factor,
-            _ => 1.0,
+        let constant = constant.filter(|_| takes_sampling);
+        let sampling: Option<Piecewise> = match (constant, self.sampling_of(index)) {
+            (Some(value), _) => Some(Piecewise::constant(value, self.mesh().support())),
+            (None, Some(recipe)) => Some(recipe.prepare(&site, &control)?),
+            (None, None) => None,
         };
         let sampling = sampling.map(|sampling| sampling.scaled(factor));
         let problem = self.varied_problem(variation);
         let setup = Setup::new(problem, self.mesh().clone(), sampling, control);
         let setup = if self.written[index].entry.skips() { setup.skipping() } else { setup };
-        let swept = match variation {
-            Some((What::Sampling, value)) if takes_sampling => Some(value),
-            _ => None,
-        };
-        let setup = setup.in_space(swept, self.sampling_of(index), factor)?;
+        let setup = setup.in_space(constant, self.sampling_of(index), factor)?;
         let controlled = setup.control_transmittance;
         // Without collisions a draw does not begin with the weight T_c.
         if !takes_sampling || (FAINTEST..=1.0 / FAINTEST).contains(&controlled) {
@@ -344,11 +351,13 @@ impl<P: Mutable> AnyScenario for Scenario<P> {
         &self,
         estimator: usize,
         variation: Variation,
+        what_if: Option<f64>,
         pilots: Address,
     ) -> Option<Prediction> {
         let varied = self.varied_entry(estimator, variation);
         let entry = varied.as_deref().unwrap_or(&*self.written[estimator].entry);
-        let setup = Setup { laws: false, ..self.setup(estimator, variation, pilots).ok()? };
+        let setup = self.setup_at(estimator, variation, what_if, pilots).ok()?;
+        let setup = Setup { laws: false, ..setup };
         entry.domain(&setup).ok()?;
         Some(predict(entry, &setup, self.written[estimator].order()))
     }

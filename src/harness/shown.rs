@@ -29,7 +29,7 @@ pub struct Curve {
     pub channel: String,
     /// Points in ascending order; refused stretches are left out.
     pub points: Vec<CurvePoint>,
-    /// Where the figure of merit is largest, if it has a maximum inside the sweep.
+    /// Where the figure of merit is largest, if it has a maximum inside the sweep and was searched for it.
     pub optimum: Option<CurvePoint>,
 }
 

@@ -115,14 +115,17 @@ impl<P: Estimated> Written<P> {
             settings.close();
             return None;
         };
-        let inputs = entry.inputs();
-        let sampling = if inputs.sampling {
-            read_if(&settings, "sampling", body, sampling::read)
+        // What the page takes with other settings is read, and not used.
+        let (inputs, page) = (entry.inputs(), entry.may_take());
+        let sampling = if page.sampling {
+            let read = read_if(&settings, "sampling", body, sampling::read);
+            read.map(|sampling| sampling.filter(|_| inputs.sampling))
         } else {
             Some(None)
         };
-        let control = if inputs.control {
-            read_if(&settings, "control", body, controls::read)
+        let control = if page.control {
+            let read = read_if(&settings, "control", body, controls::read);
+            read.map(|control| control.filter(|_| inputs.control))
         } else {
             Some(None)
         };

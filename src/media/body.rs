@@ -30,9 +30,25 @@ pub enum Body {
     },
 }
 
+/// What a problem asks of the ray through a volume; what it does not ask for may be given, and shows σ_t.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RayNeed {
+    /// Where it begins, where it goes and how far.
+    Whole,
+    /// Where it begins and where it goes.
+    Line,
+    /// Nothing.
+    Nothing,
+}
+
 impl Body {
-    /// Reads `medium` and `span`, or `volume` and `ray`.
+    /// Reads `medium` and `span`, or `volume` and a whole `ray`.
     pub fn read(settings: &Settings) -> Option<Self> {
+        Self::read_for(settings, RayNeed::Whole)
+    }
+
+    /// Reads `medium` and `span`, or `volume` and what a problem needs of a `ray`.
+    pub fn read_for(settings: &Settings, need: RayNeed) -> Option<Self> {
         match (settings.has("medium"), settings.has("volume")) {
             (true, false) => {
                 let field = read_line(settings);
@@ -44,8 +60,17 @@ impl Body {
             }
             (false, true) => {
                 let field = read_volume(settings);
-                let ray = settings.table("ray").and_then(|ray| read_ray(&ray));
-                let ((name, volume), ray) = (field?, ray?);
+                let (name, volume, ray) = if need == RayNeed::Nothing && !settings.has("ray") {
+                    let (name, volume) = field?;
+                    let ray = through(volume.bounds())?;
+                    (name, volume, ray)
+                } else {
+                    let length = (need != RayNeed::Whole)
+                        .then(|| field.as_ref().map_or(Bounds::Everywhere, |(_, f)| f.bounds()));
+                    let ray = settings.table("ray").and_then(|ray| read_ray(&ray, length));
+                    let ((name, volume), ray) = (field?, ray?);
+                    (name, volume, ray)
+                };
                 fits(settings, &volume, &ray)?;
                 Some(Self::Volume { name, volume: Arc::new(volume), ray })
             }
@@ -150,10 +175,13 @@ fn names() -> Vec<String> {
 }
 
 fn read_line(settings: &Settings) -> Option<(String, Profile)> {
-    let (index, field) = settings.chosen("medium", &names())?;
+    let names = names();
+    let offered = names.iter().zip(Profile::IN_LINE).filter(|(_, in_line)| **in_line);
+    let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
+    let (index, field) = settings.chosen_among("medium", &names, &offered)?;
     let profile = Profile::read(index, &field);
     field.close();
-    Some((names().swap_remove(index), profile?))
+    Some((names[index].clone(), profile?))
 }
 
 /// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
@@ -186,10 +214,31 @@ fn read_span(settings: &Settings) -> Option<Span> {
     Some(Span::new(from, to))
 }
 
-fn read_ray(settings: &Settings) -> Option<Ray> {
+/// A ray through the middle of a volume, for problems that need none.
+fn through(bounds: Bounds) -> Option<Ray> {
+    let unit = Aabb { low: Point([0.0; 3]), high: Point([0.0, 0.0, 1.0]) };
+    let Aabb { low, high } = bounds.enclosing_box().unwrap_or(unit);
+    let mut origin = (low + high) * 0.5;
+    origin.0[2] = low.0[2];
+    Ray::new(origin, Point([0.0, 0.0, 1.0]), high.0[2] - low.0[2])
+}
+
+/// Reads a ray, which may leave its length out where what is `within` these bounds is all that counts.
+fn read_ray(settings: &Settings, within: Option<Bounds>) -> Option<Ray> {
     let origin = settings.triple("origin");
     let direction = settings.triple("direction");
-    let length = settings.number("length", Domain::NonNegative);
+    let length = match within {
+        Some(bounds) if !settings.has("length") => {
+            // No place within is farther than the corner that is farthest.
+            let farthest = |within: Aabb| {
+                let from = Point(origin.unwrap_or_default());
+                let [low, high] = [within.low - from, within.high - from];
+                Point([0, 1, 2].map(|axis| low.0[axis].abs().max(high.0[axis].abs()))).norm()
+            };
+            Some(bounds.enclosing_box().map_or(1.0, farthest))
+        }
+        _ => settings.number("length", Domain::NonNegative),
+    };
     settings.close();
     if direction.is_some_and(|d| Point(d).normalised().is_none()) {
         settings.fault("direction", "`direction` is the zero vector", "it takes any other vector");

@@ -123,6 +123,8 @@ impl FreeFlight for GridRay {
 impl Field for Grid {
     type Profile = GridRay;
 
+    const IN_LINE: bool = false;
+
     fn volume(settings: &Settings) -> Option<Self> {
         let samples = read_samples(settings);
         let interpolation =

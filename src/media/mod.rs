@@ -123,6 +123,9 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// What one ray sees.
     type Profile: FreeFlight + 'static;
 
+    /// Whether it has a 1-D form.
+    const IN_LINE: bool = true;
+
     /// Reads the 1-D form, a function of the distance `t`, from `medium.NAME = { … }`.
     ///
     /// The default is for fields that exist in 3-D only.
@@ -216,6 +219,9 @@ macro_rules! media {
             pub fn optical_depth(&self, span: Span) -> Known {
                 match self { $(Self::$Field(field) => field.optical_depth(span)),* }
             }
+
+            /// Whether the fields, page by page, have a 1-D form.
+            const IN_LINE: &[bool] = &[$(<$module::$Field as Field>::IN_LINE),*];
 
             /// Reads `NAME = { … }` in its 1-D form.
             fn read(index: usize, settings: &Settings) -> Option<Self> {

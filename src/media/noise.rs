@@ -213,6 +213,8 @@ impl Noise {
 impl Field for Noise {
     type Profile = NoiseRay;
 
+    const IN_LINE: bool = false;
+
     #[allow(clippy::cast_possible_truncation)] // both counts are read within their ranges
     fn volume(settings: &Settings) -> Option<Self> {
         let extinction = settings.number("extinction", Domain::Positive);

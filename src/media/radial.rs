@@ -99,6 +99,8 @@ impl Radial {
 impl Field for Radial {
     type Profile = Chord;
 
+    const IN_LINE: bool = false;
+
     fn volume(settings: &Settings) -> Option<Self> {
         let centre = settings.triple("centre").map(Point);
         let radius = settings.number("radius", Domain::Positive);

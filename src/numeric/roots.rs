@@ -96,6 +96,68 @@ pub fn minimum(mut low: f64, mut high: f64, tolerance: f64, mut f: impl FnMut(f6
     0.5 * (low + high)
 }
 
+/// Where a function is smallest between two places about a third, and its value there: by parabolas where
+/// they help and golden sections where not, to `tolerance`. What it answers was asked for: next to a cliff it is
+/// on the side of the smaller values.
+///
+/// Source: R. P. Brent, *Algorithms for Minimization Without Derivatives* (Prentice-Hall, 1973), chapter 5.
+pub fn least(
+    [mut low, start, mut high]: [f64; 3],
+    at_start: f64,
+    tolerance: f64,
+    mut f: impl FnMut(f64) -> f64,
+) -> (f64, f64) {
+    const SECTION: f64 = 0.381_966_011_250_105_1;
+    // The best place with its value, the second, and the one before that.
+    let [mut x, mut w, mut v] = [(start, at_start); 3];
+    let (mut step, mut before) = (0.0f64, 0.0f64);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        if (x.0 - middle).abs() <= 2.0 * tolerance - 0.5 * (high - low) {
+            break;
+        }
+        let (r, q) = ((x.0 - w.0) * (x.1 - v.1), (x.0 - v.0) * (x.1 - w.1));
+        let (p, q) = ((x.0 - v.0) * q - (x.0 - w.0) * r, 2.0 * (q - r));
+        let parabola = -p / q;
+        let lands = x.0 + parabola;
+        let helps = before.abs() > tolerance
+            && parabola.abs() < 0.5 * before.abs()
+            && lands > low
+            && lands < high;
+        let towards = if x.0 < middle { high - x.0 } else { low - x.0 };
+        if helps {
+            (before, step) = (step, parabola);
+            if lands - low < 2.0 * tolerance || high - lands < 2.0 * tolerance {
+                step = tolerance.copysign(towards);
+            }
+        } else {
+            (before, step) = (towards, SECTION * towards);
+        }
+        let place = x.0 + if step.abs() < tolerance { tolerance.copysign(step) } else { step };
+        let u = (place, f(place));
+        if u.1 <= x.1 {
+            if u.0 < x.0 {
+                high = x.0;
+            } else {
+                low = x.0;
+            }
+            (v, w, x) = (w, x, u);
+        } else {
+            if u.0 < x.0 {
+                low = u.0;
+            } else {
+                high = u.0;
+            }
+            if u.1 <= w.1 || w.0 == x.0 {
+                (v, w) = (w, u);
+            } else if u.1 <= v.1 || v.0 == x.0 || v.0 == w.0 {
+                v = u;
+            }
+        }
+    }
+    x
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -128,6 +190,22 @@ mod tests {
         assert!(asked == 1 && (root - 2f64.sqrt()).abs() < 1e-7);
         // What the last step would leave the bracket for is its end.
         assert_eq!(rising_from(1.0, [0.0, 1.0], |_, _| true, |_| (-1.0, 1.0)), 1.0);
+    }
+
+    #[test]
+    fn finds_the_least_value_in_few_steps_and_stays_off_cliffs() {
+        let mut asked = 0;
+        let smooth = |x: f64| {
+            asked += 1;
+            x.exp() - 2.0 * x
+        };
+        let (x, value) = least([0.0, 0.5, 2.0], 0.5f64.exp() - 1.0, 1e-7, smooth);
+        let ln = 2f64.ln();
+        assert!((x - ln).abs() < 1e-7 && (value - (2.0 - 2.0 * ln)).abs() < 1e-14, "{x} {value}");
+        assert!(asked <= 15, "{asked}");
+        let cliff = |x: f64| if x < 1.0 { 0.0 } else { -1.0 / x };
+        let (x, value) = least([0.0, 1.5, 3.0], -1.0 / 1.5, 1e-7, cliff);
+        assert!((1.0..1.0 + 1e-6).contains(&x) && value == cliff(x), "{x} {value}");
     }
 
     #[test]

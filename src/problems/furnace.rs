@@ -7,7 +7,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `volume` with `ray = { origin, direction, length }` | σ_t in space, with bounds, and the ray; what counts of the ray is where it enters the bounds | required |
+//! | `volume` with `ray = { origin, direction }` | σ_t in space, with bounds, and the ray; what counts of the ray is where it enters the bounds, a `length` does not | required |
 //! | `albedo` | a in [0, 1]: a number, or a field in space such as `sines = { … }` | required unless swept |
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
@@ -28,6 +28,7 @@
 use super::{Problem, Scene};
 use crate::catalogue::Settings;
 use crate::geometry::{Point, Ray};
+use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 
 /// The radiance along a ray into a furnace.
@@ -60,6 +61,7 @@ impl Furnace {
 
 impl Problem for Furnace {
     type Value = [f64; 1];
+    const RAY: RayNeed = RayNeed::Line;
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::bounded(body, settings)?;

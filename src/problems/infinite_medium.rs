@@ -8,7 +8,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `volume.constant = { extinction }` with a `ray` | σ_t > 0, without `bounds`; the ray is not walked | required |
+//! | `volume.constant = { extinction }` | σ_t > 0, without `bounds`; a `ray` may be given, and is not walked | required |
 //! | `albedo` | a in [0, 1) | required unless swept |
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `radii` | up to 8 distances R > 0 from the source, for isotropic scattering | none |
@@ -25,6 +25,7 @@
 use super::{Albedo, Problem, Scene};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Bounds, Point};
+use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 use crate::phase::Phase;
 
@@ -70,6 +71,7 @@ impl InfiniteMedium {
 impl Problem for InfiniteMedium {
     /// Collisions within each radius, squared distance, collisions.
     type Value = Values;
+    const RAY: RayNeed = RayNeed::Nothing;
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::read(body, settings);

@@ -9,7 +9,7 @@
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
-//! | `volume` with `ray = { origin, direction, length }` | σ_t in space, with bounds; the ray is not walked, plots of σ_t show it | required |
+//! | `volume` | σ_t in space, with bounds; a `ray` may be given, and is not walked | required |
 //! | `albedo` | a in [0, 1]: a number, or a field in space such as `sines = { … }` | required unless swept |
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
@@ -39,6 +39,7 @@ use std::sync::OnceLock;
 use super::{Problem, Scene};
 use crate::catalogue::Settings;
 use crate::geometry::{Bounds, Point};
+use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 use crate::numeric::Known;
 
@@ -117,6 +118,7 @@ impl Lambertian {
 impl Problem for Lambertian {
     /// The channels that theory knows, see `estimators/lambertian`.
     type Value = Values;
+    const RAY: RayNeed = RayNeed::Nothing;
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::bounded(body, settings)?;

@@ -1,6 +1,7 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 use crate::catalogue::{Catalogue, Settings, Value};
+use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 
 pub mod multiple_scattering;
@@ -51,6 +52,9 @@ each_problem!(pages);
 pub trait Problem: Send + Sync + Sized + 'static {
     /// What one draw is: one number per channel.
     type Value: Copy + AsRef<[f64]>;
+
+    /// What it asks of the ray through a volume.
+    const RAY: RayNeed = RayNeed::Whole;
 
     /// Reads what the problem needs beside the field, which is absent after a mistake.
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self>;

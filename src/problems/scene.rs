@@ -77,7 +77,7 @@ impl Scene {
         let volume = match body {
             Some(Body::Volume { volume, .. }) => Some(volume.clone()),
             Some(Body::Line { .. }) => {
-                let help = "write `volume` instead of `medium`, and give a `ray`";
+                let help = "write `volume` instead of `medium`";
                 settings.fault("medium", "particles walk through a field in space", help);
                 None
             }

@@ -8,7 +8,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `volume` | a ball in which σ_t depends on the distance from its centre: `radial`, or `constant` or `gaussian` with `bounds.sphere` about the same centre | required |
-//! | `ray = { origin, direction, length }` | where it begins and where it looks; how long it is does not count | required |
+//! | `ray = { origin, direction }` | where it begins and where it looks; a `length` does not count | required |
 //! | `sought` | `"radiance"` along the ray, or `"mean-intensity"` at its origin, of all directions alike | `"radiance"` |
 //! | `albedo` | a in [0, 1], the same everywhere | required unless swept |
 //! | `phase.isotropic = {}` | the only phase function that theory solves here | required |
@@ -36,6 +36,7 @@
 use super::{Problem, Scene};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Bounds, Point, Ray};
+use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
@@ -189,7 +190,8 @@ impl Sphere {
 
 fn read_light(settings: &Settings) -> Option<Light> {
     let names = ["environment", "black-sphere", "distant", "point"].map(str::to_owned);
-    let (index, light) = settings.chosen("light", &names)?;
+    // A point light is known only to be refused.
+    let (index, light) = settings.chosen_among("light", &names, &names[..3])?;
     let read = match index {
         0 => Some(Light::Environment),
         1 => light.number("radius", Domain::Positive).map(Light::BlackSphere),
@@ -214,6 +216,7 @@ fn read_light(settings: &Settings) -> Option<Light> {
 
 impl Problem for Sphere {
     type Value = [f64; 1];
+    const RAY: RayNeed = RayNeed::Line;
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::bounded(body, settings);

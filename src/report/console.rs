@@ -12,6 +12,7 @@ pub mod views;
 use std::fmt::Write;
 
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
+use crate::report::labels::Labels;
 use crate::report::number::{count, short};
 use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided, wrapped};
@@ -67,8 +68,9 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
             continue;
         }
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
+        let labels = Labels::of(case);
         let shown = CaseRecord { rows, ..case.clone() };
-        grid(&mut text, pen, &shown, View::Run);
+        grid(&mut text, pen, &shown, labels, View::Run);
     }
     text.push('\n');
     closing::write(&mut text, pen, record, View::Run);
@@ -84,12 +86,20 @@ fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
     for line in wrapped(&facts, pen.width) {
         let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
     }
-    grid(text, pen, case, view);
+    grid(text, pen, case, Labels::of(case), view);
 }
 
 /// The rows with their reasons.
-fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
-    let mut grid = Grid { columns: views::columns(case, view) };
+fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, labels: Labels, view: View) {
+    let (names, rest) = (views::names(case, labels), views::columns(case, view));
+    if view == View::Moments {
+        // All of them were asked for: what does not fit beside stands below.
+        for grid in layout::blocks(names, rest, pen.width) {
+            text.push_str(&grid.render(pen));
+        }
+        return footnotes(text, pen, case, labels, view, 0);
+    }
+    let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
     grid.fit(pen.width);
     let rest = pen.width.saturating_sub(grid.width() + 2);
     let longest = case.rows.iter().map(|row| layout::width(&row.reason)).max().unwrap_or(0);
@@ -100,7 +110,7 @@ fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
     }
     text.push_str(&grid.render(pen));
     let room = if beside { rest } else { 0 };
-    footnotes(text, pen, case, view, room);
+    footnotes(text, pen, case, labels, view, room);
 }
 
 /// What all rows share, and what the case is about.
@@ -125,7 +135,14 @@ fn facts(case: &CaseRecord, view: View) -> Vec<String> {
 }
 
 /// The reasons that have no place in the table, each once, with the rows it is about.
-fn footnotes(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View, room: usize) {
+fn footnotes(
+    text: &mut String,
+    pen: layout::Pen,
+    case: &CaseRecord,
+    labels: Labels,
+    view: View,
+    room: usize,
+) {
     let mut notes: Vec<Vec<&Row>> = Vec::new();
     for row in case.rows.iter().filter(|row| layout::width(&row.reason) > room) {
         let same = |rows: &&mut Vec<&Row>| {
@@ -137,14 +154,14 @@ fn footnotes(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View,
         }
     }
     for row in case.rows.iter().filter(|row| !row.same_as.is_empty()) {
-        let places = views::places(case, &[row]);
+        let places = views::places(case, &[row], labels);
         let at = if places.is_empty() { places } else { format!(" ({places})") };
         let (this, other) = (&row.estimator, &row.same_as);
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
-        let places = views::places(case, &rows);
+        let places = views::places(case, &rows, labels);
         let at = if places.is_empty() { places } else { format!(" ({places})") };
         let word = if status.is_empty() { "note" } else { &status };
         let note = format!("{word} {}{at}: {}", row.estimator, row.reason);

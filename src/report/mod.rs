@@ -8,6 +8,7 @@ pub mod changes;
 pub mod console;
 pub mod gallery;
 pub mod judgement_junit;
+pub mod labels;
 pub mod number;
 pub mod plots;
 pub mod rows;

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
+use crate::report::labels::Labels;
 use crate::report::number::{short, signed};
 
 /// A finding that is not as it should be, with what it belongs to.
@@ -59,8 +60,9 @@ pub fn experiment(case: &CaseRecord, row: &Row) -> String {
 
 fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
     let mut parts = vec![row.estimator.clone()];
+    let labels = Labels::of(case);
     match row.sampling {
-        Some(sampling) => parts.push(format!("σ\u{302} {}", short(sampling, 4))),
+        Some(sampling) => parts.push(format!("σ\u{302} {}", labels.text(sampling))),
         None if row.sampling_kind.is_empty() => {}
         None => parts.push(format!("σ\u{302} {}", row.sampling_kind)),
     }
@@ -69,7 +71,8 @@ fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
     }
     let what = case.sweep.as_ref().map_or("", |sweep| sweep.what.as_str());
     if let Some(swept) = row.swept.filter(|_| what != "sampling") {
-        parts.push(format!("{} {}", if what.is_empty() { "at" } else { what }, short(swept, 4)));
+        let what = if what.is_empty() { "at" } else { what };
+        parts.push(format!("{what} {}", labels.text(swept)));
     }
     if !channel.is_empty() {
         parts.push(channel.to_owned());

@@ -54,6 +54,8 @@ pub struct Channel {
     pub losses: Option<[f64; 4]>,
 }
 
+/// What rounding leaves of a sum, relative to it.
+const ROUNDING: f64 = 1e-14;
 /// Below this optical depth the opacity is what matters.
 const THIN: f64 = 0.1;
 
@@ -90,6 +92,23 @@ impl Channel {
             log_unit: 0.0,
             losses: None,
         }
+    }
+
+    /// A bound on the relative error of the variance and, where it is known, of the fourth central moment:
+    /// that of the moments in units of the mean, that of the unit, and rounding.
+    #[must_use]
+    pub fn moments_error(&self) -> Option<f64> {
+        let moments = self.moments?;
+        if moments.relative[0] == 0.0 {
+            return Some(0.0);
+        }
+        let of_unit =
+            if self.mean.error > 0.0 { 2.0 * self.mean.error / self.mean.value.abs() } else { 0.0 };
+        // Exponentials of the losses are in error by what their exponents are.
+        let exponents = self
+            .losses
+            .map_or(1.0, |[_, j2, j3, j4]| (6.0 * j2.abs() + 4.0 * j3.abs() + j4.abs()).max(1.0));
+        Some(moments.error + of_unit + ROUNDING * exponents)
     }
 
     /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
@@ -206,11 +225,11 @@ impl Prediction {
         }
     }
 
-    /// `1/(V · E[M])`, the efficiency per lookup, of the last channel; `None` where either is
-    /// unknown or zero.
+    /// `1/(V · E[M])`, the efficiency per lookup, of a channel; `None` where either is unknown or
+    /// zero.
     #[must_use]
-    pub fn figure_of_merit(&self) -> Option<f64> {
-        let variance = self.channels.last()?.moments?.variance();
+    pub fn figure_of_merit(&self, channel: usize) -> Option<f64> {
+        let variance = self.channels.get(channel)?.moments?.variance();
         let cost = self.lookups.as_ref()?.mean;
         (variance > 0.0 && cost > 0.0).then(|| 1.0 / (variance * cost))
     }

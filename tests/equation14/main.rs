@@ -228,7 +228,7 @@ fn check(scene: &Scene) -> (Vec<String>, usize) {
             Law::Product { controlled: false, .. } | Law::NextFlight | Law::UnidirectionalMis
         );
         let exists = (estimator.exists)(scene, scene.ranges(controlled));
-        let found = case.scenario.predict(index, None, addresses::pilots(1, &case, index));
+        let found = case.scenario.predict(index, None, None, addresses::pilots(1, &case, index));
         assert_eq!(found.is_some(), exists, "whether it exists: {what}");
         let Some(found) = found else { continue };
         let expected = match (law, sampling.shape) {
@@ -369,7 +369,7 @@ fn eq_21_by_equation_14() {
     for (index, expected) in expected.iter().enumerate() {
         let found = case
             .scenario
-            .predict(index, None, addresses::pilots(1, &case, index))
+            .predict(index, None, None, addresses::pilots(1, &case, index))
             .expect("it exists");
         differences.extend(compare(&format!("estimator {index} of Eq. 21"), &found, expected));
     }

@@ -44,6 +44,7 @@ fn drawn(estimator: &str, control: &str, swept: f64, z: f64) -> Row {
         lookups_deviation: Some(lookups * 0.002),
         losses: Some([2.0, 1.5, 1.25, 1.125]),
         relative_moments: [Some(3.5), Some(12.25), None],
+        moments_error: Some(1.5e-10),
         lookups_variance: Some(lookups),
         lookups_pmf: vec![0.25, 0.5, 0.25],
         rare_event_size: Some(15.5),

@@ -12,6 +12,8 @@
 //! | `camera` | `"exact"`, or `"ratio"`: residual ratio through σ̂ with σ_m as the control | `"exact"` |
 //! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
 //!
+//! With the exact camera a `sampling` of its own is read and not used: it may stay when the camera changes.
+//!
 //! Unbiased where `σ_m > 0` wherever `σ_t > 0`; refused elsewhere. The density knows nothing of the
 //! light: the variance grows as `1/D³` when the light comes near the ray.
 //!

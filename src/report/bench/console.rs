@@ -6,17 +6,18 @@ use super::changes;
 use crate::harness::bench::record::{Bench, BenchCase, BenchRow, Times};
 use crate::harness::bench::spread::Spread;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint, Pen, end_elided, wrapped};
+use crate::report::labels::Labels;
 use crate::report::number::{count, fixed, short, time};
+
+/// The heading of σ̂; constant ones have as many digits as tell them apart.
+const SAMPLING: &str = "σ\u{302}";
 
 /// A column: its heading, whether it is of numbers, its rank, its text.
 type Spec = (&'static str, bool, u8, fn(&BenchRow) -> String);
 
 const COLUMNS: &[Spec] = &[
     ("estimator", false, 0, |row| row.estimator.clone()),
-    ("σ\u{302}", true, 1, |row| match row.sampling {
-        Some(sampling) => short(sampling, 4),
-        None => row.sampling_kind.clone(),
-    }),
+    (SAMPLING, true, 1, |row| row.sampling_kind.clone()),
     ("control", false, 5, |row| row.control.clone()),
     ("channel", false, 1, |row| row.channel.clone()),
     ("ns/draw", true, 1, |row| {
@@ -67,14 +68,19 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
     let _ = writeln!(text, "{}  {title}", pen.paint(Paint::Bold, &name));
     let facts = format!("{} · {}", case.problem, case.medium);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
+    let labels = labels(case);
     let mut columns: Vec<Column> = Vec::new();
     for &(head, right, rank, cell) in COLUMNS {
+        let cell = |row: &BenchRow| match row.sampling.filter(|_| head == SAMPLING) {
+            Some(sampling) => labels.text(sampling),
+            None => cell(row),
+        };
         let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
         columns.push(Column { head, right, rank, fields });
-        if head == "σ\u{302}"
+        if head == SAMPLING
             && let Some(head) = swept_apart(case)
         {
-            let cell = |row: &BenchRow| row.swept.map(|x| short(x, 4)).unwrap_or_default();
+            let cell = |row: &BenchRow| row.swept.map(|x| labels.text(x)).unwrap_or_default();
             let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
             columns.push(Column { head, right: true, rank: 1, fields });
         }
@@ -83,6 +89,11 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
     notes(text, pen, case);
+}
+
+/// σ̂ and swept values of a case.
+pub(super) fn labels(case: &BenchCase) -> Labels {
+    Labels::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
 }
 
 /// The heading of the swept quantity where it is not the sampling extinction itself.
@@ -100,7 +111,7 @@ fn swept_apart(case: &BenchCase) -> Option<&'static str> {
 fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
     let mut notes: Vec<(&BenchRow, Vec<String>)> = Vec::new();
     for row in case.rows.iter().filter(|row| !row.reason.is_empty()) {
-        let place = row.swept.map(|x| short(x, 4));
+        let place = row.swept.map(|x| labels(case).text(x));
         let same = |note: &&mut (&BenchRow, Vec<String>)| {
             note.0.reason == row.reason && note.0.estimator == row.estimator
         };

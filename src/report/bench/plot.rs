@@ -6,7 +6,8 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::harness::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
-use crate::report::number::{count, short};
+use crate::report::labels::Labels;
+use crate::report::number::count;
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::Align;
@@ -28,6 +29,7 @@ struct Series<'a> {
     row: &'a BenchRow,
     times: &'a Times,
     style: Style,
+    labels: Labels,
 }
 
 /// The figure of a case in both formats.
@@ -41,10 +43,11 @@ fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
         message: error.to_string(),
     })?;
     let shown = case.rows.iter().filter(|row| row.is_shown);
+    let labels = super::console::labels(case);
     let series: Vec<Series> = shown
         .filter_map(|row| row.times.as_ref().map(|times| (row, times)))
         .enumerate()
-        .map(|(i, (row, times))| Series { row, times, style: Style::of(i) })
+        .map(|(i, (row, times))| Series { row, times, style: Style::of(i), labels })
         .collect();
     let entries: Vec<Entry> = series.iter().map(Series::entry).collect();
     let notes = notes(case);
@@ -77,7 +80,8 @@ fn subtitle(bench: &Bench, case: &BenchCase) -> String {
 impl Series<'_> {
     fn entry(&self) -> Entry {
         let row = self.row;
-        let sampling = row.sampling.map(|sampling| format!("σ\u{302} = {}", short(sampling, 4)));
+        let sampling =
+            row.sampling.map(|sampling| format!("σ\u{302} = {}", self.labels.text(sampling)));
         let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
         let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];
         let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();

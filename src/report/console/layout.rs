@@ -85,6 +85,13 @@ impl Column {
         let fields = self.fields.iter().map(|field| width(&field.text)).max().unwrap_or(0);
         fields.max(width(self.head))
     }
+
+    /// Marks what is unknown, in a column where others are known.
+    fn fill(&mut self) {
+        for field in self.fields.iter_mut().filter(|field| field.text.is_empty()) {
+            *field = Field { text: "–".to_owned(), paint: Paint::Dim };
+        }
+    }
 }
 
 /// A table.
@@ -112,12 +119,7 @@ impl Grid {
             self.columns.retain(|column| column.rank != highest);
         }
         self.shorten(width, SHORTEST);
-        for column in &mut self.columns {
-            for field in column.fields.iter_mut().filter(|field| field.text.is_empty()) {
-                // Unknown, in a column where others are known.
-                *field = Field { text: "–".to_owned(), paint: Paint::Dim };
-            }
-        }
+        self.columns.iter_mut().for_each(Column::fill);
     }
 
     fn shorten(&mut self, limit: usize, least: usize) {
@@ -162,6 +164,27 @@ impl Grid {
         }
         text
     }
+}
+
+/// Columns that all stay, in as many tables as it takes, one below the other, each with the names.
+#[must_use]
+pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Grid> {
+    rest.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
+    rest.iter_mut().for_each(Column::fill);
+    let widest = rest.iter().map(Column::width).max().unwrap_or(0);
+    let mut names = Grid { columns: names };
+    names.fit(width.saturating_sub(widest + GAP.len()));
+    let mut blocks = vec![names.clone()];
+    for column in rest {
+        let last = blocks.len() - 1;
+        let is_fresh = blocks[last].columns.len() == names.columns.len();
+        if !is_fresh && blocks[last].width() + GAP.len() + column.width() > width {
+            blocks.push(names.clone());
+        }
+        let last = blocks.len() - 1;
+        blocks[last].columns.push(column);
+    }
+    blocks
 }
 
 /// The columns of the screen that a text takes.

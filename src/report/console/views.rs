@@ -3,22 +3,16 @@
 use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{Column, Field, Paint};
+use crate::report::labels::Labels;
 use crate::report::number::{count, fixed, short, signed};
 
 /// A column: its heading, whether it is of numbers, its rank, its text.
 type Spec = (&'static str, bool, u8, fn(&Row) -> String);
 
-const ESTIMATOR: Spec = ("estimator", false, 0, |row| row.estimator.clone());
-const CHANNEL: Spec = ("channel", false, 1, |row| row.channel.clone());
-const CONTROL: Spec = ("control", false, 3, |row| row.control.clone());
 const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
 /// What the gate took; the columns beside it are of the fixed draws.
 const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
-const SAMPLING: Spec = ("σ\u{302}", true, 1, |row| match row.sampling {
-    Some(sampling) => short(sampling, 4),
-    None => row.sampling_kind.clone(),
-});
 
 const RUN: &[Spec] = &[
     ("mean", true, 6, |row| digits(row.mean, 6)),
@@ -44,16 +38,19 @@ const PREDICT: &[Spec] = &[
 ];
 
 const MOMENTS: &[Spec] = &[
-    ("J₁", true, 9, |row| loss(row, 1)),
-    ("J₂", true, 2, |row| loss(row, 2)),
-    ("J₃", true, 6, |row| loss(row, 3)),
-    ("J₄", true, 6, |row| loss(row, 4)),
-    ("m₂", true, 1, |row| digits(row.relative_moments[0], 4)),
-    ("m₃", true, 4, |row| digits(row.relative_moments[1], 4)),
-    ("m₄", true, 4, |row| digits(row.relative_moments[2], 4)),
-    ("lookups", true, 3, |row| digits(row.predicted_lookups, 4)),
-    ("± σ", true, 5, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
-    ("n(2)", true, 2, |row| digits(row.rare_event_size, 3)),
+    ("J₁", true, 0, |row| loss(row, 1)),
+    ("J₂", true, 0, |row| loss(row, 2)),
+    ("J₃", true, 0, |row| loss(row, 3)),
+    ("J₄", true, 0, |row| loss(row, 4)),
+    ("m₂", true, 0, |row| digits(row.relative_moments[0], 4)),
+    ("m₃", true, 0, |row| digits(row.relative_moments[1], 4)),
+    ("m₄", true, 0, |row| digits(row.relative_moments[2], 4)),
+    ("m error", true, 0, |row| digits(row.moments_error, 2)),
+    ("lookups", true, 0, |row| digits(row.predicted_lookups, 4)),
+    ("± σ", true, 0, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
+    ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
+    ("best σ\u{302}", true, 0, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
+    ("best FoM", true, 0, |row| digits(row.best_fom, 4)),
 ];
 
 const PLAN: &[Spec] = &[
@@ -61,14 +58,34 @@ const PLAN: &[Spec] = &[
     ("skipped", true, 3, |row| row.skipped.map(percent).unwrap_or_default()),
 ];
 
-/// The columns of a case, empty ones and all.
+/// The columns that name the rows of a case, empty ones and all.
+#[must_use]
+pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
+    let column = |(head, right, rank): (&'static str, bool, u8), text: &dyn Fn(&Row) -> String| {
+        let fields = case.rows.iter().map(|row| Field::plain(text(row))).collect();
+        Column { head, right, rank, fields }
+    };
+    let sampling = |row: &Row| match row.sampling {
+        Some(sampling) => labels.text(sampling),
+        None => row.sampling_kind.clone(),
+    };
+    let mut columns = vec![
+        column(("estimator", false, 0), &|row| row.estimator.clone()),
+        column(("σ\u{302}", true, 1), &sampling),
+    ];
+    if let Some(head) = swept_apart(case) {
+        let swept = |row: &Row| row.swept.map(|x| labels.text(x)).unwrap_or_default();
+        columns.push(column((head, true, 1), &swept));
+    }
+    columns.push(column(("control", false, 3), &|row| row.control.clone()));
+    columns.push(column(("channel", false, 1), &|row| row.channel.clone()));
+    columns
+}
+
+/// The columns that say something of the rows, empty ones and all.
 #[must_use]
 pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
-    let mut specs = vec![ESTIMATOR, SAMPLING];
-    if let Some(head) = swept_apart(case) {
-        specs.push((head, true, 1, |row| row.swept.map(|x| short(x, 4)).unwrap_or_default()));
-    }
-    specs.extend([CONTROL, CHANNEL]);
+    let mut specs = Vec::new();
     // What all rows share stands over the table.
     if !view.is_theory() && shared(case, |row| row.draws).is_none() {
         specs.push(if view == View::Plan { (DRAWS.0, DRAWS.1, 2, DRAWS.3) } else { DRAWS });
@@ -118,8 +135,8 @@ pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> 
 
 /// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
 #[must_use]
-pub fn places(case: &CaseRecord, rows: &[&Row]) -> String {
-    let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(short(row.swept?, 4))).collect();
+pub fn places(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
+    let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(labels.text(row.swept?))).collect();
     let mut channels: Vec<_> = rows.iter().map(|row| row.channel.clone()).collect();
     channels.retain(|channel| !channel.is_empty());
     for list in [&mut swept, &mut channels] {
