@@ -362,10 +362,11 @@ fn every_ray_past_a_lamp_is_answered() {
     let asked: Vec<Asked> =
         offsets.map(|offset| Asked::Radiance { offset, from: f64::NEG_INFINITY }).collect();
     let of = |resolution| answers(&ball, 0.95, lamp, resolution, &asked).expect("a medium");
-    let finer = Resolution { nodes: 11, directions: 11, surface: 12, core: 15, ..Resolution::FINE };
+    let finer = Resolution { nodes: 9, directions: 9, surface: 11, core: 14, ..Resolution::FINE };
     let (found, fine) = (of(Resolution::COARSE), of(finer));
     for ((found, fine), asked) in found.iter().zip(&fine).zip(&asked) {
-        assert!(found.error <= 1e-5 * found.value, "{asked:?}: {found:?}");
+        // As well as draws ask for.
+        assert!(found.error <= 1e-4 * found.value, "{asked:?}: {found:?}");
         assert!((found.value - fine.value).abs() <= found.error, "{asked:?}: {found:?}, {fine:?}");
     }
 }

@@ -10,7 +10,7 @@ use super::record::{
     Verdict,
 };
 use super::run::{Drawn, Draws};
-use super::{curves, findings, suite, summary};
+use super::{curves, findings, normality, suite, summary};
 use crate::numeric::pack;
 use crate::stats::Tally;
 use crate::theory::optimum::Optimum;
@@ -248,6 +248,7 @@ fn drawn_rows(
         if let Some(tally) = drawn.tallies.get(index) {
             measure(row, channel, tally);
             measure_lookups(row, prediction, drawn);
+            row.not_normal = normality::marks(row, prediction, drawn.lookups.draws);
         }
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
         let about =

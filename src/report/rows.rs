@@ -175,6 +175,10 @@ const KEPT: &[Column] = columns! { timed
     reused = |joined| Word(joined.is_reused.then_some("yes"));
 };
 
+const NORMALITY: &[Column] = columns! {
+    not_normal = |joined| Text(joined.row.not_normal.join(" "));
+};
+
 /// What JSON has beside the columns.
 const LISTS: &[Column] = columns! {
     lookups_pmf = |joined| List(joined.row.lookups_pmf.clone());
@@ -182,7 +186,7 @@ const LISTS: &[Column] = columns! {
 
 /// The columns, in the order in which files have them.
 pub fn columns() -> impl Iterator<Item = &'static Column> + Clone {
-    RESULTS.iter().chain(TIMED).chain(VERDICTS).chain(KEPT)
+    RESULTS.iter().chain(TIMED).chain(VERDICTS).chain(KEPT).chain(NORMALITY)
 }
 
 /// The rows of a record as CSV, with a first line of names.

@@ -20,13 +20,16 @@ const SAMPLING: Spec = ("σ\u{302}", true, 1, |row| match row.sampling {
     None => row.sampling_kind.clone(),
 });
 
+/// The headings of z.
+pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
+
 const RUN: &[Spec] = &[
     ("mean", true, 6, |row| digits(row.mean, 6)),
-    ("z", true, 1, |row| score(row.z_mean)),
+    ("z", true, 1, |row| score(row, "z_mean", row.z_mean)),
     ("s²/V", true, 5, ratio),
-    ("z_V", true, 2, |row| score(row.z_variance)),
+    ("z_V", true, 2, |row| score(row, "z_variance", row.z_variance)),
     ("lookups", true, 7, |row| digits(row.lookups_per_draw, 4)),
-    ("z_N", true, 4, |row| score(row.z_lookups)),
+    ("z_N", true, 4, |row| score(row, "z_lookups", row.z_lookups)),
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
 ];
@@ -172,8 +175,11 @@ fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
 }
 
-fn score(value: Option<f64>) -> String {
-    value.map(signed).unwrap_or_default()
+/// A z, in parentheses where it is not to be read as normal.
+#[must_use]
+pub fn score(row: &Row, name: &str, z: Option<f64>) -> String {
+    let text = z.map(signed).unwrap_or_default();
+    if row.not_normal.contains(&name) { format!("({text})") } else { text }
 }
 
 fn percent(share: f64) -> String {
