@@ -230,6 +230,13 @@ fn a_stored_bench_is_compared_with() {
     let output = place.run(&format!("{bench} --baseline main --threads 2"));
     assert_eq!(output.status.code(), Some(2));
     assert!(String::from_utf8_lossy(&output.stderr).contains("--threads 1"));
+    // A bench of other experiments is no comparison.
+    let tree = text.replace("\"id\": \"", "\"id\": \"other ");
+    std::fs::write(&path, tree).expect("a baseline");
+    let output = place.run(&format!("{bench} --baseline main"));
+    assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(said.contains("main.bench.json: nothing was compared"), "{said}");
     std::fs::write(&path, "{\"schema\": 9}").expect("a baseline");
     assert_eq!(place.code(&format!("{bench} --baseline main")), 2);
 }

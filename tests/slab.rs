@@ -15,7 +15,7 @@ use trueflight::theory::CountLaw;
 use trueflight::theory::h_function::h_function;
 use trueflight::theory::particle::ParticleRule;
 use trueflight::theory::slab::layer::Slice;
-use trueflight::theory::slab::{Piece, Pieces, Resolution, Walk, cached, solve};
+use trueflight::theory::slab::{Existence, Piece, Pieces, Resolution, Walk, cached, solve};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -323,6 +323,32 @@ fn a_walk_far_below_the_extinction_diverges() {
         depth: 3.0,
         ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
     };
-    assert!(!of(1.0).diverges() && !of(0.9).diverges());
-    assert!(of(0.5).diverges() && of(0.3).diverges());
+    for (sampling, expected) in [
+        (1.0, Existence::Finite),
+        (0.9, Existence::Finite),
+        (0.5, Existence::Diverges),
+        (0.3, Existence::Diverges),
+    ] {
+        assert_eq!(of(sampling).second_moment(), expected, "{sampling}");
+    }
+}
+
+/// Where the second moment diverges is found by halving: next to it nobody says on which side a slab is.
+#[test]
+fn next_to_the_critical_extinction_a_slab_is_not_said_to_diverge() {
+    let of = |sampling: f64| {
+        let walk = Walk {
+            largest_ratio: 1.0 / sampling,
+            depth: 3.0,
+            ..through(Light::Diffuse, vec![Piece::of(3.0 * sampling, 1.0 / sampling)])
+        };
+        walk.second_moment()
+    };
+    let (mut diverges, mut exists) = (0.5, 0.9);
+    for _ in 0..24 {
+        let middle = 0.5 * (diverges + exists);
+        if of(middle) == Existence::Finite { exists = middle } else { diverges = middle }
+    }
+    assert_eq!(of(diverges), Existence::Unknown);
+    assert_eq!(of(0.99 * diverges), Existence::Diverges);
 }

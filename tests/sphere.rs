@@ -300,7 +300,11 @@ fn what_has_no_answer_is_refused() {
         text.replace("{ particle.rule = \"analog\" }", estimator)
     };
     let dense = ball.replace("extinction = 1", "extinction = 40");
-    refused(text(&dense, ray, white, sky).replace("value = 3", "value = 50"), "σ_t R ≤ 30");
+    let thick = || text(&dense, ray, white, sky).replace("value = 3", "value = 50");
+    refused(thick(), "σ_t R ≤ 30");
+    refused(thick(), "it may reach 40");
+    // A pinhead of a lamp: what is said is how well the answer is known.
+    refused(text(ball, ray, white, "black-sphere.radius = 0.0005"), "only");
     refused(
         with("{ particle = { rule = \"weighted\", sampling.constant.value = 0.9 } }"),
         "σ̂ ≥ σ_t",
@@ -343,5 +347,26 @@ fn coarse_answers_are_within_their_errors() {
                 assert!(coarse.error <= 1e-4 * coarse.value, "{name} {asked:?}: {coarse:?}");
             }
         }
+    }
+}
+
+/// A lamp of a fifth of the radius in a blob: errors were told by answers of five and six nodes, which could
+/// not follow 1/r², and rays between those where they happened to agree were refused.
+#[test]
+fn every_ray_past_a_lamp_is_answered() {
+    let extinction = |r2: f64| 3.0 * (-0.5 * r2 / 0.36).exp();
+    let ball = Ball { radius: 1.5, centre: Centre::Black(0.3), extinction: &extinction };
+    let lamp = Lights { environment: 0.0, core: 1.0 };
+    let offsets =
+        (0..40).map(|i| 0.31 + 0.029 * f64::from(i)).chain([0.9, 0.95, 0.99, 1.0, 1.01, 1.1]);
+    let asked: Vec<Asked> =
+        offsets.map(|offset| Asked::Radiance { offset, from: f64::NEG_INFINITY }).collect();
+    let of = |resolution| answers(&ball, 0.95, lamp, resolution, &asked).expect("a medium");
+    let finer = Resolution { nodes: 9, directions: 9, surface: 11, core: 14, ..Resolution::FINE };
+    let (found, fine) = (of(Resolution::COARSE), of(finer));
+    for ((found, fine), asked) in found.iter().zip(&fine).zip(&asked) {
+        // As well as draws ask for.
+        assert!(found.error <= 1e-4 * found.value, "{asked:?}: {found:?}");
+        assert!((found.value - fine.value).abs() <= found.error, "{asked:?}: {found:?}, {fine:?}");
     }
 }

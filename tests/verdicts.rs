@@ -2,8 +2,11 @@
 
 mod common;
 
-use common::{finding, row, rows, verdict};
-use trueflight::harness::record::Verdict;
+use common::{case, finding, judged, options, row, rows, verdict};
+use trueflight::harness::Record;
+use trueflight::harness::record::{Results, Verdict};
+use trueflight::report::console::{self, View, layout::Pen};
+use trueflight::report::rows as joined;
 
 /// A dense layer between thin ones, T = e⁻²·⁸⁵: asymmetric, and not zero at the ends.
 const LAYERS: &str = "
@@ -276,4 +279,34 @@ fn what_is_the_same_by_definition_is_drawn_once() {
         assert_eq!(row.verdict, rows[0].verdict);
     }
     assert_ne!(rows[2].mean, rows[0].mean, "its control is the mean");
+}
+
+/// `E[X^k] = exp(0.8((−1.5)^k − 1))` at σ̂ = 0.4: κ = 3.5, but `E[X⁸]/E[X⁴]²` = 5.4e5, so that a sample variance
+/// of fewer than 5.4e7 draws is far from normal. At σ̂ = 4 both are below 20.
+#[test]
+fn a_z_whose_law_is_not_near_normal_is_marked() {
+    let text = "title = \"t\"\n[problem.transmittance]\nmedium.constant.extinction = 1\nspan = [0, 2]\n\
+                sweep.sampling.values = [0.4, 4]\nestimators = [{ ratio = {} }]";
+    let marks = |draws: u64| {
+        let record = judged(&[case("test", text)], &options(1, draws));
+        let found = record.results.cases[0].rows.iter().map(|row| row.not_normal.clone()).collect();
+        (record, found)
+    };
+    let (record, found): (_, Vec<_>) = marks(400_000);
+    assert_eq!(found, [vec!["z_variance"], vec![]]);
+    let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
+    let lines: Vec<&str> = shown.lines().filter(|line| line.starts_with("ratio")).collect();
+    assert!(lines[0].matches('(').count() == 1 && !lines[1].contains('('), "{shown}");
+    assert_eq!(shown.lines().filter(|line| line.starts_with("(z)")).count(), 1, "{shown}");
+    let csv = joined::csv(&record).expect("a table");
+    let columns: Vec<Vec<&str>> = csv.lines().map(|line| line.split(',').collect()).collect();
+    let last = columns[0].iter().position(|&name| name == "not_normal").expect("a column");
+    assert_eq!((columns[1][last], columns[2][last]), ("z_variance", ""));
+    // 100 κ = 350 draws make a mean normal.
+    let (_, found): (_, Vec<_>) = marks(300);
+    assert_eq!(found[0], ["z_mean", "z_variance", "z_lookups"]);
+    let (record, _): (_, Vec<Vec<&str>>) = marks(400_000);
+    let record = Record { results: Results { cases: vec![], ..record.results }, ..record };
+    let shown = console::table(&record, View::Run, Pen { width: 200, colour: false });
+    assert!(!shown.contains("(z)"), "{shown}");
 }

@@ -2,11 +2,13 @@
 
 use std::path::PathBuf;
 
+use anyhow::anyhow;
 use clap::Args;
 use trueflight::harness::baseline::compare::{Comparison, Rules, compare};
 use trueflight::harness::baseline::{Baseline, fingerprint};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
+use trueflight::report::changes;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]
@@ -21,18 +23,22 @@ pub struct BaselineArguments {
     /// Folder of the baselines
     #[arg(long, value_name = "DIR", default_value = "baselines")]
     baselines: PathBuf,
-    /// How much more processor time per draw is no regression, as a share; `inf` for any
-    #[arg(long, value_name = "R", default_value_t = 0.25, value_parser = share)]
+    /// How much more processor time per draw is no regression, as a share; `inf` for any. Given, it is
+    /// an error that no time can be compared [default: 0.25]
+    #[arg(long, value_name = "R", value_parser = share)]
     #[arg(allow_hyphen_values = true)]
-    time_tolerance: f64,
+    time_tolerance: Option<f64>,
 }
+
+/// The tolerance of times where none is given.
+const TIME_TOLERANCE: f64 = 0.25;
 
 /// What the drawing must be compared with, and where it is stored; known before the first draw.
 pub struct Baselines {
-    stored: Option<(String, Baseline)>,
+    stored: Option<(String, PathBuf, Baseline)>,
     save: Option<(String, PathBuf)>,
     executable: String,
-    time_tolerance: f64,
+    time_tolerance: Option<f64>,
 }
 
 impl BaselineArguments {
@@ -45,7 +51,8 @@ impl BaselineArguments {
     pub fn open(&self) -> anyhow::Result<Baselines> {
         let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
             let path = Baseline::path(&self.baselines, name)?;
-            Ok((name.clone(), Baseline::read(&path)?))
+            let stored = Baseline::read(&path)?;
+            Ok((name.clone(), path, stored))
         });
         let save = self.save_baseline.as_ref().map(|name| -> anyhow::Result<_> {
             let path = Baseline::path(&self.baselines, name)?;
@@ -65,8 +72,9 @@ impl Baselines {
             return (record, None);
         }
         let mut run = Baseline::of(&record, cases, &self.executable);
-        if let Some((name, stored)) = &self.stored {
-            let rules = Rules { alpha: record.results.alpha, time_tolerance: self.time_tolerance };
+        if let Some((name, _, stored)) = &self.stored {
+            let time_tolerance = self.time_tolerance.unwrap_or(TIME_TOLERANCE);
+            let rules = Rules { alpha: record.results.alpha, time_tolerance };
             let (comparison, next) = compare(name, stored, &run, &rules);
             record.comparison = Some(comparison);
             if self.save.as_ref().is_some_and(|(save, _)| save == name) {
@@ -76,12 +84,35 @@ impl Baselines {
         (record, Some(run))
     }
 
+    /// What is wrong with a comparison that was asked for and says nothing.
+    pub fn complaint(&self, record: &Record) -> Option<anyhow::Error> {
+        let (comparison, (_, path, _)) = record.comparison.as_ref().zip(self.stored.as_ref())?;
+        if let Some(nothing) = changes::nothing(comparison) {
+            return Some(anyhow!(
+                "{}: {nothing}; run the cases of the baseline, or make it anew with --save-baseline",
+                path.display()
+            ));
+        }
+        let wanted = self.time_tolerance.filter(|_| comparison.rules.asks_for_times())?;
+        let no_times = changes::no_times(comparison)?;
+        Some(anyhow!(
+            "--time-tolerance {wanted}: {no_times}; draw more with --draws --fixed-draws, or leave the \
+             option out"
+        ))
+    }
+
     /// Stores a run where that is wished; what fails or became worse is not stored. Answers what to
     /// print.
     pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
         let (Some((name, path)), Some(run)) = (&self.save, run) else { return Ok(String::new()) };
         if record.comparison.as_ref().is_some_and(Comparison::fails) {
             return Ok(format!("baseline {name} not stored: something became worse\n"));
+        }
+        if record.comparison.as_ref().is_some_and(Comparison::is_empty) {
+            return Ok(format!("baseline {name} not stored: nothing was compared\n"));
+        }
+        if run.entries.is_empty() {
+            return Ok(format!("baseline {name} not stored: nothing was drawn\n"));
         }
         let mut rows = record.results.cases.iter().flat_map(|case| &case.rows);
         if rows.any(|row| row.verdict == Some(Verdict::Fail)) {

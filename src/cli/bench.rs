@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use anyhow::bail;
+use anyhow::{anyhow, bail};
 use clap::Args;
 use trueflight::harness::baseline::Baseline;
 use trueflight::harness::bench::compare::{Comparison, compare};
@@ -76,10 +76,11 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     bench.comparison = baselines
         .stored
         .as_ref()
-        .map(|(name, stored)| compare(name, stored, &now, arguments.time_tolerance));
+        .map(|(name, _, stored)| compare(name, stored, &now, arguments.time_tolerance));
     let is_worse = bench.comparison.as_ref().is_some_and(Comparison::fails);
     // What cannot be written keeps nothing else from being told.
     let mut errors = Vec::new();
+    errors.extend(baselines.complaint(&bench));
     let files = page::render(&bench).map(|artifacts| {
         let failed = report::write(&artifacts, &arguments.out);
         let written = artifacts.len() - failed.len();
@@ -87,7 +88,12 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         written
     });
     errors.extend(arguments.print(&bench, console).err());
-    let stored = baselines.store(&now, is_worse).unwrap_or_else(|error| {
+    let keeps = match &bench.comparison {
+        Some(comparison) if comparison.fails() => Err("something became slower"),
+        Some(comparison) if comparison.is_empty() => Err("nothing was compared"),
+        _ => Ok(()),
+    };
+    let stored = baselines.store(&now, keeps).unwrap_or_else(|error| {
         errors.push(error);
         String::new()
     });
@@ -115,16 +121,26 @@ fn drawable(plan: &Plan) -> anyhow::Result<u64> {
 
 /// What is compared with, and where it is stored; known before anything is timed.
 struct Baselines {
-    stored: Option<(String, Stored)>,
+    stored: Option<(String, PathBuf, Stored)>,
     save: Option<(String, PathBuf)>,
 }
 
 impl Baselines {
-    /// Stores the times where that is wished; what became slower is not stored. Answers what to print.
-    fn store(&self, now: &Stored, is_worse: bool) -> anyhow::Result<String> {
+    /// What is wrong with a comparison that was asked for and says nothing.
+    fn complaint(&self, bench: &Bench) -> Option<anyhow::Error> {
+        let (comparison, (_, path, _)) = bench.comparison.as_ref().zip(self.stored.as_ref())?;
+        let nothing = page::changes::nothing(comparison)?;
+        Some(anyhow!(
+            "{}: {nothing}; time the cases of the baseline, or make it anew with --save-baseline",
+            path.display()
+        ))
+    }
+
+    /// Stores the times where that is wished, unless there is a reason not to. Answers what to print.
+    fn store(&self, now: &Stored, keeps: Result<(), &str>) -> anyhow::Result<String> {
         let Some((name, path)) = &self.save else { return Ok(String::new()) };
-        if is_worse {
-            return Ok(format!("baseline {name} not stored: something became slower\n"));
+        if let Err(why) = keeps {
+            return Ok(format!("baseline {name} not stored: {why}\n"));
         }
         now.write(path)?;
         Ok(format!("baseline {name} stored in {}\n", path.display()))
@@ -135,13 +151,14 @@ impl Arguments {
     /// Reads the baseline and tries the folder.
     fn open(&self) -> anyhow::Result<Baselines> {
         let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
-            let stored = Stored::read(&Stored::path(&self.baselines, name)?)?;
+            let path = Stored::path(&self.baselines, name)?;
+            let stored = Stored::read(&path)?;
             let threads = usize::from(self.threads);
             if stored.threads != threads {
                 let theirs = stored.threads;
                 bail!("baseline {name} was timed with {theirs} threads; give --threads {theirs}");
             }
-            Ok((name.clone(), stored))
+            Ok((name.clone(), path, stored))
         });
         let save = self.save_baseline.as_ref().map(|name| -> anyhow::Result<_> {
             let path = Stored::path(&self.baselines, name)?;

@@ -87,6 +87,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = arguments.write(&record);
     errors.extend(arguments.print(&record, console).err());
+    errors.extend(baselines.complaint(&record));
     match baselines.store(&record, run.as_ref()) {
         Ok(stored) if !console.quiet => errors.extend(output::print(&stored).err()),
         Ok(_) => {}

@@ -75,6 +75,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     });
     errors.extend(drawing::keep(&kept, &arguments.out).err());
     errors.extend(output::print_record(&record, View::Run, arguments.format, console).err());
+    errors.extend(baselines.complaint(&record));
     let stored = baselines.store(&record, run.as_ref()).unwrap_or_else(|error| {
         errors.push(error);
         String::new()

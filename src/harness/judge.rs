@@ -11,7 +11,7 @@ use super::record::{
 };
 use super::run::{Drawn, Draws};
 use super::theory_rows::{finite, theory_rows};
-use super::{curves, findings, suite, summary};
+use super::{curves, findings, normality, suite, summary};
 use crate::numeric::pack;
 use crate::stats::Tally;
 use crate::theory::{Channel, Prediction};
@@ -180,6 +180,7 @@ fn drawn_rows(
         if let Some(tally) = drawn.tallies.get(index) {
             measure(row, channel, tally);
             measure_lookups(row, prediction, drawn);
+            row.not_normal = normality::marks(row, prediction, drawn.lookups.draws);
         }
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
         let about =

@@ -18,6 +18,7 @@ pub mod findings;
 pub mod foreign;
 pub mod judge;
 pub mod mutation;
+pub mod normality;
 pub mod options;
 pub mod plan;
 pub mod record;

@@ -176,6 +176,9 @@ pub struct Row {
     pub z_lookups: Option<f64>,
     /// The predicted standard deviation of the mean number of lookups, for error bars.
     pub lookups_deviation: Option<f64>,
+    /// Which of `z_mean`, `z_variance` and `z_lookups` are not to be read as normal: the draws are too few,
+    /// or their tails too heavy.
+    pub not_normal: Vec<&'static str>,
     /// The p-value of the test of the whole law, where the law is known.
     pub p_law: Option<f64>,
     /// The skewness of one draw in theory.

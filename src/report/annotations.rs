@@ -44,12 +44,15 @@ fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
 fn of_changes(comparison: &Comparison) -> Vec<String> {
     let title = property(&format!("worse than baseline {}", comparison.name));
     let worse = changes::all(comparison).into_iter().filter(|change| change.is_worse);
-    worse
-        .map(|change| {
-            let said = format!("{}\nrepeat: {}", change.line(), change.command);
-            format!("title={title}::{}", message(&said))
-        })
-        .collect()
+    let worse = worse.map(|change| {
+        let said = format!("{}\nrepeat: {}", change.line(), change.command);
+        format!("title={title}::{}", message(&said))
+    });
+    let nothing = changes::nothing(comparison).map(|nothing| {
+        let title = property(&format!("baseline {}", comparison.name));
+        format!("title={title}::{}", message(&nothing))
+    });
+    worse.chain(nothing).collect()
 }
 
 fn of_trouble(verdict: Verdict, trouble: &Trouble) -> String {

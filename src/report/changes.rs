@@ -1,6 +1,7 @@
 //! What changed since a stored run, in words that the console and the summaries share.
 
 use crate::harness::baseline::compare::{Change, Comparison, Drift, Quantity, Sequel};
+use crate::harness::baseline::scope::LeftOut;
 use crate::report::number::{fixed, short};
 
 /// Something that changed.
@@ -24,18 +25,76 @@ impl Told<'_> {
     }
 }
 
-/// What was compared, and how.
+/// Longer lists of experiments are cut in words; `record.json` has them whole.
+const MOST: usize = 8;
+
+/// What was left out, each with its reason and the experiments.
+fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
+    let LeftOut { relearned, blunt, unpredicted, uncounted, brief, shared } = &comparison.left_out;
+    let all = [
+        ("variance not compared, too few draws or too heavy a tail", blunt),
+        ("variance not compared, theory has no error of it", unpredicted),
+        ("lookups not compared, theory has no error of them", uncounted),
+        ("variance and lookups not compared, σ\u{302} learned from other pilot draws", relearned),
+        ("time not compared, less than 0.1 s", brief),
+        ("time not compared, lookups shared with other experiments", shared),
+        ("not in the baseline", &comparison.added),
+        ("only in the baseline", &comparison.missing),
+        ("not compared, the case was rewritten", &comparison.rewritten),
+    ];
+    all.into_iter().map(|(why, ids)| (why, &ids[..])).filter(|(_, ids)| !ids.is_empty()).collect()
+}
+
+/// A list of experiments, cut where it is long.
+pub(super) fn listed(why: &str, ids: &[String]) -> String {
+    let shown = ids[..ids.len().min(MOST)].join(", ");
+    let more = match ids.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("{why} ({}): {shown}{more}", ids.len())
+}
+
+/// Why nothing was compared, where that is so.
+#[must_use]
+pub fn nothing(comparison: &Comparison) -> Option<String> {
+    let counts = || {
+        let counts = left_out(comparison);
+        let counts: Vec<_> =
+            counts.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
+        if counts.is_empty() {
+            "no experiments on either side".to_owned()
+        } else {
+            counts.join("; ")
+        }
+    };
+    comparison.is_empty().then(|| format!("nothing was compared: {}", counts()))
+}
+
+/// Why no time was compared, where that is so.
+#[must_use]
+pub fn no_times(comparison: &Comparison) -> Option<String> {
+    let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
+    let counts = || {
+        let counts = left_out(comparison).into_iter().filter(|(why, _)| is_about_all(why));
+        counts.map(|(why, ids)| format!("{why} ({})", ids.len())).collect::<Vec<_>>().join("; ")
+    };
+    (comparison.times == 0).then(|| format!("no time was compared: {}", counts()))
+}
+
+/// What was compared, how, and what was left out.
 #[must_use]
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
-    let Comparison { name, rules, compared, blunt, .. } = comparison;
-    let alpha = short(rules.alpha, 3);
-    let mut remarks =
-        vec![format!("baseline {name}: {compared} variances and lookups compared at α = {alpha}")];
-    if *blunt > 0 {
-        remarks.push(format!(
-            "too few draws, or too heavy a tail, to compare the variance: {blunt} times"
-        ));
-    }
+    let Comparison { name, rules, compared, times, .. } = comparison;
+    let (alpha, tolerance) = (short(rules.alpha, 3), short(rules.time_tolerance, 3));
+    let times = if rules.asks_for_times() {
+        format!("{times} times at a tolerance of {tolerance}")
+    } else {
+        "no times, as any is tolerated".to_owned()
+    };
+    let mut remarks = vec![format!(
+        "baseline {name}: {compared} variances and lookups compared at α = {alpha}, {times}"
+    )];
     remarks.push(match comparison.sequel {
         Sequel::Run(runs) => format!(
             "e-values multiplied with those stored, {runs} runs together: same program, new seed"
@@ -47,17 +106,11 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
             "e-values not multiplied: another program made the baseline".to_owned()
         }
     });
-    for (what, ids) in [
-        ("not in the baseline", &comparison.added),
-        ("only in the baseline", &comparison.missing),
-        ("not compared, the case was rewritten", &comparison.rewritten),
-    ] {
-        if !ids.is_empty() {
-            remarks.push(format!("{what} ({}): {}", ids.len(), ids.join(", ")));
-        }
-    }
-    if comparison.changes.is_empty() && comparison.drifts.is_empty() {
-        remarks.push("no change".to_owned());
+    remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
+    if let Some(nothing) = nothing(comparison) {
+        remarks.push(nothing);
+    } else if comparison.changes.is_empty() && comparison.drifts.is_empty() {
+        remarks.push("no change in what was compared".to_owned());
     }
     remarks
 }

@@ -47,10 +47,12 @@ const WIDE: usize = 120;
 #[must_use]
 pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     let mut text = String::new();
+    let mut marks = false;
     for case in &record.results.cases {
-        block(&mut text, pen, case, view);
+        marks |= block(&mut text, pen, case, view);
         text.push('\n');
     }
+    legend(&mut text, pen, marks);
     closing::write(&mut text, pen, record, view);
     text
 }
@@ -58,7 +60,7 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
 /// The table of a run in short: one line per case, and below it the rows that do not pass.
 #[must_use]
 pub fn brief(record: &Record, pen: layout::Pen) -> String {
-    let mut text = String::new();
+    let (mut text, mut marks) = (String::new(), false);
     for case in &record.results.cases {
         let quiet = |row: &&Row| !matches!(row.verdict, Some(Verdict::Pass) | None);
         let rows: Vec<Row> = case.rows.iter().filter(quiet).cloned().collect();
@@ -70,14 +72,23 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
         let labels = Labels::of(case);
         let shown = CaseRecord { rows, ..case.clone() };
-        grid(&mut text, pen, &shown, labels, View::Run);
+        marks |= grid(&mut text, pen, &shown, labels, View::Run);
     }
     text.push('\n');
+    legend(&mut text, pen, marks);
     closing::write(&mut text, pen, record, View::Run);
     text
 }
 
-fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
+/// What parentheses mean, where there are any.
+fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
+    for line in wrapped(totals::NOT_NORMAL, pen.width).iter().filter(|_| marks) {
+        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, line));
+    }
+}
+
+/// Writes a case; answers whether a z is marked.
+fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
     let name = end_elided(&case.name, pen.width);
     let room = pen.width.saturating_sub(layout::width(&name) + 2);
     let title = if room > 8 { end_elided(&case.title, room) } else { String::new() };
@@ -86,18 +97,25 @@ fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) {
     for line in wrapped(&facts, pen.width) {
         let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
     }
-    grid(text, pen, case, Labels::of(case), view);
+    grid(text, pen, case, Labels::of(case), view)
 }
 
-/// The rows with their reasons.
-fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, labels: Labels, view: View) {
+/// The rows with their reasons; answers whether a z is marked.
+fn grid(
+    text: &mut String,
+    pen: layout::Pen,
+    case: &CaseRecord,
+    labels: Labels,
+    view: View,
+) -> bool {
     let (names, rest) = (views::names(case, labels), views::columns(case, view));
     if view == View::Moments {
         // All of them were asked for: what does not fit beside stands below.
         for grid in layout::blocks(names, rest, pen.width) {
             text.push_str(&grid.render(pen));
         }
-        return footnotes(text, pen, case, labels, view, 0);
+        footnotes(text, pen, case, labels, view, 0);
+        return false;
     }
     let mut grid = Grid { columns: names.into_iter().chain(rest).collect() };
     grid.fit(pen.width);
@@ -111,6 +129,8 @@ fn grid(text: &mut String, pen: layout::Pen, case: &CaseRecord, labels: Labels, 
     text.push_str(&grid.render(pen));
     let room = if beside { rest } else { 0 };
     footnotes(text, pen, case, labels, view, room);
+    let scores = grid.columns.iter().filter(|column| views::SCORES.contains(&column.head));
+    scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
 }
 
 /// What all rows share, and what the case is about.

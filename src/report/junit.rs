@@ -81,11 +81,17 @@ fn suite(
     suite
 }
 
-/// A suite for what changed since a stored run: a test for each change, or one that nothing did.
+/// A suite for what changed since a stored run: a test for each change, or one that nothing did. What was
+/// compared and what was left out is its output.
 fn changed(comparison: &Comparison) -> TestSuite {
     let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
+    suite.set_system_out(changes::remarks(comparison).join("\n"));
     let all = changes::all(comparison);
-    if !all.iter().any(|change| change.is_worse) {
+    if let Some(nothing) = changes::nothing(comparison) {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_type("nothing").set_message(nothing);
+        suite.add_test_case(TestCase::new("something was compared", status));
+    } else if !all.iter().any(|change| change.is_worse) {
         suite.add_test_case(TestCase::new("nothing became worse", TestCaseStatus::success()));
     }
     for change in all.iter().filter(|change| change.is_worse) {

@@ -180,6 +180,11 @@ const ERRORS: &[Column] = columns! {
     moments_error = |joined| Number(joined.row.moments_error);
 };
 
+/// Which z of a row are not to be read as normal.
+const NORMALITY: &[Column] = columns! {
+    not_normal = |joined| Text(joined.row.not_normal.join(" "));
+};
+
 /// What JSON has beside the columns.
 const LISTS: &[Column] = columns! {
     lookups_pmf = |joined| List(joined.row.lookups_pmf.clone());
@@ -187,7 +192,7 @@ const LISTS: &[Column] = columns! {
 
 /// The columns, in the order in which files have them.
 pub fn columns() -> impl Iterator<Item = &'static Column> + Clone {
-    RESULTS.iter().chain(TIMED).chain(VERDICTS).chain(KEPT).chain(ERRORS)
+    RESULTS.iter().chain(TIMED).chain(VERDICTS).chain(KEPT).chain(ERRORS).chain(NORMALITY)
 }
 
 /// The rows of a record as CSV, with a first line of names.

@@ -80,6 +80,7 @@ fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportEr
     let series = collect(case, sweep);
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];
+    notes.extend(z_panel::legend_of_hollow(&series));
     notes.extend(series.iter().filter_map(Series::note));
     let span = WIDTH - LEFT - 18.0;
     let below = TOP + 2.0 * PITCH[1];

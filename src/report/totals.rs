@@ -6,6 +6,10 @@ use crate::report::number::{count, percent, short};
 const VERDICTS: [Verdict; 5] =
     [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused];
 
+/// What a z in parentheses means.
+pub const NOT_NORMAL: &str = "(z): the draws are too few, or their tails too heavy, to read it as normal; the \
+                              verdict does not rest on it";
+
 /// How many rows have each verdict, without those that none has.
 #[must_use]
 pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {

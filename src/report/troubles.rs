@@ -130,6 +130,11 @@ impl<'a> Trouble<'a> {
     fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
         let row = self.row;
         let number = |x: f64| Cow::from(short(x, 6));
+        let told = |name: &str, z: f64| -> Cow<'a, str> {
+            let is_normal = !row.not_normal.contains(&name);
+            let note = if is_normal { "" } else { " (its law is not near normal)" };
+            format!("{}{note}", signed(z)).into()
+        };
         let mut facts: Vec<(&str, Cow<str>)> = vec![
             ("case", self.case.name.as_str().into()),
             ("experiment", self.experiment().into()),
@@ -147,13 +152,13 @@ impl<'a> Trouble<'a> {
         add("mean", row.mean.map(number));
         add("standard error", row.standard_error.map(number));
         add("truth", row.truth.map(number));
-        add("z of the mean", row.z_mean.map(|z| signed(z).into()));
+        add("z of the mean", row.z_mean.map(|z| told("z_mean", z)));
         add("variance", row.variance.map(number));
         add("predicted variance", row.predicted_variance.map(number));
-        add("z of the variance", row.z_variance.map(|z| signed(z).into()));
+        add("z of the variance", row.z_variance.map(|z| told("z_variance", z)));
         add("lookups", row.lookups_per_draw.map(number));
         add("predicted lookups", row.predicted_lookups.map(number));
-        add("z of the lookups", row.z_lookups.map(|z| signed(z).into()));
+        add("z of the lookups", row.z_lookups.map(|z| told("z_lookups", z)));
         add("p", finding.and_then(|f| f.p).map(number));
         if let Some(gate) = finding.and_then(|finding| finding.gate) {
             let [above, below] = gate.ln_p.map(|p| short(p, 4));

@@ -1,6 +1,7 @@
 //! A made-up run: one of each verdict, and names, reasons and numbers that reports trip over.
 
 use trueflight::harness::baseline::compare::{Change, Comparison, Drift, Quantity, Rules, Sequel};
+use trueflight::harness::baseline::scope::LeftOut;
 use trueflight::harness::record::{
     Anatomy, CaseRecord, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint, Record,
     Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
@@ -131,6 +132,7 @@ fn sweep() -> CaseRecord {
     };
     let unsure = Row {
         findings: vec![gate_finding(Verdict::Inconclusive, doubt, 1.5)],
+        not_normal: vec!["z_mean", "z_variance"],
         stream: Some(12),
         ..drawn(single, "", 0.5, -1.5)
     };
@@ -263,7 +265,14 @@ fn comparison() -> Comparison {
         rules: Rules { alpha: 0.01, time_tolerance: 0.25 },
         sequel: Sequel::Run(3),
         compared: 12,
+        times: 1,
+        multiplied: 40,
         blunt: 1,
+        left_out: LeftOut {
+            blunt: vec!["transmittance/eq21-sweep|woodcock|2||2|".to_owned()],
+            brief: (1..=10).map(|i| format!("case|brief {i}")).collect(),
+            ..LeftOut::default()
+        },
         changes: vec![
             change(Quantity::Variance, 1.5),
             change(Quantity::Lookups, 0.5),

@@ -6,7 +6,7 @@ pub mod walk;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::Rod;
 use crate::theory::ParticleRule;
-use crate::theory::rod;
+use crate::theory::rod::{self, NoVariance};
 
 /// Whether a rule exists on a rod, reaches all of it, and has a variance there.
 fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
@@ -22,14 +22,23 @@ fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
         return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
     }
     let mesh = &setup.mesh;
-    match rod::diverges(mesh, &setup.problem, &setup.sampling, rule) {
-        Ok(None) => Ok(()),
-        Ok(Some(at)) => Err(Refusal::Inequality {
-            needs: "a finite variance",
+    let needs = "a finite variance";
+    match rod::has_variance(mesh, &setup.problem, &setup.sampling, rule) {
+        Ok(()) => Ok(()),
+        Err(NoVariance::Diverges(at)) => Err(Refusal::Inequality {
+            needs,
             found: "σ̂ is so far below σ_t that E[X²] diverges: the critical length ends".to_owned(),
             at,
         }),
-        Err(_) => Err(Refusal::mismatch(
+        Err(NoVariance::Blurred(error)) if error < 1.0 => Err(Refusal::mismatch(
+            needs,
+            format!("E[X²] is known to {error:.0e} only: σ̂ is next to where it diverges"),
+        )),
+        Err(NoVariance::Blurred(_)) => Err(Refusal::mismatch(
+            needs,
+            "σ̂ is so near to where E[X²] diverges that theory does not tell on which side",
+        )),
+        Err(NoVariance::TooLong) => Err(Refusal::mismatch(
             "a rod that theory can cut into 1e4 steps",
             "σ̂ or σ_t is too large on it",
         )),

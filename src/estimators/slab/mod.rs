@@ -6,7 +6,7 @@ pub mod walk;
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::{Problem, Slab};
-use crate::theory::slab::{self, Answer, Pieces, Walk};
+use crate::theory::slab::{self, Answer, Existence, Pieces, Walk};
 use crate::theory::{ParticleRule, Prediction};
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
@@ -58,12 +58,16 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
         let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
         return Err(Refusal::mismatch(needs, found));
     }
-    if walk_of(setup, rule).diverges() {
-        let needs = "a finite variance";
-        let found = "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them";
-        return Err(Refusal::mismatch(needs, found));
-    }
-    Ok(())
+    let found = match walk_of(setup, rule).second_moment() {
+        Existence::Finite => return Ok(()),
+        Existence::Diverges => {
+            "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them"
+        }
+        Existence::Unknown => {
+            "σ̂ is so near to where E[X²] diverges that theory does not tell on which side"
+        }
+    };
+    Err(Refusal::mismatch("a finite variance", found))
 }
 
 /// What theory says of a rule; without an answer its values are no numbers, and are refused as such.

@@ -29,8 +29,18 @@ const SLACK: f64 = 1e-9;
 /// More tentative collisions than this on a shadow ray are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 
-/// The exact answer; `None` where the equation is not solved.
+/// The exact answer; `None` where the equation is not solved, or its answer is not known well enough.
 fn truth(sphere: &Sphere) -> Option<Answer> {
+    answer(sphere).filter(|answer| blur(answer) <= BLURRED)
+}
+
+/// The relative error of an answer.
+fn blur(answer: &Answer) -> f64 {
+    answer.value.error / answer.value.value.abs()
+}
+
+/// The answer with its error; `None` where the equation is not solved.
+fn answer(sphere: &Sphere) -> Option<Answer> {
     if sphere.majorant() * sphere.radius() > DEEPEST {
         return None;
     }
@@ -50,8 +60,25 @@ fn truth(sphere: &Sphere) -> Option<Answer> {
         is_distant: matches!(sphere.light(), Light::Distant(_)),
         asked,
     };
-    let answer = cached(&scene, &|r2| sphere.extinction(r2))?;
-    (answer.value.error <= BLURRED * answer.value.value.abs()).then_some(answer)
+    cached(&scene, &|r2| sphere.extinction(r2))
+}
+
+/// Why there is no truth to judge by.
+fn unknown(sphere: &Sphere) -> Refusal {
+    let depth = sphere.majorant() * sphere.radius();
+    if depth > DEEPEST {
+        let found = format!("it may reach {}", rounded(depth));
+        return Refusal::mismatch("σ_t R ≤ 30, up to which Peierls' equation is solved", found);
+    }
+    let needs = "an answer of Peierls' equation known to 1e-4";
+    let Some(answer) = answer(sphere) else {
+        return Refusal::mismatch(needs, "the equation is not solved for this medium");
+    };
+    let error = blur(&answer);
+    if error.is_nan() || error > 1.0 {
+        return Refusal::mismatch(needs, "it is lost in its own error");
+    }
+    Refusal::mismatch(needs, format!("it is known to {error:.0e} only"))
 }
 
 /// Whether a rule exists here, its spread has a bound, and there is a truth to judge it by.
@@ -65,17 +92,7 @@ fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal>
         return Err(Refusal::mismatch(needs, found));
     }
     if truth(sphere).is_none() {
-        let needs =
-            "an answer of Peierls' equation known to 1e-4: σ_t R ≤ 30, a lamp not too small";
-        let depth = sphere.majorant() * sphere.radius();
-        let lamp = match sphere.light() {
-            Light::BlackSphere(core) => {
-                format!(", a lamp of {} R", rounded(core / sphere.radius()))
-            }
-            _ => String::new(),
-        };
-        let found = format!("σ_t R of up to {}{lamp}", rounded(depth));
-        return Err(Refusal::mismatch(needs, found));
+        return Err(unknown(sphere));
     }
     Ok(())
 }

@@ -11,7 +11,8 @@
 //! κ and Var N are those of theory, on both sides: each side's own uncertainty counts. A variance is
 //! not compared where, on either side, its relative standard error is above 10 %, its law is not near
 //! normal (`E[X⁸]/E[X⁴]²` > n/100, or fewer draws than ten times the rare-event size), or hardly anything
-//! of it is left to chance (κ − 1 < 100/n). A regression is an
+//! of it is left to chance (κ − 1 < 100/n). What is left out is listed ([`scope`](super::scope)), and a
+//! comparison of nothing is none. A regression is an
 //! interval that lies above 1; an improvement, one below, is told and does not fail. The error of a
 //! time is not known from one figure: it fails beyond a factor that the caller chooses.
 //!
@@ -24,19 +25,10 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::Serialize;
 
+use super::scope::{LeftOut, Measured, is_comparable};
 use super::{Baseline, Entry, Evidence};
 use crate::stats::normal;
 
-/// Times below this are noise.
-const SHORTEST: f64 = 0.1;
-/// The largest relative standard error of a variance that is compared.
-const BLUNT: f64 = 0.1;
-/// The largest share of the draws that `E[X⁸]/E[X⁴]²` may be where a sample variance is near normal.
-const HEAVY: f64 = 0.01;
-/// Draws in units of the rare-event size, from which on the variance's events are seen.
-const SEEN: f64 = 10.0;
-/// The least `(κ − 1) n` of a variance that is left to chance.
-const LEAST: f64 = 100.0;
 /// Two numbers of lookups without spread are the same if they are this near.
 const ROUNDING: f64 = 1e-9;
 
@@ -47,6 +39,14 @@ pub struct Rules {
     pub alpha: f64,
     /// How much more time per draw is no regression, as a share.
     pub time_tolerance: f64,
+}
+
+impl Rules {
+    /// Whether any time could be a regression.
+    #[must_use]
+    pub fn asks_for_times(&self) -> bool {
+        self.time_tolerance < f64::INFINITY
+    }
 }
 
 /// What changed.
@@ -60,8 +60,14 @@ pub struct Comparison {
     pub sequel: Sequel,
     /// How many variances and lookups were compared: α is shared among them.
     pub compared: usize,
+    /// How many times per draw were compared.
+    pub times: usize,
+    /// How many e-values were multiplied with stored ones.
+    pub multiplied: usize,
     /// How many variances were too uncertain to compare.
     pub blunt: usize,
+    /// What of the experiments that both have was not compared.
+    pub left_out: LeftOut,
     /// What grew or shrank.
     pub changes: Vec<Change>,
     /// Checks that fail over all runs together.
@@ -134,42 +140,17 @@ pub struct Drift {
     pub command: String,
 }
 
-/// A value with its standard error, relative to it.
-type Measured = (f64, f64);
-
-impl Entry {
-    fn variance(&self) -> Option<Measured> {
-        let (n, kurtosis) = (self.draws as f64, self.kurtosis?);
-        let error = ((kurtosis - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt();
-        Some((self.variance.filter(|&variance| variance > 0.0)?, error))
-    }
-
-    /// Whether the sample variance has a law that can be compared.
-    fn is_sharp(&self) -> bool {
-        let n = self.draws as f64;
-        let error = self.variance().map_or(f64::INFINITY, |(_, error)| error);
-        let heavy = self.eighth_moment_ratio.unwrap_or(f64::INFINITY);
-        let rare = self.rare_event_size.unwrap_or(f64::INFINITY);
-        let chance = self.kurtosis.map_or(0.0, |kurtosis| (kurtosis - 1.0) * n);
-        error <= BLUNT && heavy <= HEAVY * n && SEEN * rare <= n && chance >= LEAST
-    }
-
-    fn lookups(&self) -> Option<Measured> {
-        let lookups = self.lookups.filter(|&lookups| lookups > 0.0)?;
-        Some((lookups, (self.lookups_variance? / self.draws as f64).sqrt() / lookups))
-    }
-
-    fn nanoseconds(&self) -> Option<f64> {
-        let seconds = self.seconds.filter(|&seconds| seconds >= SHORTEST)?;
-        Some(1e9 * seconds / self.drawn as f64)
-    }
-}
-
 impl Comparison {
     /// Whether anything became worse.
     #[must_use]
     pub fn fails(&self) -> bool {
         !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
+    }
+
+    /// Whether nothing of the run was compared with anything: such a comparison says nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.compared == 0 && self.times == 0 && self.multiplied == 0
     }
 }
 
@@ -190,7 +171,10 @@ pub fn compare(
         rules: *rules,
         sequel: sequel(stored, run),
         compared: 0,
+        times: 0,
+        multiplied: 0,
         blunt: 0,
+        left_out: LeftOut::default(),
         changes: Vec::new(),
         drifts: Vec::new(),
         added: Vec::new(),
@@ -208,23 +192,22 @@ pub fn compare(
         }
     }
     let questions: Vec<_> = pairs.iter().flat_map(|(before, now)| questions(before, now)).collect();
-    let blunt = |pair: &&(&Entry, &Entry)| {
-        let has_both = pair.0.variance().is_some() && pair.1.variance().is_some();
-        has_both && is_comparable(pair.0, pair.1) && !(pair.0.is_sharp() && pair.1.is_sharp())
-    };
     comparison.compared = questions.len();
-    comparison.blunt = pairs.iter().filter(blunt).count();
+    comparison.left_out = LeftOut::of(&pairs, rules);
+    comparison.blunt = comparison.left_out.blunt.len();
     let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
     comparison.changes = questions.iter().filter_map(|question| question.answer(z)).collect();
-    let times = pairs.iter().filter_map(|(before, now)| time(before, now, rules.time_tolerance));
-    comparison.changes.extend(times);
+    let times: Vec<_> =
+        pairs.iter().filter_map(|(before, now)| times(before, now, rules)).collect();
+    comparison.times = times.len();
+    comparison.changes.extend(times.iter().filter_map(|times| times.answer(rules.time_tolerance)));
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
         next.ln_e_limit = next.ln_e_limit.max(stored.ln_e_limit);
         next.entries.extend(not_drawn(stored, run));
     }
     if let Sequel::Run(_) = comparison.sequel {
-        comparison.drifts = multiply(&mut next, &before, run);
+        (comparison.drifts, comparison.multiplied) = multiply(&mut next, &before, run);
         next.seeds = [&stored.seeds[..], &run.seeds[..]].concat();
     } else if comparison.sequel == Sequel::SameSeed {
         for entry in next.entries.iter_mut().take(run.entries.len()) {
@@ -248,9 +231,13 @@ fn sequel(stored: &Baseline, run: &Baseline) -> Sequel {
     }
 }
 
-/// Adds the stored ln E to those of the run; answers those that reach the limit.
-fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, run: &Baseline) -> Vec<Drift> {
-    let mut drifts = Vec::new();
+/// Adds the stored ln E to those of the run; answers those that reach the limit, and how many there were.
+fn multiply(
+    next: &mut Baseline,
+    before: &BTreeMap<&str, &Entry>,
+    run: &Baseline,
+) -> (Vec<Drift>, usize) {
+    let (mut drifts, mut multiplied) = (Vec::new(), 0);
     let limit = next.ln_e_limit;
     for entry in next.entries.iter_mut().take(run.entries.len()) {
         let stored = before.get(entry.id.as_str()).filter(|stored| stored.case == entry.case);
@@ -260,13 +247,14 @@ fn multiply(next: &mut Baseline, before: &BTreeMap<&str, &Entry>, run: &Baseline
                 continue;
             };
             *ln_e += earlier.ln_e;
+            multiplied += 1;
             if *ln_e >= limit {
                 let (id, command) = (entry.id.clone(), entry.command.clone());
                 drifts.push(Drift { id, check: check.clone(), ln_e: *ln_e, limit, command });
             }
         }
     }
-    drifts
+    (drifts, multiplied)
 }
 
 /// The stored entries that the run has not drawn, of cases that it has not with another text.
@@ -288,11 +276,6 @@ struct Question<'e> {
     quantity: Quantity,
     before: Measured,
     now: Measured,
-}
-
-/// Whether both are of the same σ̂: not where it was learned from other pilot rays.
-fn is_comparable(before: &Entry, now: &Entry) -> bool {
-    !now.learns || before.seed == now.seed
 }
 
 /// What two entries can be compared in.
@@ -331,19 +314,33 @@ impl Question<'_> {
     }
 }
 
-/// A time that changed by more than the tolerance, in either direction.
-fn time(before: &Entry, now: &Entry, tolerance: f64) -> Option<Change> {
-    let (earlier, later) = (before.nanoseconds()?, now.nanoseconds()?);
-    let ratio = later / earlier;
-    let is_regression = ratio > 1.0 + tolerance;
-    (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
-        id: now.id.clone(),
-        quantity: Quantity::Time,
-        before: [earlier, f64::NAN],
-        now: [later, f64::NAN],
-        ratio,
-        interval: None,
-        is_regression,
-        command: now.command.clone(),
-    })
+/// Two times per draw, in nanoseconds.
+struct Times<'e> {
+    entry: &'e Entry,
+    before: f64,
+    now: f64,
+}
+
+/// What two entries took, where a time can fail and both are long enough.
+fn times<'e>(before: &Entry, now: &'e Entry, rules: &Rules) -> Option<Times<'e>> {
+    let both = before.nanoseconds().zip(now.nanoseconds()).filter(|_| rules.asks_for_times());
+    both.map(|(before, later)| Times { entry: now, before, now: later })
+}
+
+impl Times<'_> {
+    /// A time that changed by more than the tolerance, in either direction.
+    fn answer(&self, tolerance: f64) -> Option<Change> {
+        let ratio = self.now / self.before;
+        let is_regression = ratio > 1.0 + tolerance;
+        (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
+            id: self.entry.id.clone(),
+            quantity: Quantity::Time,
+            before: [self.before, f64::NAN],
+            now: [self.now, f64::NAN],
+            ratio,
+            interval: None,
+            is_regression,
+            command: self.entry.command.clone(),
+        })
+    }
 }

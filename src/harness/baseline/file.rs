@@ -9,8 +9,12 @@ use serde::de::DeserializeOwned;
 use super::BaselineError;
 use crate::files;
 
-/// Reads a file of this version of its form.
-pub fn read<T: DeserializeOwned>(path: &Path, expected: u32) -> Result<T, BaselineError> {
+/// Reads a file of this version of its form, whose content is in the given list.
+pub fn read<T: DeserializeOwned>(
+    path: &Path,
+    expected: u32,
+    list: &str,
+) -> Result<T, BaselineError> {
     let path = path.to_owned();
     let text = match std::fs::read(&path) {
         Ok(text) => text,
@@ -23,6 +27,9 @@ pub fn read<T: DeserializeOwned>(path: &Path, expected: u32) -> Result<T, Baseli
         Ok(tree) => tree,
         Err(cause) => return Err(BaselineError::Broken { path, cause }),
     };
+    if let Some(found) = other_kind(&tree, list) {
+        return Err(BaselineError::OtherKind { path, found });
+    }
     // The form is asked first: what else is there depends on it.
     if let Some(found) = tree.get("schema").and_then(serde_json::Value::as_u64)
         && found != u64::from(expected)
@@ -30,6 +37,19 @@ pub fn read<T: DeserializeOwned>(path: &Path, expected: u32) -> Result<T, Baseli
         return Err(BaselineError::Schema { path, found, expected });
     }
     serde_json::from_value(tree).map_err(|cause| BaselineError::Broken { path, cause })
+}
+
+/// What else of this program a file is, that has not the list of what is sought.
+fn other_kind(tree: &serde_json::Value, list: &str) -> Option<&'static str> {
+    let kinds = [
+        ("entries", "a stored run"),
+        ("timed", "a stored bench"),
+        ("results", "the record of a run"),
+        ("cases", "the record of a bench"),
+    ];
+    let has = |key: &str| tree.get(key).is_some();
+    let found = kinds.into_iter().find(|(key, _)| has(key)).filter(|_| !has(list));
+    found.map(|(_, kind)| kind)
 }
 
 /// Whether a file can be written; its folder is made.

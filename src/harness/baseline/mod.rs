@@ -10,6 +10,7 @@
 
 pub mod compare;
 pub(in crate::harness) mod file;
+pub mod scope;
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -111,6 +112,14 @@ pub enum BaselineError {
         /// What the decoder said.
         cause: serde_json::Error,
     },
+    /// The file is another of this program's.
+    #[error("{}: {found}, not a baseline of this command; make one with --save-baseline", path.display())]
+    OtherKind {
+        /// The file.
+        path: PathBuf,
+        /// What it is.
+        found: &'static str,
+    },
     /// A number that no run has.
     #[error("{}: the numbers of {id} are those of no run; make it anew with --save-baseline", path.display())]
     Nonsense {
@@ -191,7 +200,7 @@ impl Baseline {
     ///
     /// There is none, or it is not what this program writes.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        let stored: Self = file::read(path, SCHEMA)?;
+        let stored: Self = file::read(path, SCHEMA, "entries")?;
         match stored.entries.iter().find(|entry| !entry.makes_sense()) {
             Some(entry) => {
                 Err(BaselineError::Nonsense { path: path.to_owned(), id: entry.id.clone() })

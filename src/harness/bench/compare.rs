@@ -54,6 +54,12 @@ impl Comparison {
     pub fn fails(&self) -> bool {
         self.changes.iter().any(|change| change.is_regression)
     }
+
+    /// Whether nothing was compared with anything: such a comparison says nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.compared == 0
+    }
 }
 
 /// Compares a bench with the stored one called `name`.
@@ -147,6 +153,8 @@ mod tests {
         assert_eq!((found.added, found.missing), (vec!["new".to_owned()], vec!["old".to_owned()]));
         "another".clone_into(&mut later.timed[0].case);
         let found = compare("main", &before, &later, 0.25);
-        assert!(!found.fails() && found.rewritten == ["a"]);
+        assert!(!found.fails() && found.rewritten == ["a"] && !found.is_empty());
+        let other = stored(&[("other", [1.0; 3])]);
+        assert!(compare("main", &before, &other, 0.25).is_empty());
     }
 }

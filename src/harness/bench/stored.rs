@@ -86,7 +86,7 @@ impl Stored {
     ///
     /// There is none, or it is not what this program writes.
     pub fn read(path: &Path) -> Result<Self, BaselineError> {
-        file::read(path, SCHEMA)
+        file::read(path, SCHEMA, "timed")
     }
 
     /// Writes the file under a temporary name, then renames it.

@@ -11,6 +11,7 @@
 use super::mean::is_faint;
 use super::{Ask, BLURRED, Check, Kind, Law, Subject};
 use crate::harness::counted::Counted;
+use crate::harness::normality;
 use crate::harness::plan::BLOCK;
 use crate::numeric::sum::sum_in_lanes;
 use crate::stats::chi_square;
@@ -61,7 +62,7 @@ impl Check for Dispersion {
         let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
         let Some(moments) = channel.moments else { return Vec::new() };
         let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
-        let needed = (100.0 * kurtosis).max(10.0 * channel.tails.rare_event_size);
+        let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
         let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
         let is_blurred = moments.error > BLURRED;
         if subject.expect_biased || is_faint(subject, channel) || is_blurred || !enough {

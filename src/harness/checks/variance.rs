@@ -44,7 +44,7 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     let variance = moments.variance();
     if !(kurtosis.is_finite() && variance.is_finite()) {
         return Some(Kind::Untestable(if variance.is_finite() {
-            "the fourth moment of a draw is infinite or overflows".into()
+            "the fourth moment of a draw is infinite, overflows or is not resolved".into()
         } else {
             "the variance of a draw is infinite or overflows".into()
         }));

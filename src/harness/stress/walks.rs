@@ -23,7 +23,7 @@ use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotro
 use crate::problems::slab::{Incidence, Light};
 use crate::theory::particle::ParticleRule;
 use crate::theory::slab::layer::Slice;
-use crate::theory::slab::{self, Answer, Energy, Piece, Pieces, Resolution, Walk};
+use crate::theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
 use crate::theory::{Mesh, Moments};
 
 const PARTS: u64 = 16;
@@ -188,7 +188,8 @@ fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
             _ => [0.998, 1.002].map(|longer| of_power(2, longer).is_some()),
         };
         if before == beyond {
-            diverging.count(walk.diverges() == before, || what.clone());
+            let diverges = walk.second_moment() == Existence::Diverges;
+            diverging.count(diverges == before, || what.clone());
         }
         let exact: Vec<Leaving> = exact
             .iter()

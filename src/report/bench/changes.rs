@@ -2,6 +2,7 @@
 
 use crate::harness::bench::compare::{Change, Comparison};
 use crate::harness::bench::spread::Spread;
+use crate::report::changes::listed;
 use crate::report::number::{fixed, short};
 
 /// What was compared, and how.
@@ -16,19 +17,33 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     if let Some([before, now]) = &comparison.levels {
         remarks.push(format!("the vector hardware differs: {before} then, {now} now"));
     }
-    for (what, ids) in [
+    remarks.extend(left_out(comparison).map(|(why, ids)| listed(why, ids)));
+    if let Some(nothing) = nothing(comparison) {
+        remarks.push(nothing);
+    } else if comparison.changes.is_empty() {
+        remarks.push("no change in what was compared".to_owned());
+    }
+    remarks
+}
+
+/// What was left out, each with its reason and the experiments.
+fn left_out(comparison: &Comparison) -> impl Iterator<Item = (&'static str, &[String])> {
+    let all = [
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
         ("not compared, the case was rewritten", &comparison.rewritten),
-    ] {
-        if !ids.is_empty() {
-            remarks.push(format!("{what} ({}): {}", ids.len(), ids.join(", ")));
-        }
-    }
-    if comparison.changes.is_empty() {
-        remarks.push("no change".to_owned());
-    }
-    remarks
+    ];
+    all.into_iter().map(|(why, ids)| (why, &ids[..])).filter(|(_, ids)| !ids.is_empty())
+}
+
+/// Why nothing was compared, where that is so.
+#[must_use]
+pub fn nothing(comparison: &Comparison) -> Option<String> {
+    let counts = || {
+        let counts = left_out(comparison).map(|(why, ids)| format!("{why} ({})", ids.len()));
+        counts.collect::<Vec<_>>().join("; ")
+    };
+    comparison.is_empty().then(|| format!("nothing was compared: {}", counts()))
 }
 
 /// What changed, what became slower first: whether it did, and the numbers.

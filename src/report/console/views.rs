@@ -14,13 +14,16 @@ const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_def
 const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 
+/// The headings of z.
+pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
+
 const RUN: &[Spec] = &[
     ("mean", true, 6, |row| digits(row.mean, 6)),
-    ("z", true, 1, |row| score(row.z_mean)),
+    ("z", true, 1, |row| score(row, "z_mean", row.z_mean)),
     ("s²/V", true, 5, ratio),
-    ("z_V", true, 2, |row| score(row.z_variance)),
+    ("z_V", true, 2, |row| score(row, "z_variance", row.z_variance)),
     ("lookups", true, 7, |row| digits(row.lookups_per_draw, 4)),
-    ("z_N", true, 4, |row| score(row.z_lookups)),
+    ("z_N", true, 4, |row| score(row, "z_lookups", row.z_lookups)),
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
 ];
@@ -189,8 +192,11 @@ fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
 }
 
-fn score(value: Option<f64>) -> String {
-    value.map(signed).unwrap_or_default()
+/// A z, in parentheses where it is not to be read as normal.
+#[must_use]
+pub fn score(row: &Row, name: &str, z: Option<f64>) -> String {
+    let text = z.map(signed).unwrap_or_default();
+    if row.not_normal.contains(&name) { format!("({text})") } else { text }
 }
 
 fn percent(share: f64) -> String {

@@ -7,7 +7,7 @@ use crate::report::number::short;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend;
 use crate::report::plots::series::Series;
-use crate::report::plots::style::{GREY, Marker, ink};
+use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
 
 /// Between these, 95 % of the scores of a correct estimator lie.
@@ -15,12 +15,12 @@ const USUAL: f64 = 1.96;
 const BAND: RGBAColor = ink(0xEE, 0xF3, 0xF7);
 const LIMIT: RGBAColor = ink(0xB0, 0x30, 0x30);
 
-type Score = (Marker, &'static str, fn(&Row) -> Option<f64>);
+type Score = (Marker, &'static str, &'static str, fn(&Row) -> Option<f64>);
 
 const SCORES: [Score; 3] = [
-    (Marker::Disc, "mean", |row| row.z_mean),
-    (Marker::Square, "variance", |row| row.z_variance),
-    (Marker::Diamond, "lookups", |row| row.z_lookups),
+    (Marker::Disc, "mean", "z_mean", |row| row.z_mean),
+    (Marker::Square, "variance", "z_variance", |row| row.z_variance),
+    (Marker::Diamond, "lookups", "z_lookups", |row| row.z_lookups),
 ];
 
 /// Draws the scores of the series into a panel, whose vertical axis is chosen here.
@@ -31,7 +31,7 @@ pub fn draw(
     series: &[Series],
     sweep: &Sweep,
 ) {
-    let scores = series.iter().flat_map(|one| &one.rows).flat_map(|row| SCORES.map(|s| s.2(row)));
+    let scores = series.iter().flat_map(|one| &one.rows).flat_map(|row| SCORES.map(|s| s.3(row)));
     let largest = scores.flatten().map(f64::abs).filter(|z| z.is_finite()).fold(0.0, f64::max);
     // Far outliers of a failed check would flatten all others: they become arrows at the edge.
     let usual = 1.3 * sweep.z_limit.unwrap_or(3.0).max(USUAL);
@@ -47,7 +47,7 @@ pub fn draw(
     }
     let beyond = points(sheet, &panel, series);
     panel.frame(sheet, "(d) Agreement with theory");
-    let mut keys: Vec<_> = SCORES.map(|(marker, name, _)| (Some(marker), name.to_owned())).into();
+    let mut keys: Vec<_> = SCORES.map(|(marker, name, ..)| (Some(marker), name.to_owned())).into();
     if beyond {
         keys.push((Some(Marker::Up), "beyond".to_owned()));
     }
@@ -64,6 +64,13 @@ pub fn note(sweep: &Sweep) -> String {
     band + &limit.unwrap_or_default()
 }
 
+/// What hollow points mean, where there are any.
+#[must_use]
+pub fn legend_of_hollow(series: &[Series]) -> Option<String> {
+    let any = series.iter().flat_map(|one| &one.rows).any(|row| !row.not_normal.is_empty());
+    any.then(|| "(d): the law of hollow scores is not near normal".to_owned())
+}
+
 /// Draws the points side by side, so that none hides another, and says whether any is off the axis.
 fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let swept = series.iter().filter(|one| !one.is_fixed()).count();
@@ -73,7 +80,7 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
         let fixed = one.is_fixed();
-        for (marker, _, score) in SCORES {
+        for (marker, _, column, score) in SCORES {
             let shift = (slot - (slots - 1.0) / 2.0) * step;
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
@@ -86,6 +93,9 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
                 let at = [x.clamp(panel.left + 4.0, panel.right - 4.0), y];
                 if panel.holds(at) {
                     panel.point(sheet, at, marker, 3.6, one.style.colour);
+                    if row.not_normal.contains(&column) {
+                        panel.point(sheet, at, marker, 0.8, PAPER);
+                    }
                     continue;
                 }
                 beyond = true;

@@ -25,8 +25,6 @@ use crate::problems::{Problem, Rod};
 const COARSEST: f64 = 0.5;
 /// More steps than this on the coarsest grid are more than theory can do.
 const MOST: f64 = 1e4;
-/// So near, relative, a rod may not come to its critical length.
-const NEAR: f64 = 1e-3;
 
 /// The middle of a step.
 #[derive(Debug, Clone, Copy)]
@@ -280,17 +278,17 @@ impl Grid {
         self.parts_per_length
     }
 
-    /// Where the k-th moment diverges: the distance that would have to be the rod's end for it to
-    /// exist. `None` where it exists.
+    /// Where the k-th moment diverges in a rod that is longer everywhere by a share: the distance that
+    /// would have to be the rod's end for it to exist. `None` where it exists.
     ///
     /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
-    /// where ρr reaches 1. The grid finds the critical length to within a thousandth at best; so near to
-    /// it a moment is nothing that draws could be compared with, and counts as divergent.
+    /// where ρr reaches 1. This is so on the grid, which finds the critical length to about a
+    /// ten-thousandth; see [`Self::margin`].
     #[must_use]
-    pub fn critical(&self, k: i32) -> Option<f64> {
+    pub fn critical(&self, k: i32, longer: f64) -> Option<f64> {
         let mut passed = 0.0;
         for step in &self.steps {
-            let layer = Layer::new(step.absolute_rates(k), step.width * (1.0 + NEAR));
+            let layer = Layer::new(step.absolute_rates(k), step.width * (1.0 + longer));
             let echo = 1.0 - passed * layer.back;
             if !(echo > 0.0 && layer.through > 0.0 && layer.back >= 0.0) {
                 return Some(step.end);
@@ -298,6 +296,35 @@ impl Grid {
             passed = layer.back + layer.through * layer.through * passed / echo;
         }
         None
+    }
+
+    /// How far the k-th moment is from its divergence: the moment exists where this is positive.
+    ///
+    /// ```text
+    /// y' = Ay − Bz,  z' = −Az + By,  (y, z) = (1, 0) at the beginning;   y/√(y² + z²) at the end
+    /// ```
+    ///
+    /// The moment exists where y stays positive, and is 1/y for what passes. Over a layer
+    /// `y → y (1 − ρr)/t` with ρ = z/y. It is smooth in the steps' lengths even where y is 0. `None` where y
+    /// turns more than once, or steps are too long.
+    #[must_use]
+    pub fn margin(&self, k: i32) -> Option<f64> {
+        let (mut passed, mut turns) = (0.0, 0);
+        for step in &self.steps {
+            let layer = Layer::new(step.absolute_rates(k), step.width);
+            let echo = 1.0 - passed * layer.back;
+            if !(layer.through > 0.0 && layer.back >= 0.0) {
+                return None;
+            }
+            turns += u32::from(echo <= 0.0);
+            passed = layer.back + layer.through * layer.through * passed / echo;
+        }
+        let size = 1.0 / 1.0_f64.hypot(passed);
+        match turns {
+            0 => Some(size),
+            1 => Some(-size),
+            _ => None,
+        }
     }
 
     /// Solves the equations with given rates and sources, where leaving at the beginning and at the

@@ -20,7 +20,7 @@ pub mod grid;
 pub mod moments;
 
 use self::grid::Walk;
-use self::moments::{Joint, POWERS, Precision};
+use self::moments::{Existence, Joint, POWERS, Precision};
 use super::particle::ParticleRule;
 use super::prediction::Covariance;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails, moments::not_negative};
@@ -28,9 +28,6 @@ use crate::media::Piecewise;
 use crate::numeric::{Known, Span};
 use crate::problems::rod::Seen;
 use crate::problems::{Problem, Rod};
-
-/// The grid on which divergence is looked for is so much finer than the coarsest.
-const FINER: usize = 16;
 
 /// The exact answer of every channel; `None` where the rod has more steps than theory can do.
 #[must_use]
@@ -73,27 +70,53 @@ fn one_value(field: &Piecewise, span: Span) -> Option<f64> {
     field.on(span).single_value()
 }
 
-/// Where the second moment of a walk diverges; `None` where it exists, and an error without an answer.
+/// Why a walk has no variance that draws could be compared with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum NoVariance {
+    /// The second moment diverges: the rod would have to end here.
+    Diverges(f64),
+    /// The second moment is so near to its divergence that theory knows it to this relative error only;
+    /// above 1, it may diverge.
+    Blurred(f64),
+    /// The rod has more steps than theory can do.
+    TooLong,
+}
+
+/// Whether a walk has a variance that theory resolves.
 ///
 /// # Errors
 ///
-/// The rod has more steps than theory can do.
-pub fn diverges(
+/// Why not.
+pub fn has_variance(
     mesh: &Mesh,
     rod: &Rod,
     sampling: &Piecewise,
     rule: ParticleRule,
-) -> Result<Option<f64>, TooLong> {
-    let walk = Walk::new(mesh, rod, Some(sampling), rule).ok_or(TooLong)?;
-    Ok(walk.grid(FINER).critical(2))
+) -> Result<(), NoVariance> {
+    let walk = Walk::new(mesh, rod, Some(sampling), rule).ok_or(NoVariance::TooLong)?;
+    match Existence::of(&walk, [2])[0] {
+        Existence::Finite => Ok(()),
+        Existence::Diverges(at) => Err(NoVariance::Diverges(at)),
+        Existence::Unknown => Err(NoVariance::Blurred(f64::INFINITY)),
+        Existence::Near => match Found::blur(&powers(&walk, 2)) {
+            blur if blur <= RESOLVED => Ok(()),
+            blur => Err(NoVariance::Blurred(blur)),
+        },
+    }
 }
 
-/// A walk that is too long for theory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct TooLong;
+/// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where
+/// grids do not tell.
+fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
+    let channels = walk.rod.channels();
+    let numbers = moments::next_to_divergence(walk, &|grid| {
+        channels.iter().map(|&seen| moments::power(grid, seen, k)).collect()
+    });
+    numbers.unwrap_or_else(|| vec![[f64::INFINITY; 2]; channels.len()])
+}
 
-/// What the walk of a rule through σ̂ is predicted to do; the truth alone where [`diverges`] says that
-/// it has no variance, and not even that where it says nothing.
+/// What the walk of a rule through σ̂ is predicted to do; the truth alone where [`has_variance`] says that
+/// it has none, and not even that where the rod is too long.
 ///
 /// Without `laws`, as for lines in plots, only variances and mean lookups are good.
 #[must_use]
@@ -165,20 +188,29 @@ struct Found {
 impl Found {
     fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
         let precision = if laws { Precision::FULL } else { Precision::PLOTS };
-        let fine = walk.grid(FINER);
-        if fine.critical(2).is_some() {
+        let [second, fourth, eighth] = if laws {
+            Existence::of(walk, [2, 4, 8])
+        } else {
+            [Existence::of(walk, [2])[0], Existence::Unknown, Existence::Unknown]
+        };
+        if matches!(second, Existence::Diverges(_) | Existence::Unknown) {
             return None;
         }
+        // The first exists wherever the second does; the third is of no use without the fourth.
+        let existences = [Existence::Finite, second, fourth, fourth, eighth];
         let channels = walk.rod.channels();
-        let fourth = laws && fine.critical(4).is_none();
-        let eighth = laws && fine.critical(8).is_none();
-        let exists = |k: i32| match k {
-            1 | 2 => true,
-            3 | 4 => fourth,
-            _ => eighth,
+        let is_finite = |i: &usize| existences[*i] == Existence::Finite;
+        let powers: Vec<i32> = (0..POWERS.len()).filter(is_finite).map(|i| POWERS[i]).collect();
+        // Next to its divergence a moment has no answer on coarse grids, and takes none from others.
+        let apart = |i: usize| match existences[i] {
+            Existence::Near => Some(self::powers(walk, POWERS[i])),
+            _ => None,
         };
-        let powers: Vec<i32> = POWERS.into_iter().filter(|&k| exists(k)).collect();
-        let is_joint = fourth && channels.contains(&Seen::Absorbed);
+        let apart: [_; POWERS.len()] = std::array::from_fn(apart);
+        if !apart[1].as_ref().is_none_or(|found| Self::blur(found) <= RESOLVED) {
+            return None;
+        }
+        let is_joint = is_finite(&3) && channels.contains(&Seen::Absorbed);
         let numbers = moments::romberg(walk, precision, &|grid| {
             let mut numbers = moments::lookups(grid)?.to_vec();
             for &seen in channels {
@@ -194,12 +226,23 @@ impl Found {
         let mut numbers = numbers.into_iter();
         let mut next = || numbers.next().unwrap_or([f64::INFINITY; 2]);
         let lookups = std::array::from_fn(|_| next());
-        let mut of_channel = |_: &Seen| {
-            POWERS.map(|k| if exists(k) { next() } else { [f64::INFINITY, f64::INFINITY] })
+        let mut of_channel = |channel: usize| {
+            std::array::from_fn(|i| match &apart[i] {
+                Some(found) => found[channel],
+                None if is_finite(&i) => next(),
+                None => [f64::INFINITY; 2],
+            })
         };
-        let raw = channels.iter().map(&mut of_channel).collect();
+        let raw = (0..channels.len()).map(&mut of_channel).collect();
         let joint = is_joint.then(|| std::array::from_fn(|_| std::array::from_fn(|_| next()[0])));
         Some(Self { raw, lookups, joint })
+    }
+
+    /// The largest relative error of some moments.
+    fn blur(found: &[[f64; 2]]) -> f64 {
+        let blur = |&[value, error]: &[f64; 2]| if value > 0.0 { error / value } else { error };
+        let worst = |most: f64, blur: f64| if blur <= most { most } else { blur };
+        found.iter().map(blur).fold(0.0, worst)
     }
 
     fn lookups(&self) -> CountLaw {
@@ -209,7 +252,7 @@ impl Found {
     }
 }
 
-/// A moment of the fourth power or higher with a larger relative error is not known.
+/// A moment with a larger relative error is not known.
 const RESOLVED: f64 = 0.05;
 /// Moments in units of the truth that are smaller than this are rounding.
 const FAINT: f64 = 1e-9;

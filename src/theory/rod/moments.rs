@@ -16,10 +16,15 @@
 //! weight never mix, which is why the equations close.
 
 use super::grid::{Grid, Step, Walk, Worth};
+use crate::problems::Problem;
 use crate::problems::rod::Seen;
 
 /// The powers whose means are found: those of the moments, and the eighth for their tails.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
+/// The grid on which divergence is looked for is so much finer than the coarsest.
+const FINER: usize = 16;
+/// So near, relative, to a critical length a grid does not tell on which side of it a rod ends.
+const NEAR: f64 = 1e-3;
 /// More steps than this are not solved.
 const MOST_STEPS: usize = 200_000;
 /// What rounding may take from all that leaves a step: six operations make the layer, eight join it.
@@ -63,6 +68,39 @@ pub fn romberg(
     precision: Precision,
     numbers: &Numbers<'_>,
 ) -> Option<Vec<[f64; 2]>> {
+    let Limit { numbers: found, first, last } = limit(walk, precision, numbers)?;
+    let rounding = rounding(&walk.grid(first), last / first, numbers);
+    let rounding = rounding.unwrap_or_else(|| vec![f64::INFINITY; found.len()]);
+    let pairs = found.iter().zip(rounding);
+    Some(pairs.map(|([value, error], rounding)| [*value, error + rounding]).collect())
+}
+
+/// The same of positive numbers that are next to where they are infinite, like 1/y next to y = 0: there
+/// they are no series in the steps' lengths, but `1/(1 + x)` is.
+#[must_use]
+pub fn next_to_divergence(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> {
+    let inverse = |grid: &Grid| Some(numbers(grid)?.iter().map(|x| 1.0 / (1.0 + x)).collect());
+    let Limit { numbers: found, last, .. } = limit(walk, Precision::FULL, &inverse)?;
+    let rounding = rounding(&walk.grid(last), 1, numbers)?;
+    let known = |([inverse, error], rounding): (&[f64; 2], f64)| {
+        let rest = inverse - error;
+        let off = if rest > 0.0 { error / (inverse * rest) } else { f64::INFINITY };
+        [1.0 / inverse - 1.0, off + rounding]
+    };
+    Some(found.iter().zip(rounding).map(known).collect())
+}
+
+/// Where a sequence of grids leads.
+struct Limit {
+    /// The numbers, each with the difference of the last two estimates.
+    numbers: Vec<[f64; 2]>,
+    /// How much finer than the coarsest grid the first and the last were.
+    first: usize,
+    last: usize,
+}
+
+/// Romberg's scheme.
+fn limit(walk: &Walk<'_>, precision: Precision, numbers: &Numbers<'_>) -> Option<Limit> {
     let mut before: Vec<Vec<f64>> = Vec::new();
     let (mut first, mut finer) = (1, 1);
     for level in 0..=precision.levels {
@@ -88,18 +126,59 @@ pub fn romberg(
             let agree = best.iter().zip(last).all(near);
             let no_finer = level == precision.levels || 2 * finer * walk.coarsest() > MOST_STEPS;
             if agree || no_finer {
-                let rounding = rounding(&walk.grid(first), finer / first, numbers);
-                let rounding = rounding.unwrap_or_else(|| vec![f64::INFINITY; best.len()]);
-                let bounded = best.iter().zip(last).zip(rounding);
-                return Some(
-                    bounded.map(|(pair, rounding)| [*pair.0, error(pair) + rounding]).collect(),
-                );
+                let numbers = best.iter().zip(last).map(|pair| [*pair.0, error(pair)]).collect();
+                return Some(Limit { numbers, first, last: finer });
             }
         }
         before = row;
         finer *= 2;
     }
     None
+}
+
+/// Whether a moment exists.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Existence {
+    /// It does, far from where it diverges.
+    Finite,
+    /// It does, but next to where it diverges: grids must tell how well it is known.
+    Near,
+    /// It does not: the rod would have to end here, about.
+    Diverges(f64),
+    /// Within the error of its critical length.
+    Unknown,
+}
+
+impl Existence {
+    /// Of some moments.
+    #[must_use]
+    pub fn of<const N: usize>(walk: &Walk<'_>, powers: [i32; N]) -> [Self; N] {
+        let fine = walk.grid(FINER);
+        powers.map(|k| Self::on(walk, &fine, k))
+    }
+
+    fn on(walk: &Walk<'_>, fine: &Grid, k: i32) -> Self {
+        if fine.critical(k, NEAR).is_none() {
+            return Self::Finite;
+        }
+        if let Some(at) = fine.critical(k, -NEAR) {
+            return Self::Diverges(at);
+        }
+        let margin = |grid: &Grid| Some(vec![grid.margin(k)?]);
+        let Some(limit) = limit(walk, Precision::FULL, &margin) else { return Self::Unknown };
+        let [margin, difference] = limit.numbers[0];
+        // All that is added up is positive: roundings of ρ add up, no more.
+        let steps = (walk.coarsest() * limit.last) as f64;
+        let error = difference + OF_SCHEME * steps * (OF_PASSAGE + OF_COLLISION);
+        if margin > error {
+            Self::Near
+        } else if margin < -error {
+            let end = walk.rod.medium().span().to;
+            Self::Diverges(fine.critical(k, 0.0).unwrap_or(end))
+        } else {
+            Self::Unknown
+        }
+    }
 }
 
 /// What rounding may add to the numbers of Romberg's scheme, absolute, where the finest grid has steps

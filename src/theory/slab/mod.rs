@@ -32,7 +32,7 @@ use layer::{Layer, Slice};
 
 pub use cache::cached;
 pub use pieces::{Piece, Pieces};
-pub use walk::Walk;
+pub use walk::{Existence, Walk};
 
 /// What becomes of light.
 #[derive(Debug, Clone, Copy, PartialEq)]

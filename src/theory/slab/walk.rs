@@ -40,6 +40,25 @@ pub const CHANNELS: [&str; 2] = ["reflectance", "transmittance"];
 /// The powers whose means are found: those of the moments, and the eighth for their tails.
 const POWERS: [i32; 4] = [2, 3, 4, 8];
 
+/// So near, relative, to a critical depth theory does not tell on which side of it a slab is.
+const NEAR: f64 = 1e-3;
+
+/// Whether moments exist.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Existence {
+    /// They do.
+    Finite,
+    /// They do not.
+    Diverges,
+    /// The slab is next to where they diverge.
+    Unknown,
+}
+
+/// Whether what goes along a layer grows without end, by `Q_k` and `S_k`.
+fn is_endless([straight, scattered, _]: [f64; 3]) -> bool {
+    straight >= 1.0 && scattered > 0.0
+}
+
 /// A walk in a slab.
 #[derive(Debug, Clone)]
 pub struct Walk {
@@ -90,9 +109,9 @@ impl Walk {
         matches!(self.rule, Analog | Terminating | Weighted) && self.largest_ratio <= 1.0
     }
 
-    /// Whether the second moments are known to be infinite: no number of draws would settle.
+    /// Whether the second moments exist: where they do not, no number of draws would settle.
     #[must_use]
-    pub fn diverges(&self) -> bool {
+    pub fn second_moment(&self) -> Existence {
         // A weight that never grows stays at 1 at most.
         let grows = |ratio: f64| {
             let odds = self.odds(ratio);
@@ -102,35 +121,58 @@ impl Walk {
             Pieces::Exact(pieces) | Pieces::Graded([pieces, _]) => pieces,
         };
         let may_grow = pieces.iter().flat_map(|piece| &piece.ratios).any(|&[_, r]| grows(r));
-        may_grow && self.powers(2, &[self.incidence.light]).is_none()
+        if !may_grow || self.powers(2, &[self.incidence.light]).is_some() {
+            return Existence::Finite;
+        }
+        let moments = self.of_collisions(2);
+        let is_endless = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
+        let (pieces, resolution) = match &self.pieces {
+            Pieces::Exact(pieces) => (pieces, Resolution::COARSE),
+            Pieces::Graded([_, pieces]) => (pieces, Resolution::LAYERED),
+        };
+        if pieces.iter().flat_map(|piece| &piece.ratios).any(is_endless) {
+            return Existence::Diverges;
+        }
+        let thinner = |piece: &Piece| {
+            let slice = piece.slice(&moments);
+            Slice { flown: slice.flown * (1.0 - NEAR), ..slice }
+        };
+        let thinner: Vec<Slice> = pieces.iter().map(thinner).collect();
+        let lights = [self.incidence.light];
+        match energies(&self.incidence.phase, &lights, &thinner, resolution) {
+            Some(_) => Existence::Unknown,
+            None => Existence::Diverges,
+        }
+    }
+
+    /// `Q_k`, `S_k` and no score, by r.
+    fn of_collisions(&self, k: i32) -> impl Fn(f64) -> [f64; 3] + '_ {
+        move |ratio| {
+            let means = [1.0 - ratio, self.albedo * ratio];
+            let [straight, scattered] = self.odds(ratio).moments(means, k);
+            [straight, scattered, 0.0]
+        }
     }
 
     /// `E[X_R^k]` and `E[X_T^k]` in each light; `None` where they are infinite.
     fn powers(&self, k: i32, lights: &[Light]) -> Option<Vec<[Known; 2]>> {
         let phase = &self.incidence.phase;
-        let moments = |ratio: f64| {
-            let means = [1.0 - ratio, self.albedo * ratio];
-            let [straight, scattered] = self.odds(ratio).moments(means, k);
-            [straight, scattered, 0.0]
-        };
+        let moments = self.of_collisions(k);
         let layers = |pieces: &[Piece]| -> Vec<Slice> {
-            pieces.iter().map(|piece| piece.slice(moments)).collect()
+            pieces.iter().map(|piece| piece.slice(&moments)).collect()
         };
         let exact = |slices: &[Slice]| {
             let answers = solve_all(phase, lights, slices, Resolution::COARSE)?;
             Some(answers.iter().map(|answer| [answer.reflected, answer.transmitted]).collect())
         };
         if self.is_tracking() {
-            return exact(&[Piece::of(self.depth, 1.0).slice(moments)]);
+            return exact(&[Piece::of(self.depth, 1.0).slice(&moments)]);
         }
         match &self.pieces {
             Pieces::Exact(pieces) => exact(&layers(pieces)),
             Pieces::Graded(cuts) => {
                 // A mean over a layer would hide where light along it grows without end.
-                let grows = |&[_, ratio]: &[f64; 2]| {
-                    let [straight, scattered, _] = moments(ratio);
-                    straight >= 1.0 && scattered > 0.0
-                };
+                let grows = |[_, ratio]: &[f64; 2]| is_endless(moments(*ratio));
                 if cuts[1].iter().flat_map(|piece| &piece.ratios).any(grows) {
                     return None;
                 }

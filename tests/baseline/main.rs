@@ -1,5 +1,7 @@
 //! Stored runs: what is flagged against them, what is not, and what adds up over runs.
 
+mod left_out;
+
 use std::path::Path;
 use std::process::Output;
 

@@ -1,0 +1,109 @@
+//! Which z may be read as those of a normal law.
+//!
+//! ```text
+//! mean of n terms y:  n ≥ 100 E[y⁴]/E[y²]²,  n ≥ 10 n(2)
+//! variance:           y = (X − E[X])², of which E[X⁸]/E[X⁴]² tells;  √((κ − 1)/n) ≤ 0.1,  (κ − 1) n ≥ 100
+//! ```
+//!
+//! n(2) is the rare-event size: with fewer draws the events that make the variance are not seen. Where
+//! theory does not know a tail it counts as too heavy.
+
+use super::record::Row;
+use crate::theory::Prediction;
+
+/// The largest share of n that the ratio of moments may be.
+const HEAVY: f64 = 0.01;
+/// Draws in units of the rare-event size, from which on the variance's events are seen.
+const SEEN: f64 = 10.0;
+/// The largest relative standard error of a variance.
+const BLUNT: f64 = 0.1;
+/// The least `(κ − 1) n` of a variance that is left to chance.
+const LEAST: f64 = 100.0;
+
+/// How heavy the tails of draws are; `None` where nobody knows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tails {
+    /// κ.
+    pub kurtosis: Option<f64>,
+    /// `E[X⁸]/E[X⁴]²`.
+    pub eighth_moment_ratio: Option<f64>,
+    /// n(2).
+    pub rare_event_size: Option<f64>,
+}
+
+/// The fewest terms whose mean is near normal, by `E[y⁴]/E[y²]²` and their rare-event size.
+#[must_use]
+pub fn needed(heaviness: f64, rare_event_size: f64) -> f64 {
+    (heaviness / HEAVY).max(SEEN * rare_event_size)
+}
+
+/// The relative standard error of a sample variance of n draws.
+#[must_use]
+pub fn variance_error(kurtosis: f64, n: f64) -> f64 {
+    ((kurtosis - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt()
+}
+
+impl Tails {
+    /// Whether the mean of n draws is near normal.
+    #[must_use]
+    pub fn has_normal_mean(&self, n: f64) -> bool {
+        let known = self.kurtosis.zip(self.rare_event_size);
+        known.is_some_and(|(kurtosis, rare)| n >= needed(kurtosis, rare))
+    }
+
+    /// Whether the sample variance of n draws is near normal.
+    #[must_use]
+    pub fn has_normal_variance(&self, n: f64) -> bool {
+        let known = self.eighth_moment_ratio.zip(self.rare_event_size);
+        let is_near = known.is_some_and(|(eighth, rare)| n >= needed(eighth, rare));
+        let is_sharp = self.kurtosis.is_some_and(|kurtosis| {
+            variance_error(kurtosis, n) <= BLUNT && (kurtosis - 1.0) * n >= LEAST
+        });
+        is_near && is_sharp
+    }
+}
+
+/// The columns of z in a row that are not to be read as normal; the lookups are of so many draws.
+#[must_use]
+pub fn marks(row: &Row, prediction: &Prediction, looked: u64) -> Vec<&'static str> {
+    let n = row.draws.unwrap_or(0) as f64;
+    let tails = Tails {
+        kurtosis: row.predicted_kurtosis,
+        eighth_moment_ratio: row.eighth_moment_ratio,
+        rare_event_size: row.rare_event_size,
+    };
+    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
+    let is_normal = of_lookups.is_some_and(|needed| looked as f64 >= needed);
+    let all = [
+        ("z_mean", row.z_mean, tails.has_normal_mean(n)),
+        ("z_variance", row.z_variance, tails.has_normal_variance(n)),
+        ("z_lookups", row.z_lookups, is_normal),
+    ];
+    all.into_iter().filter(|(_, z, is)| z.is_some() && !is).map(|(name, ..)| name).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_condition_counts() {
+        let tails = |kurtosis: f64, eighth: f64, rare: f64| Tails {
+            kurtosis: Some(kurtosis),
+            eighth_moment_ratio: Some(eighth),
+            rare_event_size: Some(rare),
+        };
+        let n = 1e4;
+        let both = |tails: Tails| [tails.has_normal_mean(n), tails.has_normal_variance(n)];
+        assert_eq!(both(tails(3.0, 105.0 / 9.0, 3.0)), [true, true], "a normal law");
+        assert_eq!(both(tails(3.0, 101.0, 3.0)), [true, false]);
+        assert_eq!(both(tails(99.0, 99.0, 3.0)), [true, true]);
+        // (κ − 1)/n = 1.02e-2: a relative standard error above a tenth.
+        assert_eq!(both(tails(103.0, 99.0, 3.0)), [false, false]);
+        assert_eq!(both(tails(3.0, 11.0, 1001.0)), [false, false]);
+        assert_eq!(both(tails(1.009, 11.0, 1.0)), [true, false], "two values, nearly");
+        let unknown = Tails { eighth_moment_ratio: None, ..tails(3.0, 1.0, 1.0) };
+        assert_eq!(both(unknown), [true, false]);
+        assert_eq!(both(Tails { kurtosis: None, ..unknown }), [false, false]);
+    }
+}
