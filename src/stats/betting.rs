@@ -123,7 +123,7 @@ impl Bets {
     #[must_use]
     pub fn gains(&self, y: &[f64]) -> Gains {
         let mut sums = vec![0.0; self.factors.len()];
-        pack::on(Level::new(), Sums { factors: &self.factors, y, sums: &mut sums });
+        pack::on(Level::new(), Sums { factors: &self.factors, y, totals: &mut sums });
         let below = sums.split_off(self.pass[1]);
         let above = sums.split_off(self.pass[0]);
         Gains { against: sums, pass: [above, below] }
@@ -134,7 +134,7 @@ impl Bets {
 struct Sums<'a> {
     factors: &'a [Factor],
     y: &'a [f64],
-    sums: &'a mut [f64],
+    totals: &'a mut [f64],
 }
 
 impl Task for Sums<'_> {
@@ -144,7 +144,7 @@ impl Task for Sums<'_> {
     fn run<S: Simd>(self, simd: S) {
         for chunk in self.y.chunks(ROWS * WIDTH) {
             let (rows, rest) = chunk.as_chunks::<WIDTH>();
-            for (sum, factor) in self.sums.iter_mut().zip(self.factors) {
+            for (sum, factor) in self.totals.iter_mut().zip(self.factors) {
                 let (slope, offset) =
                     (f64x8::splat(simd, factor.slope), f64x8::splat(simd, factor.offset));
                 let mut product = f64x8::splat(simd, 1.0);
@@ -173,8 +173,8 @@ mod tests {
     use crate::rng::{Address, unit};
     use crate::stats::capital::Capital;
 
-    fn aim(tolerance: f64) -> Option<Aim> {
-        Some(Aim { tolerance, variance: 0.0675 })
+    fn aim(tolerance: f64) -> Aim {
+        Aim { tolerance, variance: 0.0675 }
     }
 
     fn uniforms(seed: u64, n: usize) -> Vec<f64> {
@@ -184,7 +184,7 @@ mod tests {
 
     #[test]
     fn gains_are_sums_of_logarithms() {
-        let bets = Bets::new([-1e-9, 1.0], aim(1e-10), 1e-12);
+        let bets = Bets::new([-1e-9, 1.0], Some(aim(1e-10)), 1e-12);
         // Every fourth draw is an event that multiplies the capital by a billion.
         let y: Vec<f64> =
             uniforms(1, 1003).iter().map(|u| u.mul_add(4.0, -3.0).max(-1e-9)).collect();
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn every_factor_is_positive_and_fair_at_its_mean() {
         for (range, floor) in [([-0.2, 0.8], 0.0), ([-1.0, 1e6], 1e-3), ([-2.0, 0.5], 0.1)] {
-            let bets = Bets::new(range, aim(0.15), floor);
+            let bets = Bets::new(range, Some(aim(0.15)), floor);
             assert_eq!(bets.factors.len(), 28);
             for factor in &bets.factors {
                 for y in range {
@@ -215,14 +215,14 @@ mod tests {
 
     #[test]
     fn nothing_is_staked_towards_an_infinite_end() {
-        let gains = Bets::new([-1.0, f64::INFINITY], aim(0.1), 0.0).gains(&[0.5; 100]);
+        let gains = Bets::new([-1.0, f64::INFINITY], Some(aim(0.1)), 0.0).gains(&[0.5; 100]);
         assert_eq!((gains.against.len(), gains.pass[0].len(), gains.pass[1].len()), (8, 0, 6));
     }
 
     #[test]
     fn a_correct_mean_passes_and_a_biased_one_fails() {
         for (bias, is_failed) in [(0.0, false), (0.03, true), (-0.03, true)] {
-            let bets = Bets::new([-0.5, 0.5], aim(0.02), 0.0);
+            let bets = Bets::new([-0.5, 0.5], Some(aim(0.02)), 0.0);
             let mut capital = Capital::shared(Bets::shares([-0.5, 0.5]));
             for seed in 0..8 {
                 let y: Vec<f64> =

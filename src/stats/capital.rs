@@ -37,7 +37,7 @@ pub struct Capital {
 /// The capital of one bet that is spread over later beginnings.
 #[derive(Debug, Clone, Copy)]
 struct Later {
-    /// ln Σ_s w_s e^L.
+    /// `ln Σ_s w_s e^L`.
     ln_sum: f64,
     /// The largest term of it, and its s.
     ln_best: f64,

@@ -70,8 +70,8 @@ pub struct Dependence {
 impl Signs {
     #[inline(always)]
     fn add(&mut self, a: f64, b: f64) {
-        self.positive += u64::from((a > 0.0) & (b > 0.0)) + u64::from((a < 0.0) & (b < 0.0));
-        self.negative += u64::from((a > 0.0) & (b < 0.0)) + u64::from((a < 0.0) & (b > 0.0));
+        self.positive += u64::from(a > 0.0 && b > 0.0) + u64::from(a < 0.0 && b < 0.0);
+        self.negative += u64::from(a > 0.0 && b < 0.0) + u64::from(a < 0.0 && b > 0.0);
         self.products += a * b;
         self.squares += a * a + b * b;
     }
@@ -219,6 +219,8 @@ impl Independence {
 
 #[cfg(test)]
 mod tests {
+    use rand::RngExt;
+
     use super::*;
     use crate::rng::{Address, exponential, unit};
 
@@ -281,7 +283,7 @@ mod tests {
             let mut shuffled = Vec::new();
             for _ in 0..n / strata {
                 for k in (1..order.len()).rev() {
-                    order.swap(k, (unit(&mut rng) * (k + 1) as f64) as usize);
+                    order.swap(k, rng.random_range(0..=k));
                 }
                 shuffled.extend(order.iter().map(|&k| f64::from(k) + unit(&mut rng)));
             }

@@ -65,7 +65,7 @@ fn ends(bytes: &[u8]) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use std::io::{Cursor, Read};
+    use std::io::Cursor;
 
     use super::super::{Draws, Format, all};
 

@@ -176,8 +176,12 @@ impl<'t> Reading<'t> {
             return;
         }
         let [values, counts] = &mut self.averages;
-        block.iter().for_each(|&x| values.add(x));
-        lookups.iter().for_each(|&m| counts.add(m));
+        for &x in block {
+            values.add(x);
+        }
+        for &m in lookups {
+            counts.add(m);
+        }
         while self.averages[0].ready.len() >= self.block {
             self.judge_averages(self.block);
         }

@@ -11,6 +11,7 @@
 
 use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
 use super::reading::{Fault, Reading, Refuted};
+use super::scalar::Scalar;
 use crate::harness::record::Verdict;
 
 /// The verdict of the whole, and what it promises.
@@ -45,7 +46,7 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
     let (Some(at), Some(variance)) = (place("mean"), place("variance")) else { return };
     let found = &judgement.findings[variance];
     let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
-    let is_off = reading.mean.as_ref().is_some_and(|mean| mean.is_off_by_itself());
+    let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
     if found.verdict != Verdict::Fail || !is_larger || is_off {
         return;
     }
