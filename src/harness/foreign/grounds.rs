@@ -27,10 +27,8 @@ const PILOT: f64 = 0.1;
 pub(super) const BEARERS: f64 = 1000.0;
 /// n/κ for the kurtosis that is then assumed.
 const ASSUMED: f64 = 200.0;
-/// The largest relative standard error of a variance that stakes and ε are chosen by.
-pub(super) const RELIABLE: f64 = 0.1;
-/// The fewest draws that say anything of a variance that stakes and ε are chosen by.
-pub(super) const FEW: u64 = 64;
+/// How many draws must carry a variance that stakes and ε are chosen by.
+pub(super) const RELIABLE: f64 = 100.0;
 /// The widest t.
 const WIDEST: f64 = 0.5;
 
@@ -147,7 +145,7 @@ impl OfRange {
 
     /// V as well as the draws show it, for the choice of stakes.
     pub(super) fn variance(&self, past: &Powers) -> Option<f64> {
-        let is_known = past.draws() >= FEW && past.square_error() <= RELIABLE;
+        let is_known = past.bearers() >= RELIABLE;
         let shown = if is_known { past.mean_square() } else { f64::INFINITY };
         Some(shown.min(self.widest())).filter(|v| v.is_finite() && *v > 0.0)
     }

@@ -14,7 +14,7 @@ use crate::stats::{Powers, ties};
 
 /// The share of α that the drift has, a question of its own.
 pub(super) const DRIFT: f64 = 0.2;
-/// The fewest averages that are judged at a time.
+/// The fewest draws that are judged at a time.
 const FEW: usize = 64;
 /// So many different values among the first draws are no small set.
 const VARIED: usize = 100;
@@ -78,7 +78,7 @@ pub(super) struct Reading<'t> {
     /// How many draws or averages were judged.
     judged: u64,
     averages: [Averages; 2],
-    /// How many averages are judged at a time.
+    /// How many draws or averages are judged at a time.
     block: usize,
     pub independence: Independence,
     pub replays: Replays,
@@ -98,9 +98,12 @@ impl<'t> Reading<'t> {
         let ln_fail = (count / (share * trial.wanted.alpha)).ln();
         let levels = Levels { ln_fail, ln_pass: -MISS.ln() };
         let length = trial.length.map(|length| length / trial.wanted.batch);
-        // Few averages make small blocks, so that later ones can be judged by earlier ones.
+        // Few draws make small blocks, so that later ones can be judged by earlier ones.
         let block = length.map_or(BUFFER, |n| usize::try_from(n / 16).unwrap_or(BUFFER));
         let block = block.next_power_of_two().clamp(FEW, BUFFER);
+        // A known variance is judged in the blocks of a run.
+        let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
+        let block = if is_known { BUFFER } else { block };
         let planned = planned(&asks, &trial.wanted, length);
         let scalar = |check: &str| {
             let ask = asks.iter().find(|ask| ask.check == check);
@@ -172,7 +175,11 @@ impl<'t> Reading<'t> {
         self.lookup_sum.add(lookups.iter().sum());
         self.replays.absorb(block);
         if self.trial.wanted.batch == 1 {
-            self.judge(block, lookups);
+            for (at, part) in block.chunks(self.block).enumerate() {
+                let first = (at * self.block).min(lookups.len());
+                let last = (first + part.len()).min(lookups.len());
+                self.judge(part, &lookups[first..last]);
+            }
             return;
         }
         let [values, counts] = &mut self.averages;

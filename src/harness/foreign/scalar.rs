@@ -9,7 +9,7 @@
 //! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
 //! scalar that has passed may still fail on what comes later.
 
-use super::grounds::{BEARERS, FEW, OfRange, OfVariance, RELIABLE, Spread};
+use super::grounds::{BEARERS, OfRange, OfVariance, RELIABLE, Spread};
 use super::judgement::ScalarFinding;
 use crate::harness::plan::BLOCK;
 use crate::harness::record::{GateFinding, Verdict};
@@ -132,7 +132,7 @@ impl Scalar {
     /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range.
     fn start_by_range(&mut self) {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
-        let is_reliable = self.past.draws() >= FEW && self.past.square_error() <= RELIABLE;
+        let is_reliable = self.past.bearers() >= RELIABLE;
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
         if self.past.draws() > 0 && variance.is_finite() {
@@ -271,7 +271,10 @@ impl Scalar {
     /// What was found.
     pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
-        let gate = self.design.map(|design| GateFinding {
+        // Bold bets may decide before ε is chosen.
+        let decided = (self.decision != Decision::Open)
+            .then(|| Design::new(self.past.mean_square(), self.ask.cap, self.ask.floor));
+        let gate = self.design.or(decided).map(|design| GateFinding {
             tolerance: design.tolerance,
             variance: design.variance,
             mean: self.seen.0,
@@ -310,6 +313,9 @@ impl Scalar {
                  block of draws, {:.0} of them or more, and others after it; there are {n}",
                 80.0 * kurtosis
             ),
+            None => {
+                format!("the {what} is undecided after {n} draws, too few to choose a tolerance by")
+            }
             _ => format!(
                 "the spread of the {what} is not known: {bearers} of {n} draws carry it, and {BEARERS} \
                  of more than {BLOCK} are needed; give {cure}"
@@ -322,28 +328,28 @@ impl Scalar {
         let weak = if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
         let ground = self.of_variance.as_ref();
         let relies_on_shown = ground.is_some_and(|ground| ground.is_contradicted(&self.past));
-        let Some(design) = self.design.filter(|_| self.is_founded()) else {
+        let is_founded = self.is_founded();
+        let (off, n) = self.seen;
+        if self.decision == Decision::Failed && is_founded {
+            // Where V is only bounded, the draws' own spread says more.
+            let known = match self.ask.spread {
+                Some(Spread::Known(variance)) => variance,
+                _ => self.past.variance(),
+            };
+            let z = off / (known / n as f64).sqrt();
+            let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
+            let z =
+                if z.is_finite() { format!(", {z:+.1} standard errors") } else { String::new() };
+            let reason = format!(
+                "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
+            );
+            return (Verdict::Fail, reason);
+        }
+        let Some(design) = self.design.filter(|_| is_founded) else {
             let weak = if self.ask.must_pass { Verdict::Inconclusive } else { weak };
             return (weak, self.unknown());
         };
-        let (off, n) = self.seen;
         match self.decision {
-            Decision::Failed => {
-                // Where V is only bounded by a range, the draws' own spread says more.
-                let known = matches!(self.ask.spread, Some(Spread::Known(_)));
-                let spread = if known { design.variance } else { self.past.variance() };
-                let z = off / (spread / n as f64).sqrt();
-                let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
-                let z = if z.is_finite() {
-                    format!(", {z:+.1} standard errors")
-                } else {
-                    String::new()
-                };
-                let reason = format!(
-                    "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
-                );
-                (Verdict::Fail, reason)
-            }
             _ if self.is_doubted && !relies_on_shown => {
                 let reason = format!(
                     "the {what} looks off by {:+.2e}, but no number of draws can show that without \
@@ -354,7 +360,7 @@ impl Scalar {
             }
             Decision::Passed if relies_on_shown && !self.ask.is_hard => (weak, self.unknown()),
             Decision::Passed => (Verdict::Pass, String::new()),
-            Decision::Open => {
+            Decision::Open | Decision::Failed => {
                 let planned = gate::draws_of(design.variance, design.tolerance);
                 let longest = planned * gate::HORIZON / gate::PLANNED;
                 let needed = if planned > n as f64 { planned } else { longest };

@@ -189,10 +189,11 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
                      their kurtosis is {most:.0} at most (they show {shown}); rare events that were not \
                      drawn may break that: {cure}; the variance itself is not tested"
                 ),
-                _ => format!(
-                    "variance estimated: a {draws} mean that is too small is not refuted, since rare \
-                     events that were not drawn may carry it: {cure}; the variance itself is not tested"
+                _ if claim.range.is_some() => format!(
+                    "variance estimated: {draws} whose mean seems off towards the infinite end are not \
+                     refuted, since rare events that were not drawn may carry it: {cure}"
                 ),
+                _ => format!("nothing: the draws do not show how they spread; {cure}"),
             };
         }
         _ => correct,
