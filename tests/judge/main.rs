@@ -196,7 +196,8 @@ fn an_estimated_variance_waits_for_rare_events() {
     let missing = ["is not known", "--variance, --range LOW,HIGH or --kurtosis"];
     place.expect(3, "--truth 0.2 x.f64", &missing);
     place.expect(3, "--truth 1 short.f64", &missing);
-    place.expect(3, "--truth 1 --kurtosis 1.8 short.f64", &["others after it; there are 10000"]);
+    place.expect(0, "--truth 1 --kurtosis 1.8 short.f64", &["a kurtosis of 1.8 at most"]);
+    place.expect(3, "--truth 1 --kurtosis 180 short.f64", &["others after it; there are 10000"]);
 }
 
 #[test]

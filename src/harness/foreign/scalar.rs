@@ -338,8 +338,11 @@ impl Scalar {
             };
             let z = off / (known / n as f64).sqrt();
             let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
-            let z =
-                if z.is_finite() { format!(", {z:+.1} standard errors") } else { String::new() };
+            let z = if z.is_finite() && self.past.kurtosis().is_finite() {
+                format!(", {z:+.1} standard errors")
+            } else {
+                String::new()
+            };
             let reason = format!(
                 "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
             );
