@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod riccati;
+mod settings;
 
 use common::{case, differs, none, options};
 use serde_json::Value;
@@ -358,33 +359,6 @@ fn a_rule_is_refused_where_it_has_no_chances() {
     assert!(refused.reason.contains("2/(a + 1)"), "{}", refused.reason);
     let refused = &planned(&rod, "analog")[0];
     assert!(refused.reason.contains("σ_t ≤ σ̂"), "{}", refused.reason);
-}
-
-#[test]
-fn every_setting_is_checked() {
-    let rod = |line: &str| {
-        let text = format!(
-            "title = \"a rod\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\n{line}
-            sampling.constant.value = 2\nestimators = [{{ analog = {{}} }}]"
-        );
-        common::mistakes(&text).map(|error| error.render(false))
-    };
-    assert_eq!(rod("albedo = 0.5\nforward = 0.2\nabsorbed = true\norders = 2"), None);
-    for (line, expected) in [
-        ("", "`albedo` is missing"),
-        ("albedo = 1.5", "`albedo` is 1.5"),
-        ("albedo = 0.5\nforward = -1", "`forward` is -1"),
-        ("albedo = 0.5\norders = 7", "`orders` is 7"),
-        ("albedo = 0.5\nflux = 5", "`flux` is 5"),
-        ("albedo = 0.5\nabsorbed = 1", "`absorbed` is 1"),
-        ("albedo = 0.5\ncontrol.mean = {}", "no estimator of this case takes a control"),
-        ("albedo = 0.5\nsweep.control.values = [1]", "no estimator of this case takes a control"),
-        ("albedo.piecewise-linear = { knots = [0, 1], values = [0.5, 1.1] }", "exceeds 1"),
-        ("albedo.gaussian = {}", "`gaussian` is not known"),
-    ] {
-        let found = rod(line).unwrap_or_else(|| panic!("{line} is accepted"));
-        assert!(found.contains(expected), "{line}: {found}");
-    }
 }
 
 /// An answer that theory does not know is no answer that draws could agree with.
