@@ -33,7 +33,7 @@ pub struct Arguments {
     #[arg(required_unless_present = "case")]
     truth: Option<f64>,
     /// The variance of one draw, or of one average with --batch; without it, it is not tested
-    #[arg(long, value_name = "V", allow_hyphen_values = true, group = "claimed")]
+    #[arg(long, value_name = "V", allow_hyphen_values = true)]
     variance: Option<f64>,
     /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it
     #[arg(long, value_name = "K", allow_hyphen_values = true)]
@@ -42,7 +42,7 @@ pub struct Arguments {
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
     range: Option<[f64; 2]>,
     /// Take truth, variance, kurtosis and lookups from theory: a case file or a built-in case
-    #[arg(long, value_name = "CASE", requires = "estimator", group = "claimed")]
+    #[arg(long, value_name = "CASE", requires = "estimator")]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
     #[arg(long, value_name = "NAME", requires = "case")]
@@ -69,7 +69,7 @@ pub struct Arguments {
     #[arg(long, value_name = "E", allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// The same for the variance, relative to it [default: what the draws can see, at most 0.2]
-    #[arg(long, value_name = "E", allow_hyphen_values = true, requires = "claimed")]
+    #[arg(long, value_name = "E", allow_hyphen_values = true)]
     variance_tolerance: Option<f64>,
     /// Chance that correct draws fail, all files together
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = selection::alpha)]
@@ -88,7 +88,7 @@ pub struct Arguments {
     #[arg(long, value_name = "M", requires = "lookups", conflicts_with = "case")]
     #[arg(allow_hyphen_values = true)]
     expected_lookups: Option<f64>,
-    /// Its variance from draw to draw
+    /// The variance of the number of lookups of one draw, or of one average with --batch
     #[arg(long, value_name = "V", requires = "expected_lookups", allow_hyphen_values = true)]
     lookups_variance: Option<f64>,
     /// How the draws are written [default: by the file's ending]
@@ -168,16 +168,21 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     for file in &arguments.files {
         match arguments.judge(file, claim, wanted) {
             Ok(judgement) => judged.push((name(file), judgement)),
-            Err(error) => errors.push(error),
+            Err(error) => errors.push((name(file), error)),
         }
     }
     show(&judged, arguments, console)?;
     if let Some(path) = &arguments.junit {
-        let text = judgement_junit::text(&judged, Inconclusive::in_junit(arguments.inconclusive))?;
+        let unread: Vec<(String, String)> =
+            errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
+        let inconclusive = Inconclusive::in_junit(arguments.inconclusive);
+        let text = judgement_junit::text(&judged, &unread, arguments.alpha, inconclusive)?;
         files::replace(path, text.as_bytes())
             .with_context(|| format!("cannot write {} (--junit)", path.display()))?;
     }
-    errors.iter().for_each(output::complain);
+    for (_, error) in &errors {
+        output::complain(error);
+    }
     if !errors.is_empty() {
         return Ok(USAGE);
     }
@@ -211,15 +216,20 @@ impl Arguments {
     /// Reads a file and judges it.
     fn judge(&self, file: &Path, claim: Claim, wanted: Wanted) -> anyhow::Result<Judgement> {
         let format = self.input_format(file)?;
-        if is_pipe(file) {
-            let mut draws = Draws::from_reader(std::io::stdin(), "stdin", format)?;
+        if !file.is_file() && (is_pipe(file) || file.exists()) {
+            // A pipe is opened once, and need not end.
+            let mut draws = if is_pipe(file) {
+                Draws::from_reader(std::io::stdin(), "stdin", format)?
+            } else {
+                Draws::open(file, format)?
+            };
             let length = draws.known_length();
             let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
             let wanted = Wanted { most, ..wanted };
             return Ok(Trial::new(claim, wanted, length)?.judge(&mut draws)?);
         }
         let length = match (Draws::open(file, format.clone())?.known_length(), &format) {
-            (None, Format::Csv { .. }) if self.tolerance.is_none() && file.is_file() => {
+            (None, Format::Csv { .. }) if self.tolerance.is_none() => {
                 Some(foreign::count(file, format.clone())?)
             }
             (length, _) => length,
@@ -290,7 +300,12 @@ impl Arguments {
             );
         }
         if self.lookups.is_some() && (theory.lookups.is_none() || !takes_all) {
-            anyhow::bail!("of the lookups --case says nothing here; leave --lookups out");
+            let why = match (takes_all, self.batch) {
+                (true, _) => "theory has no number of lookups for this estimator",
+                (false, 1) => "--mean-only takes the truth alone",
+                (false, _) => "--batch takes the truth alone",
+            };
+            anyhow::bail!("{why}; leave --lookups out");
         }
         let lookups = theory.lookups.filter(|_| self.lookups.is_some());
         let (variance, kurtosis) = (self.variance, self.kurtosis);

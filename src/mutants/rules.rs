@@ -33,7 +33,7 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         product("sign-lost", "the survivor of a collision with r > 1 keeps its sign", TERMINATING, "mean", Single::Terminating, Changed(unsigned)),
         product("sign-lost-non-terminating", "weight D for −D where r > 1", NON_TERMINATING, "mean", FULL, Changed(unsigned)),
         product("inverse-chance-missing", "the survivor's weight is not divided by q", NON_TERMINATING, "mean", FULL, Changed(undivided)),
-        product("inverse-chance-twice", "the survivor's weight is divided by q twice", NON_TERMINATING, "mean", FULL, Changed(divided_twice)),
+        product("inverse-chance-twice", "the survivor's weight is divided by q twice", NON_TERMINATING, "variance", FULL, Changed(divided_twice)),
         product("albedo-in-weight", "the transmitted weight is multiplied by the albedo", NON_TERMINATING, "mean", FULL, Changed(albedo)),
         product("adaptive-literal", "D = a r + |1 − r| without the absolute value of r, as the pseudo-code has it", ADAPTIVE, "mean", Single::Adaptive { albedo: ALBEDO }, Changed(literal)),
         product("zero-over-zero", "q = 0/0 at r = 1 and albedo 0: no comparison ends the walk", RATIO_ONE, "lookups", Single::NonTerminating { albedo: 0.0 }, Changed(zero_over_zero)),

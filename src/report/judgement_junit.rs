@@ -1,6 +1,7 @@
-//! Verdicts on foreign draws as JUnit XML: one test suite, a test for each file and question.
+//! Verdicts on foreign draws as JUnit XML: one test suite, a test for each file.
 //!
-//! A fail is a `failure`; what is inconclusive is an `error`, a `failure` or `skipped`, as asked for.
+//! A fail is a `failure`; what is inconclusive is an `error`, a `failure` or `skipped`, as asked for. A file
+//! that could not be read is an `error`.
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -10,20 +11,30 @@ use crate::harness::foreign::judgement::Judgement;
 use crate::harness::record::Verdict;
 use crate::report::number::exact;
 
-/// The verdicts on files of these names.
+/// The verdicts on files of these names, at the level `alpha` together; `unread` are files that could not be
+/// read, each with the reason.
 ///
 /// # Errors
 ///
 /// Where the encoder gives up.
 pub fn text(
     judgements: &[(String, Judgement)],
+    unread: &[(String, String)],
+    alpha: f64,
     inconclusive: Inconclusive,
 ) -> Result<String, ReportError> {
     let mut report = Report::new("trueflight");
     let mut suite = TestSuite::new("judge");
+    suite.add_property(("alpha", &*exact(alpha)));
     for (name, judgement) in judgements {
-        suite.add_property(("alpha", &*exact(judgement.alpha)));
         suite.add_test_case(test(name, judgement, inconclusive));
+    }
+    for (name, reason) in unread {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
+        status.set_type("unreadable").set_message(&**reason);
+        let mut test = TestCase::new(&**name, status);
+        test.set_classname("judge");
+        suite.add_test_case(test);
     }
     report.add_test_suite(suite);
     // The schema has no count of skipped tests at the root; the suite has it.

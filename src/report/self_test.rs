@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::harness::self_test::calibration::Rate;
 use crate::harness::self_test::streams::ALPHA;
-use crate::harness::self_test::{Calibration, Caught, Fared, SelfTest};
+use crate::harness::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
 use crate::report::rows::table as csv;
@@ -72,31 +72,31 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     text.push('\n');
 }
 
-fn streams(text: &mut String, pen: Pen, streams: &[Fared]) {
-    let failed: u64 = streams.iter().map(|fared| fared.failed).sum();
-    let judged: u64 = streams.iter().map(|fared| fared.streams).sum();
+fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
+    let failed: u64 = streams.iter().map(|verdicts| verdicts.failed).sum();
+    let judged: u64 = streams.iter().map(|verdicts| verdicts.streams).sum();
     let title = format!(
         "foreign draws: {failed} of {judged} verdicts on correct streams of hard laws fail"
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let column = |head, right, field: fn(&Fared) -> String| Column {
+    let column = |head, right, field: fn(&StreamVerdicts) -> String| Column {
         head,
         right,
         rank: 0,
-        fields: streams.iter().map(|fared| Field::plain(field(fared))).collect(),
+        fields: streams.iter().map(|verdicts| Field::plain(field(verdicts))).collect(),
     };
-    let kept = streams.iter().map(|fared| {
+    let kept = streams.iter().map(|verdicts| {
         let (word, paint) =
-            if fared.is_kept() { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
+            if verdicts.is_kept() { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
         Field { text: word.to_owned(), paint }
     });
     let mut grid = Grid {
         columns: vec![
-            column("law", false, |fared| fared.law.clone()),
-            column("known", false, |fared| fared.known.clone()),
-            column("pass", true, |fared| fared.passed.to_string()),
-            column("fail", true, |fared| fared.failed.to_string()),
-            column("inconclusive", true, |fared| fared.inconclusive.to_string()),
+            column("law", false, |verdicts| verdicts.law.clone()),
+            column("known", false, |verdicts| verdicts.known.clone()),
+            column("pass", true, |verdicts| verdicts.passed.to_string()),
+            column("fail", true, |verdicts| verdicts.failed.to_string()),
+            column("inconclusive", true, |verdicts| verdicts.inconclusive.to_string()),
         ],
     };
     grid.push("", kept.collect());
@@ -173,11 +173,11 @@ pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
     });
     let header = ["what", "count", "trials", "low_99", "high_99", "promise", "kept"];
     let calibration = csv("the calibration", header, rates)?;
-    let rows = found.streams.iter().map(|fared| {
-        let counts = [fared.streams, fared.passed, fared.failed, fared.inconclusive];
-        let mut row = vec![fared.law.clone(), fared.known.clone()];
+    let rows = found.streams.iter().map(|verdicts| {
+        let counts = [verdicts.streams, verdicts.passed, verdicts.failed, verdicts.inconclusive];
+        let mut row = vec![verdicts.law.clone(), verdicts.known.clone()];
         row.extend(counts.map(|count| count.to_string()));
-        row.extend([exact(ALPHA), fared.is_kept().to_string()]);
+        row.extend([exact(ALPHA), verdicts.is_kept().to_string()]);
         row
     });
     let header = ["law", "known", "streams", "pass", "fail", "inconclusive", "promise", "kept"];

@@ -209,8 +209,11 @@ impl Independence {
     #[must_use]
     pub fn free_batch(&self, ln_limit: f64) -> Option<u64> {
         let limit = ln_limit + ((LAGS + SCALES) as f64).ln();
-        let last = self.scales.iter().rposition(|signs| signs.ln_e() >= limit);
-        let scale = last.map_or(0, |last| last + 1);
+        let is_refuted = |signs: &Signs| signs.ln_e() >= limit;
+        let last = self.scales.iter().rposition(is_refuted).map_or(0, |last| last + 1);
+        // Averages hide no correlation over a lag that is longer than they are.
+        let lag = self.lags.iter().rposition(is_refuted).map_or(0, |lag| lag + 1);
+        let scale = last.max(lag.next_power_of_two().ilog2() as usize);
         let signs = self.scales.get(scale)?;
         // A scale of few signs has nothing to say.
         (signs.positive + signs.negative >= 40).then_some(2 << scale)

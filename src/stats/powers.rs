@@ -81,7 +81,7 @@ impl Powers {
 
     /// How many draws make the variance: n over the sample kurtosis; 0 for draws without spread.
     #[must_use]
-    pub fn bearers(&self) -> f64 {
+    pub fn effective_draws(&self) -> f64 {
         self.draws as f64 / self.kurtosis()
     }
 

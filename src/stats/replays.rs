@@ -47,7 +47,8 @@ impl Replays {
     pub fn absorb(&mut self, x: &[f64]) {
         for x in x {
             let bits = x.to_bits();
-            if hash(bits).leading_zeros() >= self.bits {
+            // Zero is the commonest atom, and its hash would be kept for ever.
+            if *x != 0.0 && hash(bits).leading_zeros() >= self.bits {
                 self.kept.push((bits, self.draws));
                 if self.kept.len() >= MOST {
                     self.bits += 1;
@@ -106,6 +107,16 @@ mod tests {
         let replay = found(overlap).expect("one");
         assert_eq!(replay.distance, 1000);
         assert!(replay.ln_p < -100.0, "{replay:?}");
+    }
+
+    #[test]
+    fn draws_of_which_half_are_zero_are_compared_by_the_others() {
+        let once: Vec<f64> = uniforms(100_000).iter().map(|u| (2.0 * u - 1.0).max(0.0)).collect();
+        let replay = found(once.iter().copied().cycle().take(400_000)).expect("one");
+        assert_eq!(replay.distance, 100_000);
+        assert!(replay.ln_p < -1000.0, "{replay:?}");
+        let fresh: Vec<f64> = uniforms(400_000).iter().map(|u| (2.0 * u - 1.0).max(0.0)).collect();
+        assert_eq!(found(fresh.into_iter()), None);
     }
 
     #[test]

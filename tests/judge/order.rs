@@ -17,7 +17,7 @@ fn what_comes_after_the_decision_is_seen() {
     late[150_000..].iter_mut().for_each(|x| *x += 0.05);
     let place = Place::new(&[("nan.f64", &raw(&draws)), ("late.f64", &raw(&late))]);
     let early = "--tolerance 0.02 --stop-early";
-    for claim in [UNIFORM, "--truth 1 --range 0.7,1.4", "--truth 1"] {
+    for claim in [UNIFORM, "--truth 1 --range 0.7,1.4"] {
         let numeric = ["numeric: draw 300000 is NaN", "100000 draws are like that"];
         place.expect(1, &format!("{claim} nan.f64"), &numeric);
         let change = "the mean changes: from draw 147456 on it is off by +";
@@ -27,15 +27,22 @@ fn what_comes_after_the_decision_is_seen() {
             place.expect(0, &format!("{claim} {early} {file}"), &words);
         }
     }
+    let looks = "the mean looks off by +3.";
+    place.expect(3, "--truth 1 --tolerance 0.02 late.f64", &[looks]);
 }
 
 #[test]
 fn a_mean_that_is_right_on_average_only_is_drift() {
+    // A bias of 7 standard errors over 50,000 draws, and its opposite after it: of all draws before its end it is 2.6.
     let mut draws = uniform(400_000);
-    draws[..200_000].iter_mut().for_each(|x| *x += 0.003);
-    draws[200_000..].iter_mut().for_each(|x| *x -= 0.003);
+    draws[300_000..350_000].iter_mut().for_each(|x| *x += 0.0045);
+    draws[350_000..].iter_mut().for_each(|x| *x -= 0.0045);
     let place = Place::new(&[("x.f64", &raw(&draws))]);
-    place.expect(1, &format!("{UNIFORM} x.f64"), &["the mean"]);
+    let found = place.json(&format!("{UNIFORM} x.f64"), &[]);
+    assert_eq!((&found["verdict"], &found["drift"]["verdict"]), (&"fail".into(), &"fail".into()));
+    let reason = found["reason"].as_str().expect("words");
+    assert!(reason.starts_with("the mean changes: from draw "), "{reason}");
+    assert_ne!(found["findings"][0]["verdict"], "fail");
 }
 
 /// A chain of correlation .9 with mean 1 and variance 1.
@@ -126,7 +133,7 @@ fn a_pipe_without_end_ends() {
     let judgement = trial.judge(&mut draws).expect("a verdict");
     assert_eq!((judgement.draws, judgement.stopped), (1_000_000, Some(Stop::Limit)));
     let place = Place::new(&[("x.f64", &raw(&uniform(20_000)))]);
-    let limit = ["10,000 of 20,000", "stopped at the limit: what comes after 10000 draws"];
+    let limit = ["10000 of 20000", "stopped at the limit: what comes after 10000 draws"];
     place.expect(0, &format!("{UNIFORM} --draws 1e4 x.f64"), &limit);
     let whole = place.json(&format!("{UNIFORM} --draws 2e4 x.f64"), &[]);
     assert!(whole["stopped"].is_null());
@@ -162,7 +169,8 @@ fn several_files_share_alpha_and_have_one_report() {
         &format!("{claim} --junit report.xml good.f64 none.f64"),
         &["none.f64", "pass"],
     );
-    assert!(place.path().join("report.xml").exists());
+    let report = std::fs::read_to_string(place.path().join("report.xml")).expect("a report");
+    assert!(report.contains("name=\"none.f64\"") && report.contains("errors=\"1\""), "{report}");
 }
 
 #[test]
@@ -179,7 +187,7 @@ fn lookups_are_judged_beside_the_draws() {
         &["3 a draw, 3 expected"],
     );
     let wrong = format!("{claim} --expected-lookups 3.1 {known} x.csv");
-    place.expect(1, &wrong, &["the lookups is off"]);
+    place.expect(1, &wrong, &["the number of lookups is off"]);
     let fixed = format!("{claim} --expected-lookups 3 --lookups-variance 0 x.csv");
     place.expect(1, &fixed, &["lookups: draw 0 takes 2 lookups, not 3"]);
 }

@@ -1,12 +1,12 @@
 //! What is asked of foreign draws, and on which grounds.
 
 use super::grounds::Spread;
-use super::judge::{MEAN_CAP, Trial, Wanted};
+use super::judge::{MEAN_CAP, Trial};
 use super::scalar::Ask;
 use crate::stats::gate;
 
 /// The widest ε of a variance that is chosen without being asked for.
-const VARIANCE_CAP: f64 = 0.2;
+pub(super) const VARIANCE_CAP: f64 = 0.2;
 /// The same of lookups.
 const LOOKUPS_CAP: f64 = 0.02;
 /// ε of a mean where neither the caller nor a number of draws says.
@@ -18,17 +18,18 @@ pub(super) fn asks(trial: &Trial) -> Vec<Ask> {
     let is_bounded = claim.range.is_some_and(|[low, high]| (high - low).is_finite());
     let mut asks = Vec::new();
     if !trial.is_certain() {
-        let known = claim.variance.map(|v| v / (claim.unit * claim.unit));
+        let known = claim.variance.map(|v| v / claim.unit / claim.unit);
         let known = known.map(|v| Spread::Known(v * (1.0 + claim.variance_error)));
         let promised = claim.kurtosis.map(Spread::Kurtosis);
         let shown = (!is_bounded).then_some(Spread::Shown);
         let spread = known.or(promised).or(shown);
         asks.push(Ask {
             check: "mean",
+            what: "mean",
             spread,
-            // A half-open range is a ground by itself; the rest may not join it in an accusation.
-            is_hard: spread != Some(Spread::Shown) || claim.range.is_none(),
-            range: claim.range.map(|range| range.map(|end| (end - claim.truth) / claim.unit)),
+            // What draws show of their spread is no ground to fail them.
+            is_hard: spread != Some(Spread::Shown),
+            range: claim.widened().map(|range| range.map(|end| (end - claim.truth) / claim.unit)),
             tolerance: wanted.tolerance,
             usual: USUAL,
             cap: MEAN_CAP,
@@ -36,24 +37,27 @@ pub(super) fn asks(trial: &Trial) -> Vec<Ask> {
             must_pass: true,
         });
     }
-    let is_asked = |&variance: &f64| variance > 0.0 && !trial.is_faint() && !trial.is_two_point();
+    let is_asked = |&variance: &f64| variance > 0.0 && !trial.is_faint() && !trial.is_certain();
     if let Some(variance) = claim.variance.filter(is_asked) {
         let floor = claim.variance_floor(variance);
+        // A kurtosis of 1 is known to rounding only.
+        let excess = |kurtosis: f64| (kurtosis - 1.0).max(4.0 * f64::EPSILON);
         let known =
-            claim.kurtosis.map(|k| Spread::Known((k - 1.0) * (1.0 + 4.0 * claim.variance_error)));
-        let furthest = claim.range.map_or(f64::INFINITY, |range| {
+            claim.kurtosis.map(|k| Spread::Known(excess(k) * (1.0 + 4.0 * claim.variance_error)));
+        let furthest = claim.widened().map_or(f64::INFINITY, |range| {
             range
-                .map(|end| (end - claim.truth) * (end - claim.truth))
+                .map(|end| (end - claim.truth) / variance.sqrt())
                 .into_iter()
-                .fold(0.0, f64::max)
+                .fold(0.0, |most: f64, end| most.max(end * end))
         });
         let spread = known.or((!is_bounded).then_some(Spread::Shown));
         asks.push(Ask {
             check: "variance",
+            what: "variance",
             spread,
             is_hard: spread != Some(Spread::Shown),
             // A square is never negative: it may be refuted as too large without any promise.
-            range: (is_bounded || known.is_none()).then_some([-1.0, furthest / variance - 1.0]),
+            range: (is_bounded || known.is_none()).then_some([-1.0, furthest - 1.0]),
             tolerance: wanted.variance_tolerance,
             usual: VARIANCE_CAP,
             cap: VARIANCE_CAP,
@@ -66,6 +70,7 @@ pub(super) fn asks(trial: &Trial) -> Vec<Ask> {
         let spread = claimed.variance.map_or(Spread::Shown, |v| Spread::Known(relative(v)));
         asks.push(Ask {
             check: "lookups",
+            what: "number of lookups",
             spread: Some(spread),
             is_hard: spread != Spread::Shown,
             range: (spread == Spread::Shown).then_some([-1.0, f64::INFINITY]),
@@ -80,7 +85,7 @@ pub(super) fn asks(trial: &Trial) -> Vec<Ask> {
 }
 
 /// n: the draws that the tolerances asked for need, at most those that there are.
-pub(super) fn planned(asks: &[Ask], wanted: &Wanted, length: Option<u64>) -> Option<f64> {
+pub(super) fn planned(asks: &[Ask], length: Option<u64>) -> Option<f64> {
     let needs = |ask: &Ask, tolerance: Option<f64>| {
         let Some(Spread::Known(variance)) = ask.spread else { return None };
         // A design never has a wider ε than a quarter of the spread.
@@ -88,10 +93,6 @@ pub(super) fn planned(asks: &[Ask], wanted: &Wanted, length: Option<u64>) -> Opt
         (variance > 0.0).then(|| gate::draws_of(variance, tolerance))
     };
     let length = length.map(|length| length as f64);
-    let length = match wanted.most {
-        Some(most) => length.map(|length| length.min(most as f64 / wanted.batch as f64)),
-        None => length,
-    };
     let asked = asks.iter().filter_map(|ask| needs(ask, ask.tolerance));
     match asked.reduce(f64::max) {
         Some(needed) => Some(length.map_or(needed, |length| needed.min(length))),

@@ -118,6 +118,12 @@ pub enum ClaimError {
         /// δ.
         floor: f64,
     },
+    /// A tolerance of a variance that is not tested.
+    #[error("a tolerance of the variance, but no variance is tested: {why}; leave it out")]
+    NoVariance {
+        /// Why it is not.
+        why: &'static str,
+    },
     /// No estimator of that name.
     #[error("{case}: no estimator is called `{name}`; choose one of: {}", candidates.join(", "))]
     NoEstimator {
@@ -256,6 +262,15 @@ impl Claim {
     /// δ of the mean, in units of u.
     pub(super) fn floor(&self) -> f64 {
         (self.truth_error + self.rounding_of_draw()) / self.unit
+    }
+
+    /// The range with what rounding may add at each end.
+    pub(super) fn widened(&self) -> Option<[f64; 2]> {
+        let slack = |end: f64| {
+            let near = self.rounding * if end.is_finite() { end.abs() } else { 0.0 };
+            near.max(self.floor() * self.unit)
+        };
+        self.range.map(|[low, high]| [low - slack(low), high + slack(high)])
     }
 
     /// What rounding may add to a draw.

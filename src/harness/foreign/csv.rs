@@ -138,7 +138,7 @@ impl Table {
 
     /// Reads the next line; false at the end.
     fn advance(&mut self) -> Result<bool, ForeignError> {
-        self.reader.get_mut().begin_line();
+        self.reader.get_mut().begin_record();
         self.reader.read_byte_record(&mut self.record).map_err(|error| {
             let cause = match error.into_kind() {
                 ErrorKind::Io(cause) if cause.kind() == std::io::ErrorKind::FileTooLarge => {

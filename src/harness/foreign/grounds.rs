@@ -24,7 +24,7 @@ use crate::stats::gate::{Design, GateSums};
 /// The share of a scalar's level that pays for a bound on its variance.
 const PILOT: f64 = 0.1;
 /// How many draws must carry the variance before it counts as known.
-pub(super) const BEARERS: f64 = 1000.0;
+pub(super) const EFFECTIVE: f64 = 1000.0;
 /// n/κ for the kurtosis that is then assumed.
 const ASSUMED: f64 = 200.0;
 /// How many draws must carry a variance that stakes and ε are chosen by.
@@ -91,7 +91,7 @@ impl OfVariance {
         let n = past.draws() as f64;
         let kurtosis = match self.kurtosis {
             Some(kurtosis) => kurtosis,
-            None if past.bearers() >= BEARERS => n / ASSUMED,
+            None if past.effective_draws() >= EFFECTIVE => n / ASSUMED,
             None => return None,
         };
         let ln_chance = f64::from(bounds + 1) * std::f64::consts::LN_2 - PILOT.ln() + ln_fail;
@@ -123,8 +123,14 @@ impl OfVariance {
     /// Whether all draws together contradict what was assumed of them.
     pub(super) fn is_contradicted(&self, all: &Powers) -> bool {
         let assumed = self.kurtosis.unwrap_or(f64::INFINITY);
-        self.spread == Spread::Shown && !(all.bearers() >= BEARERS && all.kurtosis() <= assumed)
+        self.spread == Spread::Shown
+            && !(all.effective_draws() >= EFFECTIVE && all.kurtosis() <= assumed)
     }
+}
+
+/// How many draws a bound on the variance needs: those of t = ½ at the first bound.
+pub(super) fn draws_of_bound(kurtosis: f64, ln_fail: f64) -> f64 {
+    2.0 * kurtosis * (std::f64::consts::LN_2 - PILOT.ln() + ln_fail) / (WIDEST * WIDEST)
 }
 
 /// A range and what was bet on it.
@@ -143,11 +149,19 @@ impl OfRange {
         -self.range[0] * self.range[1]
     }
 
+    /// The evidence for a pass; a mean that the range makes impossible needs none.
+    pub(super) fn ln_pass(&self, tolerance: f64) -> [f64; 2] {
+        let [above, below] = self.capital.ln_pass();
+        let proved = |end: f64, side: f64| if end < tolerance { f64::INFINITY } else { side };
+        [proved(self.range[1], above), proved(-self.range[0], below)]
+    }
+
     /// V as well as the draws show it, for the choice of stakes.
     pub(super) fn variance(&self, past: &Powers) -> Option<f64> {
-        let is_known = past.bearers() >= RELIABLE;
+        let is_known = past.effective_draws() >= RELIABLE;
         let shown = if is_known { past.mean_square() } else { f64::INFINITY };
-        Some(shown.min(self.widest())).filter(|v| v.is_finite() && *v > 0.0)
+        // A range that leaves next to nothing makes the boldest stakes.
+        Some(shown.min(self.widest()).max(f64::MIN_POSITIVE)).filter(|v| v.is_finite())
     }
 
     pub(super) fn absorb(&mut self, y: &[f64], aim: Option<Aim>, floor: f64) {

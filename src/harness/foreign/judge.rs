@@ -7,17 +7,19 @@
 //! drift     the mean from any later block on, against T
 //! ε         as asked; else √(27 V/n) for n draws, at most 5 % for the mean, 20 % for the variance and
 //!           2 % for the lookups; else 1 % for the mean, and for the others what as many draws see
-//! levels    fail at ln E ≥ ln(K/α), K the questions above;  pass at both ln P ≥ ln(1/β), β = 0.01
+//! levels    fail at ln E ≥ ln(K/0.8α), K the first three as far as they are asked; drift at ln(1/0.2α);
+//!           pass at both ln P ≥ ln(1/β), β = 0.01;  dependence has an α of its own
 //! ```
 //!
 //! Draws are read block by block (2¹⁴ draws) in constant memory, to the end unless the caller wants
 //! less. A scalar fails only on grounds that hold (`grounds`): a known variance, a range, a bound on
-//! the kurtosis; without any of them on an assumption that the verdict names. All of it is for draws
+//! the kurtosis; without any of them it can pass, on an assumption that the verdict names, but not fail. All of it is for draws
 //! that are independent of each other: where `stats::independence` or `stats::replays` finds that they
 //! are not, the verdict says so, and nothing is said of the mean. Draws without spread must all be the
 //! truth to rounding. A draw that is not a finite number fails, and so does one whose distance from the
 //! truth overflows, or one out of the promised range.
 
+use super::asks::VARIANCE_CAP;
 use super::claim::{Claim, ClaimError};
 use super::judgement::{Judgement, Stop};
 use super::reading::Reading;
@@ -92,6 +94,14 @@ impl Trial {
             return Err(ClaimError::Number { what, value, wanted });
         }
         let trial = Self { claim, wanted, length };
+        if wanted.variance_tolerance.is_some() {
+            let why = match claim.variance {
+                None => Some("none is claimed"),
+                Some(_) if trial.is_certain() || trial.is_faint() => Some("rounding hides it"),
+                Some(_) => None,
+            };
+            why.map_or(Ok(()), |why| Err(ClaimError::NoVariance { why }))?;
+        }
         if claim.truth == 0.0 && wanted.tolerance.is_none() && !trial.is_certain() {
             return Err(ClaimError::NoUnit);
         }
@@ -122,29 +132,15 @@ impl Trial {
         self.deviation().is_some_and(|deviation| FURTHEST * deviation <= self.claim.floor())
     }
 
-    /// Whether rounding spoils what the spread says.
+    /// Whether rounding hides what the spread says: the variance cannot be tested to its widest tolerance.
     pub(super) fn is_faint(&self) -> bool {
-        self.deviation().is_some_and(|deviation| deviation <= 1e3 * self.claim.floor())
+        let variance = self.claim.variance.filter(|&variance| variance > 0.0);
+        variance.is_some_and(|v| self.claim.variance_floor(v) > 0.25 * VARIANCE_CAP)
     }
 
     /// What no draw of a claim without spread may exceed, in units of u.
     pub(super) fn bound(&self) -> f64 {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
-    }
-
-    /// Whether every draw must be one standard deviation from the truth: its kurtosis is 1.
-    pub(super) fn is_two_point(&self) -> bool {
-        let Some((variance, kurtosis)) = self.claim.variance.zip(self.claim.kurtosis) else {
-            return false;
-        };
-        let furthest = FURTHEST * (kurtosis - 1.0).max(0.0).sqrt();
-        variance > 0.0 && !self.is_faint() && furthest <= self.claim.variance_floor(variance)
-    }
-
-    /// How far the square of such a draw may be from V, relative to it.
-    pub(super) fn two_point_bound(&self, variance: f64) -> f64 {
-        let kurtosis = self.claim.kurtosis.unwrap_or(1.0);
-        self.claim.variance_floor(variance) + FURTHEST * (kurtosis - 1.0).max(0.0).sqrt()
     }
 
     /// Reads and judges.

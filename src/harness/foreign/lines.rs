@@ -6,6 +6,8 @@ use super::Bytes;
 pub(super) const CHUNK: usize = 1 << 17;
 /// The longest line: a table of draws has some numbers to a line.
 pub(super) const LONGEST: u64 = 1 << 16;
+/// The most bytes between two records, quoted lines, comments and empty lines included.
+const MOST: u64 = 1 << 24;
 
 /// Remembers the last bytes it passed on, so that a line can be counted when something is wrong with
 /// it: the csv crate's own count is that of the line before, after empty lines or Windows' line ends.
@@ -15,18 +17,19 @@ pub(super) struct Lines {
     before: u64,
     /// How many bytes came before the chunk.
     start: u64,
-    /// How many bytes were taken for the line that is being read.
+    /// How many bytes came since a line ended, and since a record began, which may have quoted line ends.
+    since: u64,
     taken: u64,
     chunk: Vec<u8>,
 }
 
 impl Lines {
     pub(super) fn new(bytes: Bytes) -> Self {
-        Self { bytes, before: 0, start: 0, taken: 0, chunk: Vec::new() }
+        Self { bytes, before: 0, start: 0, since: 0, taken: 0, chunk: Vec::new() }
     }
 
-    /// What is read from now on belongs to another line.
-    pub(super) fn begin_line(&mut self) {
+    /// What is read from now on belongs to another record.
+    pub(super) fn begin_record(&mut self) {
         self.taken = 0;
     }
 
@@ -39,11 +42,12 @@ impl Lines {
 
 impl std::io::Read for Lines {
     fn read(&mut self, buffer: &mut [u8]) -> std::io::Result<usize> {
-        // What is buffered beyond the line before counts, too.
-        if self.taken > LONGEST + 2 * CHUNK as u64 {
+        if self.since > LONGEST || self.taken > MOST {
             return Err(std::io::ErrorKind::FileTooLarge.into());
         }
         let count = self.bytes.read(buffer)?;
+        let last = buffer[..count].iter().rposition(|&byte| byte == b'\n');
+        self.since = last.map_or(self.since + count as u64, |at| (count - 1 - at) as u64);
         self.taken += count as u64;
         // At the end of the source the last chunk stays.
         if count > 0 {

@@ -28,8 +28,6 @@ pub(super) enum Fault {
     Range,
     /// Not the truth, where draws have no spread.
     Spread,
-    /// Not one standard deviation from the truth, where the kurtosis is 1.
-    TwoPoint,
     /// Another number of lookups than the one that all draws take.
     Lookups,
 }
@@ -74,6 +72,8 @@ pub(super) struct Reading<'t> {
     pub lookups: Option<Scalar>,
     pub refuted: Option<Refuted>,
     refuting: u64,
+    /// Where draws may lie, rounding included.
+    range: Option<[f64; 2]>,
     read: u64,
     /// How many draws or averages were judged.
     judged: u64,
@@ -97,14 +97,15 @@ impl<'t> Reading<'t> {
         let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
         let ln_fail = (count / (share * trial.wanted.alpha)).ln();
         let levels = Levels { ln_fail, ln_pass: -MISS.ln() };
-        let length = trial.length.map(|length| length / trial.wanted.batch);
+        let most = trial.wanted.most.unwrap_or(u64::MAX);
+        let length = trial.length.map(|length| length.min(most) / trial.wanted.batch);
         // Few draws make small blocks, so that later ones can be judged by earlier ones.
         let block = length.map_or(BUFFER, |n| usize::try_from(n / 16).unwrap_or(BUFFER));
         let block = block.next_power_of_two().clamp(FEW, BUFFER);
         // A known variance is judged in the blocks of a run.
         let is_known = trial.claim.variance.is_some() && trial.wanted.batch == 1;
         let block = if is_known { BUFFER } else { block };
-        let planned = planned(&asks, &trial.wanted, length);
+        let planned = planned(&asks, length);
         let scalar = |check: &str| {
             let ask = asks.iter().find(|ask| ask.check == check);
             ask.map(|&ask| Scalar::new(ask, planned, levels))
@@ -117,6 +118,7 @@ impl<'t> Reading<'t> {
             lookups: scalar("lookups"),
             refuted: None,
             refuting: 0,
+            range: trial.claim.widened(),
             read: 0,
             judged: 0,
             averages: [Averages::new(trial.wanted.batch), Averages::new(trial.wanted.batch)],
@@ -147,25 +149,8 @@ impl<'t> Reading<'t> {
         if zero_or_nan(y) != 0.0 {
             return Some(Fault::Number);
         }
-        if let Some([low, high]) = claim.range {
-            let slack = |end: f64| claim.rounding * if end.is_finite() { end.abs() } else { 0.0 };
-            let slack = slack(low).max(slack(high)).max(claim.floor() * claim.unit);
-            if !(low - slack <= x && x <= high + slack) {
-                return Some(Fault::Range);
-            }
-        }
-        None
-    }
-
-    /// What is wrong with a y that has no spread, or one value of it.
-    fn fault_of_spread(&self, y: f64) -> Option<Fault> {
-        let claim = &self.trial.claim;
-        if self.mean.is_none() && y.abs() > self.trial.bound() {
-            return Some(Fault::Spread);
-        }
-        let variance = claim.variance.filter(|_| self.trial.is_two_point())?;
-        let square = y * y * claim.unit * claim.unit / variance - 1.0;
-        (square.abs() > self.trial.two_point_bound(variance)).then_some(Fault::TwoPoint)
+        let [low, high] = self.range?;
+        (!(low <= x && x <= high)).then_some(Fault::Range)
     }
 
     /// Adds draws with their lookups, if there are any.
@@ -173,7 +158,6 @@ impl<'t> Reading<'t> {
         self.look_at_each(block, lookups);
         self.read += block.len() as u64;
         self.lookup_sum.add(lookups.iter().sum());
-        self.replays.absorb(block);
         if self.trial.wanted.batch == 1 {
             for (at, part) in block.chunks(self.block).enumerate() {
                 let first = (at * self.block).min(lookups.len());
@@ -231,40 +215,48 @@ impl<'t> Reading<'t> {
         }
     }
 
-    /// Puts all questions to a block.
+    /// Puts all questions to a block of draws or averages.
     fn judge(&mut self, block: &[f64], lookups: &[f64]) {
         let claim = &self.trial.claim;
-        let (truth, scale) = (claim.truth, 1.0 / claim.unit);
+        let batch = self.trial.wanted.batch;
+        let (truth, unit) = (claim.truth, claim.unit);
         self.y.clear();
-        self.y.extend(block.iter().map(|x| (x - truth) * scale));
-        if self.y.iter().map(|&y| zero_or_nan(y)).sum::<f64>() != 0.0 {
-            return;
-        }
-        if self.mean.is_none() || self.trial.is_two_point() {
-            let batch = self.trial.wanted.batch;
-            for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
-                let Some(fault) = self.fault_of_spread(y) else { continue };
+        self.y.extend(block.iter().map(|x| (x - truth) / unit));
+        let bound = if self.mean.is_none() { self.trial.bound() } else { f64::INFINITY };
+        let fault = |y: f64| {
+            let number = (zero_or_nan(y) != 0.0).then_some(Fault::Number);
+            number.or((y.abs() > bound).then_some(Fault::Spread))
+        };
+        let mut is_finite = true;
+        for (at, (&y, &value)) in (self.judged..).zip(self.y.iter().zip(block)) {
+            let Some(fault) = fault(y) else { continue };
+            is_finite &= fault != Fault::Number;
+            // Of draws that are no numbers the first look tells.
+            if fault == Fault::Spread || batch > 1 {
                 self.refuting += 1;
                 let index = at * batch;
                 self.refuted = self.refuted.or(Some(Refuted { fault, index, value }));
             }
         }
         self.judged += block.len() as u64;
+        if !is_finite {
+            return;
+        }
         self.independence.absorb(&self.y);
+        self.replays.absorb(block);
         self.powers.absorb(&self.y);
         if let Some(mean) = &mut self.mean {
             mean.absorb(&self.y);
         }
         if let (Some(scalar), Some(variance)) = (&mut self.variance, claim.variance) {
-            let scale = claim.unit * claim.unit / variance;
+            let scale = unit / variance.sqrt();
             self.other.clear();
-            self.other.extend(self.y.iter().map(|y| y * y * scale - 1.0));
+            self.other.extend(self.y.iter().map(|y| (y * scale) * (y * scale) - 1.0));
             scalar.absorb(&self.other);
         }
         if let (Some(scalar), Some(claimed)) = (&mut self.lookups, claim.lookups) {
-            let scale = 1.0 / claimed.mean;
             self.other.clear();
-            self.other.extend(lookups.iter().map(|m| m * scale - 1.0));
+            self.other.extend(lookups.iter().map(|m| m / claimed.mean - 1.0));
             if self.other.iter().all(|y| y.is_finite()) {
                 scalar.absorb(&self.other);
             }

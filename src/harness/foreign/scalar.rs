@@ -1,7 +1,7 @@
 //! One scalar of foreign draws on its way through the gate.
 //!
 //! ```text
-//! E      the mean of the e-values of all grounds that hold (`grounds`);   fail at ln E ≥ ln(K/α)
+//! E      the mean of the e-values of all grounds that hold (`grounds`);   fail at ln E ≥ ln(K/0.8α)
 //! P±     likewise, of all grounds;                                        pass at both ln P ≥ ln(1/β)
 //! E_c    the same for a change of the mean from any later block on        (`stats::capital`)
 //! ```
@@ -9,7 +9,7 @@
 //! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
 //! scalar that has passed may still fail on what comes later.
 
-use super::grounds::{BEARERS, OfRange, OfVariance, RELIABLE, Spread};
+use super::grounds::{self, EFFECTIVE, OfRange, OfVariance, RELIABLE, Spread};
 use super::judgement::ScalarFinding;
 use crate::harness::plan::BLOCK;
 use crate::harness::record::{GateFinding, Verdict};
@@ -26,6 +26,8 @@ const UNPLANNED: f64 = 67_108_864.0;
 pub(super) struct Ask {
     /// `mean`, `variance` or `lookups`.
     pub check: &'static str,
+    /// What it is called in a sentence.
+    pub what: &'static str,
     /// What is known of V; `None` where only the range is to be relied on.
     pub spread: Option<Spread>,
     /// Whether it may fail by its spread, or only pass.
@@ -47,7 +49,7 @@ pub(super) struct Ask {
 /// The levels of the gate.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Levels {
-    /// ln(K/α).
+    /// ln(K/0.8α).
     pub ln_fail: f64,
     /// ln(1/β).
     pub ln_pass: f64,
@@ -132,9 +134,12 @@ impl Scalar {
     /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range.
     fn start_by_range(&mut self) {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
-        let is_reliable = self.past.bearers() >= RELIABLE;
+        let is_reliable = self.past.effective_draws() >= RELIABLE;
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
+        // A range that leaves next to nothing narrows no tolerance.
+        let asked = self.ask.tolerance.unwrap_or(self.ask.cap);
+        let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
         if self.past.draws() > 0 && variance.is_finite() {
             self.start(variance);
         }
@@ -182,29 +187,41 @@ impl Scalar {
         let (mut ln_e, mut ln_change, mut change) = (Vec::new(), Vec::new(), (0.0, 0));
         let mut ln_pass: [Vec<f64>; 2] = Default::default();
         let mut soft = f64::NEG_INFINITY;
+        // A bound on V takes its share of all evidence that it joins.
+        let mut ln_share: f64 = 0.0;
+        let tolerance = self.design.map_or(0.0, |design| design.tolerance);
+        let of_variance = self.of_variance.as_ref();
         let of_variance =
-            self.of_variance.as_ref().map(|g| (&g.capital, g.ln_share(), g.begin, g.is_hard));
-        let of_range = self.of_range.as_ref().map(|g| (&g.capital, 0.0, 0, true));
-        for (capital, ln_share, begin, is_hard) in of_variance.into_iter().chain(of_range) {
-            for (sides, side) in ln_pass.iter_mut().zip(capital.ln_pass()) {
-                sides.push(side);
+            of_variance.map(|g| (&g.capital, g.capital.ln_pass(), g.begin, g.is_hard));
+        let of_range = self.of_range.as_ref();
+        let of_range = of_range.map(|g| (&g.capital, g.ln_pass(tolerance), 0, true));
+        for (capital, sides, begin, is_hard) in of_variance.into_iter().chain(of_range) {
+            for (all, side) in ln_pass.iter_mut().zip(sides) {
+                all.push(side);
             }
             if !is_hard {
-                soft = capital.ln_e() + ln_share;
+                soft = capital.ln_e();
                 continue;
             }
-            ln_e.push(capital.ln_e() + ln_share);
-            ln_change.push(capital.ln_change() + ln_share);
+            ln_e.push(capital.ln_e());
+            ln_change.push(capital.ln_change());
             if capital.ln_change() > change.0 {
                 change = (capital.ln_change(), begin + capital.change());
             }
         }
+        if let Some(ground) = self.of_variance.as_ref() {
+            ln_share = ground.ln_share();
+        }
+        soft += ln_share;
+        let ln_share = if self.ask.is_hard { ln_share } else { 0.0 };
         let mean = |values: &[f64]| if values.is_empty() { 0.0 } else { ln_mean_exp(values) };
-        let evidence =
-            Evidence { ln_e: mean(&ln_e), ln_pass: ln_pass.map(|side| ln_mean_exp(&side)) };
+        let evidence = Evidence {
+            ln_e: mean(&ln_e) + ln_share,
+            ln_pass: ln_pass.map(|side| ln_mean_exp(&side)),
+        };
         let Levels { ln_fail, ln_pass } = self.levels;
         self.is_doubted |= soft >= ln_fail;
-        let ln_change = mean(&ln_change);
+        let ln_change = mean(&ln_change) + ln_share;
         if ln_change > self.change.ln_e {
             let first = usize::try_from(change.1).unwrap_or(usize::MAX).min(self.sums.len());
             let later: Sum = self.sums[first..].iter().copied().collect();
@@ -262,7 +279,7 @@ impl Scalar {
 
     /// The kurtosis that a judgement assumes without a promise of the caller's.
     pub(super) fn assumed(&self) -> Option<f64> {
-        if self.ask.spread != Some(Spread::Shown) || self.of_range.is_some() && !self.ask.is_hard {
+        if self.ask.spread != Some(Spread::Shown) {
             return None;
         }
         self.of_variance.as_ref().and_then(|ground| ground.kurtosis)
@@ -298,33 +315,44 @@ impl Scalar {
         }
     }
 
-    /// What is missing where the draws do not show their own spread.
-    fn unknown(&self) -> String {
-        let (n, what) = (self.past.draws(), self.ask.check);
-        let cure = if what == "variance" {
+    /// What would be a ground.
+    fn cure(&self) -> &'static str {
+        if self.ask.check == "variance" {
             "--kurtosis or --range LOW,HIGH"
         } else {
             "--variance, --range LOW,HIGH or --kurtosis"
-        };
-        let bearers = self.past.bearers().floor().max(0.0);
+        }
+    }
+
+    /// What is missing where the draws do not show their own spread.
+    fn unknown(&self) -> String {
+        let (n, what) = (self.past.draws(), self.ask.what);
+        let cure = self.cure();
+        let carry = self.past.effective_draws().floor().max(0.0);
         match self.ask.spread {
             Some(Spread::Kurtosis(kurtosis)) => format!(
                 "the spread of the {what} is not known: with a kurtosis of {kurtosis} it needs a first \
                  block of draws, {:.0} of them or more, and others after it; there are {n}",
-                80.0 * kurtosis
+                grounds::draws_of_bound(kurtosis, self.levels.ln_fail)
+            ),
+            Some(Spread::Shown) if carry >= EFFECTIVE && self.assumed().is_some() => format!(
+                "the spread of the {what} is not known: the draws show a kurtosis of {:.0}, more than the \
+                 {:.0} that was assumed; give {cure}",
+                self.past.kurtosis(),
+                self.assumed().unwrap_or_default()
             ),
             None => {
                 format!("the {what} is undecided after {n} draws, too few to choose a tolerance by")
             }
             _ => format!(
-                "the spread of the {what} is not known: {bearers} of {n} draws carry it, and {BEARERS} \
+                "the spread of the {what} is not known: {carry} of {n} draws carry it, and {EFFECTIVE} \
                  of more than {BLOCK} are needed; give {cure}"
             ),
         }
     }
 
     fn verdict(&self) -> (Verdict, String) {
-        let what = self.ask.check;
+        let what = self.ask.what;
         let weak = if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
         let ground = self.of_variance.as_ref();
         let relies_on_shown = ground.is_some_and(|ground| ground.is_contradicted(&self.past));
@@ -355,9 +383,9 @@ impl Scalar {
         match self.decision {
             _ if self.is_doubted && !relies_on_shown => {
                 let reason = format!(
-                    "the {what} looks off by {:+.2e}, but no number of draws can show that without \
-                     --kurtosis or --range LOW,HIGH",
-                    self.past.mean()
+                    "the {what} looks off by {:+.2e}, but no number of draws can show that without {}",
+                    self.past.mean(),
+                    self.cure()
                 );
                 (Verdict::Inconclusive, reason)
             }

@@ -11,7 +11,7 @@ pub mod streams;
 
 pub use calibration::Calibration;
 pub use mutation::Caught;
-pub use streams::Fared;
+pub use streams::StreamVerdicts;
 
 /// What a self-test found.
 #[derive(Debug, Clone)]
@@ -19,7 +19,7 @@ pub struct SelfTest {
     /// The promises.
     pub calibration: Calibration,
     /// Correct foreign draws.
-    pub streams: Vec<Fared>,
+    pub streams: Vec<StreamVerdicts>,
     /// The bugs.
     pub mutants: Vec<Caught>,
     /// Wall-clock seconds.
@@ -31,7 +31,7 @@ impl SelfTest {
     #[must_use]
     pub fn holds(&self) -> bool {
         self.calibration.holds()
-            && self.streams.iter().all(Fared::is_kept)
+            && self.streams.iter().all(StreamVerdicts::is_kept)
             && self.mutants.iter().all(Caught::is_right)
     }
 }

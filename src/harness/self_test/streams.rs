@@ -1,14 +1,14 @@
 //! Correct draws of hard laws, judged as foreign draws are: does any of them fail?
 //!
 //! ```text
-//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant, a
-//!         constant with a spread of 1e-9, Pareto draws less 1 (index 2.2 and 4.5), a signed product
-//!         ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential and uniform draws
+//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant
+//!         and on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2 and 4.5), a signed product
+//!         ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential draws
 //! claims  the truth; and the variance; and the kurtosis; the truth and a range
 //! ```
 //!
-//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range that says
-//! anything, that claim is left out. Every stream has 4e5 draws and an address of its own, and is
+//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range, that claim is left
+//! out. Every stream has 4e5 draws and an address of its own, and is
 //! judged at α = 1e-3 for each of the claims.
 
 use rand::RngExt;
@@ -27,10 +27,14 @@ const DRAWS: usize = 400_000;
 pub const ALPHA: f64 = 1e-3;
 /// The confidence at which a promise counts as broken.
 const CERTAIN: f64 = 1.0 - 1e-6;
+/// The range of draws that are never negative.
+const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
 /// How large a spike is.
 const SPIKE: f64 = 1e5;
 /// Its chance.
 const RARE: f64 = 1e-5;
+/// How wide the noise below spikes is.
+const NOISE: f64 = 1e-4;
 /// How wide the nearly constant law is.
 const NARROW: f64 = 1e-9;
 /// Λ of the signed product.
@@ -45,6 +49,8 @@ pub enum Law {
     LogNormal(f64),
     /// 1, and with chance 1e-5 1e5 more.
     Spike,
+    /// The same with a uniform noise of width 1e-4.
+    NoisySpike,
     /// Uniform on an interval of length 1e-9 about 1.
     Narrow,
     /// `u^{−1/a} − 1`.
@@ -58,7 +64,7 @@ pub enum Law {
 }
 
 /// Every law.
-pub const LAWS: [Law; 14] = [
+pub const LAWS: [Law; 15] = [
     Law::Bernoulli(1e-2),
     Law::Bernoulli(1e-3),
     Law::Bernoulli(1e-4),
@@ -68,6 +74,7 @@ pub const LAWS: [Law; 14] = [
     Law::LogNormal(2.0),
     Law::LogNormal(3.0),
     Law::Spike,
+    Law::NoisySpike,
     Law::Narrow,
     Law::Pareto(2.2),
     Law::Pareto(4.5),
@@ -77,7 +84,7 @@ pub const LAWS: [Law; 14] = [
 
 /// What is claimed of the draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Known {
+pub enum Claims {
     /// The truth alone.
     Truth,
     /// And the variance.
@@ -89,9 +96,9 @@ pub enum Known {
 }
 
 /// Every combination of claims.
-pub const KNOWN: [Known; 4] = [Known::Truth, Known::Variance, Known::Kurtosis, Known::Range];
+pub const CLAIMS: [Claims; 4] = [Claims::Truth, Claims::Variance, Claims::Kurtosis, Claims::Range];
 
-impl std::fmt::Display for Known {
+impl std::fmt::Display for Claims {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
             Self::Truth => "truth",
@@ -108,6 +115,7 @@ impl std::fmt::Display for Law {
             Self::Bernoulli(p) => write!(f, "Bernoulli {p:e}"),
             Self::LogNormal(sigma) => write!(f, "log-normal, σ = {sigma}"),
             Self::Spike => write!(f, "spike of 1e-5 on a constant"),
+            Self::NoisySpike => write!(f, "spike of 1e-5 on noise"),
             Self::Narrow => write!(f, "nearly constant"),
             Self::Pareto(index) => write!(f, "shifted Pareto, index {index}"),
             Self::Signed => write!(f, "signed product, r to 3"),
@@ -125,7 +133,7 @@ fn central([m1, m2, m3, m4]: [f64; 4]) -> (f64, f64) {
 }
 
 impl Law {
-    /// Mean, variance, kurtosis where it is finite, and range where one bounds the draws on both sides.
+    /// Mean, variance, kurtosis where it is finite, and range where there is one.
     fn moments(self) -> (f64, f64, Option<f64>, Option<[f64; 2]>) {
         let two_point = |p: f64| (1.0 - 3.0 * p * (1.0 - p)) / (p * (1.0 - p));
         match self {
@@ -133,12 +141,22 @@ impl Law {
             Self::LogNormal(sigma) => {
                 let w = (sigma * sigma).exp();
                 let kurtosis = w.powi(4) + 2.0 * w.powi(3) + 3.0 * w * w - 3.0;
-                (w.sqrt(), (w - 1.0) * w, Some(kurtosis), None)
+                (w.sqrt(), (w - 1.0) * w, Some(kurtosis), Some(POSITIVE))
             }
             Self::Spike => {
                 let variance = SPIKE * SPIKE * RARE * (1.0 - RARE);
                 let range = [1.0, 1.0 + SPIKE];
                 (1.0 + SPIKE * RARE, variance, Some(two_point(RARE)), Some([range[0], range[1]]))
+            }
+            Self::NoisySpike => {
+                // Sums of independent parts: variances add, fourth moments with 6 times the product.
+                let (spike, noise) = (SPIKE * SPIKE * RARE * (1.0 - RARE), NOISE * NOISE / 12.0);
+                let fourth =
+                    two_point(RARE) * spike * spike + 6.0 * spike * noise + 1.8 * noise * noise;
+                let variance = spike + noise;
+                let range = [1.0 - 0.5 * NOISE, 1.0 + SPIKE + 0.5 * NOISE];
+                let kurtosis = fourth / (variance * variance);
+                (1.0 + SPIKE * RARE, variance, Some(kurtosis), Some(range))
             }
             Self::Narrow => {
                 let half = 0.5 * NARROW;
@@ -149,7 +167,7 @@ impl Law {
                 let raw = |k: f64| a / (a - k);
                 let all = [1.0, 2.0, 3.0, 4.0].map(raw);
                 let kurtosis = (a > 4.0).then(|| central(all).1);
-                (1.0 / (a - 1.0), variance, kurtosis, None)
+                (1.0 / (a - 1.0), variance, kurtosis, Some(POSITIVE))
             }
             Self::Signed => {
                 // ∫(1 − 3t)^k dt over [0, 1].
@@ -158,23 +176,23 @@ impl Law {
                 let (variance, kurtosis) = central(raw);
                 (raw[0], variance, Some(kurtosis), None)
             }
-            Self::Exponential => (1.0, 1.0, Some(9.0), None),
+            Self::Exponential => (1.0, 1.0, Some(9.0), Some(POSITIVE)),
             Self::Uniform => (0.5, 1.0 / 12.0, Some(1.8), Some([0.0, 1.0])),
         }
     }
 
     /// What is claimed; `None` where the law has nothing of it.
     #[must_use]
-    pub fn claim(self, known: Known) -> Option<Claim> {
+    pub fn claim(self, claims: Claims) -> Option<Claim> {
         let (truth, variance, kurtosis, range) = self.moments();
         let given = Given { truth, rounding: ROUNDING, ..Given::default() };
-        let given = match known {
-            Known::Truth => given,
-            Known::Variance => Given { variance: Some(variance), ..given },
-            Known::Kurtosis => {
+        let given = match claims {
+            Claims::Truth => given,
+            Claims::Variance => Given { variance: Some(variance), ..given },
+            Claims::Kurtosis => {
                 Given { variance: Some(variance), kurtosis: Some(kurtosis?), ..given }
             }
-            Known::Range => Given { range: Some(range?), ..given },
+            Claims::Range => Given { range: Some(range?), ..given },
         };
         Claim::new(&given).ok()
     }
@@ -188,6 +206,10 @@ impl Law {
                 (sigma * z).exp()
             }
             Self::Spike => 1.0 + if unit(rng) < RARE { SPIKE } else { 0.0 },
+            Self::NoisySpike => {
+                let spike = if unit(rng) < RARE { SPIKE } else { 0.0 };
+                1.0 + NOISE * (unit(rng) - 0.5) + spike
+            }
             Self::Narrow => 1.0 + NARROW * (unit(rng) - 0.5),
             Self::Pareto(a) => (1.0 - unit(rng)).powf(-1.0 / a) - 1.0,
             Self::Signed => {
@@ -214,7 +236,7 @@ impl Law {
     }
 }
 
-impl Fared {
+impl StreamVerdicts {
     /// Whether the promise that a correct stream fails with chance α at most is not refuted.
     #[must_use]
     pub fn is_kept(&self) -> bool {
@@ -222,9 +244,9 @@ impl Fared {
     }
 }
 
-/// How the streams of one law fared with one claim.
+/// How the streams of one law verdicts with one claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fared {
+pub struct StreamVerdicts {
     /// The law.
     pub law: String,
     /// The claim.
@@ -243,13 +265,13 @@ pub struct Fared {
 
 /// Judges so many streams of every law with every claim; `step` is told of each stream.
 #[must_use]
-pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<Fared> {
+pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
 }
 
-fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<Fared> {
+fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     let wanted = Wanted { alpha: ALPHA, ..Wanted::default() };
-    let trials: Vec<(Known, Trial)> = KNOWN
+    let trials: Vec<(Claims, Trial)> = CLAIMS
         .into_iter()
         .filter_map(|known| {
             let trial = Trial::new(law.claim(known)?, wanted, Some(DRAWS as u64)).ok()?;
@@ -269,10 +291,10 @@ fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<Fared> {
             found
         })
         .collect();
-    let fared = trials.iter().enumerate().map(|(k, (known, _))| {
+    let verdicts = trials.iter().enumerate().map(|(k, (known, _))| {
         let count = |verdict| judged.iter().filter(|found| found[k].0 == verdict).count() as u64;
         let failure = judged.iter().find(|found| found[k].0 == Verdict::Fail);
-        Fared {
+        StreamVerdicts {
             law: law.to_string(),
             known: known.to_string(),
             streams,
@@ -282,5 +304,26 @@ fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<Fared> {
             reason: failure.map_or(String::new(), |found| found[k].1.clone()),
         }
     });
-    fared.collect()
+    verdicts.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_promise_is_broken_by_more_fails_than_chance_allows() {
+        let of = |failed| StreamVerdicts {
+            law: String::new(),
+            known: String::new(),
+            streams: 1000,
+            passed: 1000 - failed,
+            failed,
+            inconclusive: 0,
+            reason: String::new(),
+        };
+        // One is expected; P(12 or more) of a Poisson number of mean 1 is 8e-10, P(5 or more) 4e-3.
+        assert!(of(0).is_kept() && of(4).is_kept());
+        assert!(!of(12).is_kept() && !of(1000).is_kept());
+    }
 }
