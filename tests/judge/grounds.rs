@@ -215,6 +215,7 @@ fn a_variance_that_is_not_tested_says_so() {
 
 #[test]
 fn coarse_draws_and_draws_that_fill_no_average_are_told() {
+    #[allow(clippy::cast_possible_truncation)] // what the truncation loses is the question
     let single: Vec<f64> = uniform(50_000).iter().map(|&x| f64::from(x as f32)).collect();
     let place = Place::new(&[("x.f64", &raw(&single))]);
     let words = [

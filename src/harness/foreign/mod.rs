@@ -13,6 +13,7 @@ mod asks;
 pub mod claim;
 mod csv;
 mod dependence;
+mod finding;
 mod grounds;
 pub mod judge;
 pub mod judgement;

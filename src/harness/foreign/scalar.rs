@@ -9,10 +9,7 @@
 //! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
 //! scalar that has passed may still fail on what comes later.
 
-use super::grounds::{self, EFFECTIVE, OfRange, OfVariance, RELIABLE, Spread};
-use super::judgement::ScalarFinding;
-use crate::harness::plan::BLOCK;
-use crate::harness::record::{GateFinding, Verdict};
+use super::grounds::{OfRange, OfVariance, RELIABLE, Spread};
 use crate::numeric::sum::Sum;
 use crate::stats::Powers;
 use crate::stats::betting::Aim;
@@ -68,28 +65,28 @@ pub(super) struct Change {
 /// A scalar on its way.
 pub(super) struct Scalar {
     pub ask: Ask,
-    levels: Levels,
+    pub(super) levels: Levels,
     /// n: how many draws are planned, if anybody knows.
-    planned: Option<f64>,
-    past: Powers,
-    of_variance: Option<OfVariance>,
-    of_range: Option<OfRange>,
+    pub(super) planned: Option<f64>,
+    pub(super) past: Powers,
+    pub(super) of_variance: Option<OfVariance>,
+    pub(super) of_range: Option<OfRange>,
     /// What is asked, as soon as V is known or bounded; its ε never becomes wider.
-    design: Option<Design>,
+    pub(super) design: Option<Design>,
     /// Whether n draws suffice for a pass.
-    is_promised: bool,
+    pub(super) is_promised: bool,
     /// The sum of y in each block, and how many draws a whole block has.
-    sums: Vec<f64>,
-    block: u64,
-    look: u64,
+    pub(super) sums: Vec<f64>,
+    pub(super) block: u64,
+    pub(super) look: u64,
     /// The decision, and the evidence it was made on.
-    decision: Decision,
-    evidence: Evidence,
+    pub(super) decision: Decision,
+    pub(super) evidence: Evidence,
     /// Whether what may not fail would have.
-    is_doubted: bool,
-    change: Change,
+    pub(super) is_doubted: bool,
+    pub(super) change: Change,
     /// Mean of y and number of draws at the last look before the decision.
-    seen: (f64, u64),
+    pub(super) seen: (f64, u64),
 }
 
 impl Scalar {
@@ -283,124 +280,5 @@ impl Scalar {
             return None;
         }
         self.of_variance.as_ref().and_then(|ground| ground.kurtosis)
-    }
-
-    /// What was found.
-    pub(super) fn finding(&self) -> ScalarFinding {
-        let (verdict, reason) = self.verdict();
-        // Bold bets may decide before ε is chosen.
-        let decided = (self.decision != Decision::Open)
-            .then(|| Design::new(self.past.mean_square(), self.ask.cap, self.ask.floor));
-        let gate = self.design.or(decided).map(|design| GateFinding {
-            tolerance: design.tolerance,
-            variance: design.variance,
-            mean: self.seen.0,
-            planned: gate::draws_of(design.variance, design.tolerance),
-            draws: self.seen.1,
-            ln_e: self.evidence.ln_e,
-            ln_e_limit: self.levels.ln_fail,
-            ln_p: self.evidence.ln_pass,
-            ln_p_limit: self.levels.ln_pass,
-            needed: None,
-            is_decided: self.decision != Decision::Open,
-        });
-        ScalarFinding {
-            check: self.ask.check.to_owned(),
-            verdict,
-            reason,
-            is_estimated: self.ask.spread == Some(Spread::Shown),
-            assumed_kurtosis: self.assumed(),
-            is_promised: self.is_promised,
-            gate,
-        }
-    }
-
-    /// What would be a ground.
-    fn cure(&self) -> &'static str {
-        if self.ask.check == "variance" {
-            "--kurtosis or --range LOW,HIGH"
-        } else {
-            "--variance, --range LOW,HIGH or --kurtosis"
-        }
-    }
-
-    /// What is missing where the draws do not show their own spread.
-    fn unknown(&self) -> String {
-        let (n, what) = (self.past.draws(), self.ask.what);
-        let cure = self.cure();
-        let carry = self.past.effective_draws().floor().max(0.0);
-        match self.ask.spread {
-            Some(Spread::Kurtosis(kurtosis)) => format!(
-                "the spread of the {what} is not known: with a kurtosis of {kurtosis} it needs a first \
-                 block of draws, {:.0} of them or more, and others after it; there are {n}",
-                grounds::draws_of_bound(kurtosis, self.levels.ln_fail)
-            ),
-            Some(Spread::Shown) if carry >= EFFECTIVE && self.assumed().is_some() => format!(
-                "the spread of the {what} is not known: the draws show a kurtosis of {:.0}, more than the \
-                 {:.0} that was assumed; give {cure}",
-                self.past.kurtosis(),
-                self.assumed().unwrap_or_default()
-            ),
-            None => {
-                format!("the {what} is undecided after {n} draws, too few to choose a tolerance by")
-            }
-            _ => format!(
-                "the spread of the {what} is not known: {carry} of {n} draws carry it, and {EFFECTIVE} \
-                 of more than {BLOCK} are needed; give {cure}"
-            ),
-        }
-    }
-
-    fn verdict(&self) -> (Verdict, String) {
-        let what = self.ask.what;
-        let weak = if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
-        let ground = self.of_variance.as_ref();
-        let relies_on_shown = ground.is_some_and(|ground| ground.is_contradicted(&self.past));
-        let is_founded = self.is_founded();
-        let (off, n) = self.seen;
-        if self.decision == Decision::Failed && is_founded {
-            // Where V is only bounded, the draws' own spread says more.
-            let known = match self.ask.spread {
-                Some(Spread::Known(variance)) => variance,
-                _ => self.past.variance(),
-            };
-            let z = off / (known / n as f64).sqrt();
-            let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
-            let z = if z.is_finite() && self.past.kurtosis().is_finite() {
-                format!(", {z:+.1} standard errors")
-            } else {
-                String::new()
-            };
-            let reason = format!(
-                "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
-            );
-            return (Verdict::Fail, reason);
-        }
-        let Some(design) = self.design.filter(|_| is_founded) else {
-            let weak = if self.ask.must_pass { Verdict::Inconclusive } else { weak };
-            return (weak, self.unknown());
-        };
-        match self.decision {
-            _ if self.is_doubted && !relies_on_shown => {
-                let reason = format!(
-                    "the {what} looks off by {:+.2e}, but no number of draws can show that without {}",
-                    self.past.mean(),
-                    self.cure()
-                );
-                (Verdict::Inconclusive, reason)
-            }
-            Decision::Passed if relies_on_shown && !self.ask.is_hard => (weak, self.unknown()),
-            Decision::Passed => (Verdict::Pass, String::new()),
-            Decision::Open | Decision::Failed => {
-                let planned = gate::draws_of(design.variance, design.tolerance);
-                let longest = planned * gate::HORIZON / gate::PLANNED;
-                let needed = if planned > n as f64 { planned } else { longest };
-                let reason = format!(
-                    "the {what} is undecided after {n} draws; a tolerance of {:.2e} needs {needed:.1e}",
-                    design.tolerance
-                );
-                (weak, reason)
-            }
-        }
     }
 }

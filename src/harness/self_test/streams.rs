@@ -1,15 +1,15 @@
 //! Correct draws of hard laws, judged as foreign draws are: does any of them fail?
 //!
 //! ```text
-//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant
-//!         and on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2 and 4.5), a signed product
-//!         ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential draws
+//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant and
+//!         on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2
+//!         and 4.5), a signed product ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential
 //! claims  the truth; and the variance; and the kurtosis; the truth and a range
 //! ```
 //!
-//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range, that claim is left
-//! out. Every stream has 4e5 draws and an address of its own, and is
-//! judged at α = 1e-3 for each of the claims.
+//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range, that claim
+//! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
+//! each of the claims.
 
 use rand::RngExt;
 use rand_distr::{Distribution, Poisson, StandardNormal};
