@@ -91,7 +91,7 @@ pub enum ClaimError {
     },
     /// A variance that no draws in the range have.
     #[error(
-        "a variance of {variance:e} is impossible in the range: with the mean {truth} it is \
+        "a variance of {variance:e} is impossible in the range: with the mean {truth:e} it is \
          {most:e} at most; mend one of them"
     )]
     TooSpread {
@@ -246,8 +246,10 @@ impl Claim {
             return Err(ClaimError::Range { low, high, truth });
         }
         // R. Bhatia, C. Davis, A better bound on the variance, American Mathematical Monthly 107 (2000).
-        let most = (high - truth) * (truth - low);
-        if variance * (1.0 - self.variance_error) > most * (1.0 + 1e-9) {
+        // By roots, since squares of small numbers underflow.
+        let most = (high - truth).sqrt() * (truth - low).sqrt();
+        if (variance * (1.0 - self.variance_error)).sqrt() > most * (1.0 + 1e-9) {
+            let most = most * most;
             return Err(ClaimError::TooSpread { variance, truth, most });
         }
         Ok(Self { range, ..self })

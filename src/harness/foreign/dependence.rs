@@ -6,7 +6,8 @@ use crate::harness::record::Verdict;
 
 /// Whether the mean changes on the way: only where that says more than that it is off.
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
-    let mean = reading.mean.as_ref()?;
+    // Without a ground to fail the mean there is none to say when it changes.
+    let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
     let change = mean.change();
     let limit = -(DRIFT * reading.trial.wanted.alpha).ln();
     let is_shown = change.ln_e >= limit && change.ln_e > mean.ln_e() && mean.is_founded();

@@ -259,6 +259,11 @@ impl Scalar {
         self.evidence.ln_e
     }
 
+    /// Whether it can fail at all.
+    pub(super) fn has_ground(&self) -> bool {
+        self.of_range.is_some() || self.ask.is_hard
+    }
+
     /// Whether the draws do not contradict what was assumed of them.
     pub(super) fn is_founded(&self) -> bool {
         let ground = self.of_variance.as_ref();
