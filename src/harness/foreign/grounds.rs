@@ -13,7 +13,7 @@
 //! *A bound on the deviation probability for sums of non-negative random variables*, JIPAM 4 (2003),
 //! article 15): α₀, a tenth of the scalar's level, pays for all e together; the evidence has the rest.
 //! No draws can show that unseen rare events do not carry the variance (Bahadur and Savage 1956), so
-//! `shown` is an assumption, and a verdict that rests on it says which.
+//! `shown` is an assumption: draws may pass by it, and the verdict says which, but never fail.
 
 use crate::harness::plan::BLOCK;
 use crate::stats::Powers;
