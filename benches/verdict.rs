@@ -10,7 +10,7 @@
 //! seed. With one seed a case of few scalars tells little: they pass early or late together.
 
 use trueflight::harness::options::DRAWS;
-use trueflight::harness::{Amount, Case, Options, Plan, judge, run, suite};
+use trueflight::harness::{Amount, Case, Options, Plan, run, suite, verdict};
 
 fn main() {
     let wished = std::env::args().skip(1).find_map(|word| word.parse().ok());
@@ -25,7 +25,7 @@ fn main() {
     for seed in 1..=seeds {
         plan.reseed(seed);
         let draws = run::draw(&plan, &|_| {});
-        let record = judge::judged(&plan, &draws, 0.0);
+        let record = verdict::judged(&plan, &draws, 0.0);
         for case in &record.results.cases {
             let Some(pace) = case.pace else { continue };
             match paces.iter_mut().find(|(name, _)| *name == case.name) {

@@ -9,8 +9,9 @@
 //! A module uses only floors strictly below its own; modules on one floor do not know each other.
 //!
 //! ```text
-//! 7  cli            arguments, exit codes, progress, the only prints (in the binary)
-//! 6  report         record → artifacts: csv, json, svg, png, console, junit, markdown
+//! 8  cli            arguments, exit codes, progress, the only prints (in the binary)
+//! 7  report         record → artifacts: csv, json, svg, png, console, junit, markdown
+//! 6  judge bench stress self_test render   programs that use the harness; they do not know each other
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
@@ -34,19 +35,24 @@
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
 
+pub mod bench;
 pub mod catalogue;
 pub mod estimators;
 pub mod files;
 pub mod geometry;
 pub mod harness;
+pub mod judge;
 pub mod media;
 pub mod mutants;
 pub mod numeric;
 pub mod phase;
 pub mod problems;
+pub mod render;
 pub mod report;
 pub mod rng;
+pub mod self_test;
 pub mod stats;
+pub mod stress;
 pub mod theory;
 
 /// The examples of the README are compiled and run with the documentation's.

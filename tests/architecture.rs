@@ -23,15 +23,25 @@ const FLOORS: &[(&str, u8)] = &[
     ("estimators", 4),
     ("mutants", 4),
     ("harness", 5),
-    ("report", 6),
-    ("cli", 7),
-    ("main", 7),
+    ("judge", 6),
+    ("bench", 6),
+    ("stress", 6),
+    ("self_test", 6),
+    ("render", 6),
+    ("report", 7),
+    ("cli", 8),
+    ("main", 8),
 ];
 
-/// The edges that are allowed on one floor: everything counts, mutants are twins of estimators, and
-/// `main` is nothing but the door to `cli`.
-const SIDEWAYS: &[(&str, &str)] =
-    &[("geometry", "numeric"), ("rng", "numeric"), ("mutants", "estimators"), ("main", "cli")];
+/// The edges that are allowed on one floor: everything counts, mutants are twins of estimators, what
+/// judges foreign draws is tested by itself, and `main` is nothing but the door to `cli`.
+const SIDEWAYS: &[(&str, &str)] = &[
+    ("geometry", "numeric"),
+    ("rng", "numeric"),
+    ("mutants", "estimators"),
+    ("main", "cli"),
+    ("self_test", "judge"),
+];
 
 /// Edges that go down and are forbidden all the same: theory and media hold no generator,
 /// estimators no tolerance, and a report sees only the record.

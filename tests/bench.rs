@@ -9,9 +9,9 @@ use std::process::Output;
 use assert_cmd::Command;
 use common::{case, options};
 use tempfile::TempDir;
-use trueflight::harness::bench::figures::ERRORS;
-use trueflight::harness::bench::record::{Bench, BenchRow};
-use trueflight::harness::bench::{Amounts, measure};
+use trueflight::bench::figures::ERRORS;
+use trueflight::bench::record::{Bench, BenchRow};
+use trueflight::bench::{Amounts, measure};
 use trueflight::harness::{Case, Plan};
 
 const CASE: &str = "title = \"a case\"

@@ -5,7 +5,7 @@ mod common;
 use common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
 use trueflight::estimators::rules::Weight;
 use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Options, Plan, curves, judge};
+use trueflight::harness::{Options, Plan, curves, verdict};
 use trueflight::media::{Control, Piecewise};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
@@ -179,7 +179,7 @@ fn rod(more: &str) -> String {
 
 fn with_optima(text: &str) -> Vec<Row> {
     let cases = [case("test", text)];
-    let record = judge::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
+    let record = verdict::predicted_with_optima(&Plan::new(&cases, &options(1, 1000)));
     record.results.cases.into_iter().flat_map(|case| case.rows).collect()
 }
 
@@ -258,7 +258,7 @@ fn an_optimum_belongs_to_the_albedo_of_its_row() {
 /// A table of theory, so many columns wide.
 fn table(text: &str, view: View, width: usize) -> String {
     let cases = [case("test", text)];
-    let record = judge::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
     let table = console::table(&record, view, Pen { width, colour: false });
     let widest = table.lines().map(layout::width).max().expect("lines");
     assert!(widest <= width, "{widest} > {width}:\n{table}");
@@ -301,7 +301,7 @@ fn values_of_one_sweep_are_printed_apart() {
     let shown = table(text, View::Predict, 100);
     assert!(shown.contains("(σ\u{302} 0.48639)") && shown.contains("(σ\u{302} 0.4864)"), "{shown}");
     let cases = [case("test", text)];
-    let record = judge::planned(&Plan::new(&cases, &options(1, 1000)));
+    let record = verdict::planned(&Plan::new(&cases, &options(1, 1000)));
     let case = &record.results.cases[0];
     let names: Vec<String> = case.rows.iter().map(|row| experiment(case, row)).collect();
     for (name, label) in names.iter().zip(["0.48639", "0.4864"]) {

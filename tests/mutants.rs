@@ -8,9 +8,9 @@ use std::collections::BTreeSet;
 
 use common::{none, options};
 use trueflight::harness::checks;
-use trueflight::harness::self_test::mutation;
 use trueflight::harness::{Case, Plan, suite};
 use trueflight::mutants;
+use trueflight::self_test::mutation;
 
 #[test]
 fn every_mutant_is_caught_and_its_twin_passes() {

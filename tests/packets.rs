@@ -240,7 +240,7 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
         }
     }
     let draws = trueflight::harness::run::draw(&plan, &|_| {});
-    let record = trueflight::harness::judge::judged(&plan, &draws, 0.0);
+    let record = trueflight::harness::verdict::judged(&plan, &draws, 0.0);
     let failed = record.results.cases.iter().flat_map(|case| &case.rows);
     let failed: Vec<String> = failed
         .filter(|row| row.verdict == Some(Verdict::Fail))

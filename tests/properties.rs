@@ -14,7 +14,7 @@ use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use trueflight::harness::plan::Planned;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::{Plan, judge};
+use trueflight::harness::{Plan, verdict};
 use trueflight::numeric::Span;
 
 /// Runs a law on so many random inputs, the same in every run.
@@ -288,7 +288,7 @@ fn rods_and_slabs_are_predicted_or_refused() {
         );
         let Some(case) = reads_or_names_the_place(&text) else { return Ok(()) };
         let cases = [case];
-        let record = judge::predicted(&Plan::new(&cases, &options(1, 1000)));
+        let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
         for row in &record.results.cases[0].rows {
             if row.verdict == Some(Verdict::Refused) {
                 check(row.reason.len() > 10, || format!("{}: no reason", row.estimator))?;

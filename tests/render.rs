@@ -4,9 +4,9 @@
 use std::path::PathBuf;
 
 use trueflight::harness::Source;
-use trueflight::harness::render::record::{Exposure, PictureRecord};
-use trueflight::harness::render::{Picture, gallery as built_in};
-use trueflight::report::gallery;
+use trueflight::render::record::{Exposure, PictureRecord};
+use trueflight::render::{Picture, gallery as built_in};
+use trueflight::report::render as report;
 
 fn source(text: &str) -> Source {
     Source { name: "test".into(), path: PathBuf::from("test.toml"), text: text.into() }
@@ -213,8 +213,8 @@ fn pictures_are_the_same_on_any_number_of_threads() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         let records: Vec<PictureRecord> =
             pool.install(|| texts.iter().map(|text| rendered(text, 2)).collect());
-        let sheets = records.iter().map(|record| gallery::artifacts(record).expect("a sheet"));
-        (sheets.collect::<Vec<_>>(), gallery::table::csv(&records).expect("a table"))
+        let sheets = records.iter().map(|record| report::artifacts(record).expect("a sheet"));
+        (sheets.collect::<Vec<_>>(), report::table::csv(&records).expect("a table"))
     };
     let one = bytes(1);
     assert!(one == bytes(2) && one == bytes(7));
@@ -237,7 +237,7 @@ fn right_is_right_and_up_is_up() {
 #[test]
 fn float_maps_hold_the_image_from_the_lowest_row() {
     let record = rendered(&eq21(30), 1);
-    let files = gallery::artifacts(&record).expect("files");
+    let files = report::artifacts(&record).expect("files");
     let names: Vec<String> = files.iter().map(|file| file.path.display().to_string()).collect();
     assert_eq!(names[0], "test.png");
     let at = names.iter().position(|name| name == "test/1-woodcock.pfm").expect("a map");

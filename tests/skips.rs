@@ -6,7 +6,7 @@ use common::{case, options};
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
 use trueflight::harness::reuse::Kept;
-use trueflight::harness::{Case, Plan, judge, run};
+use trueflight::harness::{Case, Plan, run, verdict};
 
 /// The first draws of the first experiment of a case, from the same streams whatever its name.
 fn first_draws(text: &str) -> (DrawBuffer, f64) {
@@ -92,7 +92,7 @@ fn a_residual_of_zero_is_answered_without_collisions() {
     );
     let cases = [case("zero", &text)];
     let plan = Plan::new(&cases, &options(1, 1_000_000));
-    let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     let row = &record.results.cases[0].rows[0];
     assert_eq!((row.skipped, row.draws, row.drawn), (Some(1.0), Some(8), Some(8)));
     assert_eq!((row.lookups_per_draw, row.variance), (Some(0.0), Some(0.0)));
@@ -123,7 +123,7 @@ fn what_has_not_changed_is_reused_and_no_number_changes() {
     let second = run::draw_the_rest(&plan, &read, &|_| panic!("nothing is drawn"));
     assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
     let json = |draws| {
-        let record = judge::judged(&plan, draws, 0.0);
+        let record = verdict::judged(&plan, draws, 0.0);
         serde_json::to_string(&record.results).expect("encodes")
     };
     assert_eq!(json(&first), json(&second));

@@ -7,7 +7,7 @@ use common::{case, none, options};
 use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Plan, judge, run};
+use trueflight::harness::{Case, Plan, run, verdict};
 use trueflight::media::Volume;
 use trueflight::media::eq21::Eq21;
 use trueflight::rng::{Address, Streams};
@@ -230,7 +230,7 @@ fn every_rule_passes_in_every_shipped_case() {
     });
     let draws = std::env::var("TRUEFLIGHT_DRAWS").ok().and_then(|n| n.parse().ok());
     let plan = Plan::new(&cases, &options(1, draws.unwrap_or(30_000)));
-    let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     let (mut wrong, mut squares) = (Vec::new(), Vec::new());
     for case in &record.results.cases {
         for row in &case.rows {

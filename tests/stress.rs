@@ -5,10 +5,10 @@ use std::fs;
 use std::path::Path;
 
 use assert_cmd::Command;
-use trueflight::harness::stress::{Effort, Measure, PAGES, Row, Stress, all, narrow};
 use trueflight::harness::{Amount, Case, Options, Plan, Source};
 use trueflight::report::console::layout::Pen;
 use trueflight::report::stress as page;
+use trueflight::stress::{Effort, Measure, PAGES, Row, Stress, all, narrow};
 
 fn stress(out: &Path, threads: &str) -> (Option<i32>, String) {
     let mut command = Command::cargo_bin("trueflight").expect("built");

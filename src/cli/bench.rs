@@ -4,11 +4,11 @@ use std::path::PathBuf;
 
 use anyhow::{anyhow, bail};
 use clap::Args;
+use trueflight::bench::compare::{Comparison, compare};
+use trueflight::bench::record::Bench;
+use trueflight::bench::stored::Stored;
+use trueflight::bench::{Amounts, measure};
 use trueflight::harness::baseline::Baseline;
-use trueflight::harness::bench::compare::{Comparison, compare};
-use trueflight::harness::bench::record::Bench;
-use trueflight::harness::bench::stored::Stored;
-use trueflight::harness::bench::{Amounts, measure};
 use trueflight::harness::{Amount, Plan};
 use trueflight::report::{self, bench as page};
 

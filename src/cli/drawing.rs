@@ -11,7 +11,7 @@ use trueflight::files;
 use trueflight::harness::baseline::fingerprint;
 use trueflight::harness::record::Record;
 use trueflight::harness::reuse::Kept;
-use trueflight::harness::{Plan, judge, run};
+use trueflight::harness::{Plan, run, verdict};
 
 use super::{Console, output};
 
@@ -30,7 +30,7 @@ pub fn draw_the_rest(plan: &Plan, kept: &mut Kept, console: &Console) -> Record 
     let draws = run::draw_the_rest(plan, kept, &|draws| bar.inc(draws));
     bar.finish_and_clear();
     kept.keep(plan, &draws);
-    judge::judged(plan, &draws, begin.elapsed().as_secs_f64())
+    verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
 /// What this program has drawn for the results in a folder.

@@ -1,8 +1,8 @@
 //! `trueflight explain`: the manual page of anything in the catalogue.
 
 use clap::Args;
-use trueflight::harness::render::gallery;
 use trueflight::harness::suite;
+use trueflight::render::gallery;
 
 use super::Console;
 use super::list::catalogues;

@@ -6,14 +6,13 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 use trueflight::files;
 use trueflight::harness::case::Case;
-use trueflight::harness::foreign::claim::{Claim, Given, Lookups, ROUNDING};
-use trueflight::harness::foreign::judge::{Trial, Wanted};
-use trueflight::harness::foreign::judgement::Judgement;
-use trueflight::harness::foreign::{self, Choice, Column, Draws, Format};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::source::CaseError;
-use trueflight::report::console::judgement;
-use trueflight::report::judgement_junit;
+use trueflight::judge::claim::{Claim, Given, Lookups, ROUNDING};
+use trueflight::judge::judgement::Judgement;
+use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::judge::{self, Choice, Column, Draws, Format};
+use trueflight::report::judge as report;
 
 use super::verdict::Inconclusive;
 use super::{Console, USAGE, output, selection};
@@ -176,7 +175,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         let unread: Vec<(String, String)> =
             errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
         let inconclusive = Inconclusive::in_junit(arguments.inconclusive);
-        let text = judgement_junit::text(&judged, &unread, arguments.alpha, inconclusive)?;
+        let text = report::junit::text(&judged, &unread, arguments.alpha, inconclusive)?;
         files::replace(path, text.as_bytes())
             .with_context(|| format!("cannot write {} (--junit)", path.display()))?;
     }
@@ -230,7 +229,7 @@ impl Arguments {
         }
         let length = match (Draws::open(file, format.clone())?.known_length(), &format) {
             (None, Format::Csv { .. }) if self.tolerance.is_none() => {
-                Some(foreign::count(file, format.clone())?)
+                Some(judge::count(file, format.clone())?)
             }
             (length, _) => length,
         };
@@ -333,12 +332,12 @@ fn show(
             let width = output::pen(console).width;
             let blocks: Vec<String> = judged
                 .iter()
-                .map(|(name, judgement)| judgement::block(judgement, name, width))
+                .map(|(name, judgement)| report::console::block(judgement, name, width))
                 .collect();
             let all = if is_one {
                 String::new()
             } else {
-                judgement::together(judged, worst(judged), arguments.alpha)
+                report::console::together(judged, worst(judged), arguments.alpha)
             };
             output::print(&(blocks.join("\n") + &all))
         }

@@ -6,9 +6,9 @@ use std::io::IsTerminal;
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
 use trueflight::estimators::{self, Estimated, controls, sampling};
-use trueflight::harness::render::{Picture, gallery};
 use trueflight::harness::{self, case::Case, checks, suite};
 use trueflight::problems::{self, MultipleScattering};
+use trueflight::render::{self, Picture, gallery};
 use trueflight::{media, phase, report};
 
 use super::Console;
@@ -69,6 +69,7 @@ pub fn catalogues() -> Vec<(String, Catalogue)> {
         ("checks".to_owned(), checks::CATALOGUE),
         ("reports".to_owned(), report::CATALOGUE),
         ("files".to_owned(), harness::CATALOGUE),
+        ("files".to_owned(), render::CATALOGUE),
     ]);
     all
 }

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use trueflight::harness::{judge, options::DRAWS};
+use trueflight::harness::{options::DRAWS, verdict};
 use trueflight::report::console::View;
 
 use super::output::{self, Format};
@@ -30,7 +30,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let options = selection.options(DRAWS)?;
     let (record, kept) = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
-        Ok((judge::planned(&plan), drawing::kept(&arguments.out)?.count(&plan)))
+        Ok((verdict::planned(&plan), drawing::kept(&arguments.out)?.count(&plan)))
     })?;
     output::print_record(&record, View::Plan, arguments.format, console)?;
     let [kept, ready] = kept;

@@ -1,7 +1,7 @@
 //! `trueflight predict`: theory only, no draws.
 
 use clap::Args;
-use trueflight::harness::{judge, options::DRAWS};
+use trueflight::harness::{options::DRAWS, verdict};
 use trueflight::report::console::View;
 
 use super::Console;
@@ -33,7 +33,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let record = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         let predict =
-            if arguments.optimum { judge::predicted_with_optima } else { judge::predicted };
+            if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
         Ok(predict(&plan))
     })?;
     let view = if arguments.moments { View::Moments } else { View::Predict };

@@ -7,9 +7,9 @@ use std::time::Instant;
 
 use anyhow::bail;
 use clap::Args;
-use trueflight::harness::render::{Picture, PictureRecord, gallery as built_in};
 use trueflight::harness::source::CaseError;
-use trueflight::report::{self, Artifact, gallery};
+use trueflight::render::{Picture, PictureRecord, gallery as built_in};
+use trueflight::report::{self, Artifact};
 
 use super::{Console, output, selection};
 
@@ -47,7 +47,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         if let Some(reason) = record.refusal() {
             bail!("{}: {reason}", picture.name);
         }
-        write(&gallery::artifacts(&record)?, &out)?;
+        write(&report::render::artifacts(&record)?, &out)?;
         if !console.quiet {
             let text = table(&record, begin.elapsed().as_secs_f64());
             bar.suspend(|| output::print(&text))?;
@@ -55,7 +55,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         records.push(record);
     }
     bar.finish_and_clear();
-    let bytes = gallery::table::csv(&records)?.into_bytes();
+    let bytes = report::render::table::csv(&records)?.into_bytes();
     write(&[Artifact { path: "gallery.csv".into(), bytes }], &out)?;
     if !console.quiet {
         output::print(&format!("{} pictures in {}\n", records.len(), out.display()))?;
@@ -104,7 +104,7 @@ fn table(record: &PictureRecord, seconds: f64) -> String {
          reference: {}, RMS error {}\n",
         record.title,
         record.reference.how,
-        gallery::short(record.reference.error)
+        report::render::short(record.reference.error)
     );
     for exposure in &record.exposures {
         let _ = match &exposure.outcome {
@@ -112,11 +112,11 @@ fn table(record: &PictureRecord, seconds: f64) -> String {
                 text,
                 "  {:<40} RMSE {:<9} theory {:<9} lookups/pixel {:<7} draws/pixel {:<7} fom {}",
                 exposure.estimator,
-                gallery::short(found.rmse),
-                found.predicted_rmse.map_or("–".into(), gallery::short),
-                gallery::short(found.lookups),
-                gallery::short(found.draws),
-                found.figure_of_merit.map_or("–".into(), gallery::short),
+                report::render::short(found.rmse),
+                found.predicted_rmse.map_or("–".into(), report::render::short),
+                report::render::short(found.lookups),
+                report::render::short(found.draws),
+                found.figure_of_merit.map_or("–".into(), report::render::short),
             ),
             Err(reason) => writeln!(text, "  {:<40} refused: {reason}", exposure.estimator),
         };

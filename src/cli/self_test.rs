@@ -4,8 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
-use trueflight::harness::self_test::{SelfTest, calibration, mutation, streams};
 use trueflight::report::{self, self_test as page};
+use trueflight::self_test::{SelfTest, calibration, mutation, streams};
 
 use super::Console;
 use super::output;

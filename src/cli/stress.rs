@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use trueflight::harness::stress::{self, Effort, PAGES};
 use trueflight::report::{self, stress as page};
+use trueflight::stress::{self, Effort, PAGES};
 
 use super::Console;
 use super::output;

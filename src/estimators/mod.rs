@@ -200,8 +200,6 @@ pub fn catalogues() -> Vec<Catalogue> {
 /// and the row in `trueflight list`.
 macro_rules! estimators {
     ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
-        $(pub mod $module;)*
-
         impl $crate::estimators::Estimated for $Problem {
             const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
                 name: "estimators",
@@ -295,8 +293,6 @@ use scored_draws;
 /// Lists recipes that prepare a sampling extinction or a control from its settings.
 macro_rules! recipes {
     ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
-        $(pub mod $module;)*
-
         /// Every recipe, in the order of registration.
         pub const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
             name: $name,

@@ -9,19 +9,29 @@
 
 pub mod body;
 pub mod cells;
+pub mod constant;
 pub mod control;
 pub mod course;
 pub mod cubics;
 pub mod cursor;
+pub mod eq21;
 pub mod even;
+pub mod exponential;
+pub mod gaussian;
+pub mod grid;
 pub mod grid_file;
 pub mod inverse;
 pub mod lattice;
 pub mod majorants;
 pub mod medium;
+pub mod noise;
 pub mod piecewise;
+pub mod piecewise_constant;
+pub mod piecewise_linear;
 pub mod placement;
+pub mod radial;
 pub mod search;
+pub mod sines;
 pub mod voxels;
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
@@ -197,8 +207,6 @@ pub trait VolumeVisitor {
 /// [`Volume`], the name in case files and the row in `trueflight list`.
 macro_rules! media {
     ($($module:ident :: $Field:ident,)*) => {
-        $(pub mod $module;)*
-
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "media", pages: &[$($crate::page!($module)),*] };

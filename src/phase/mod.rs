@@ -15,6 +15,10 @@
 //! A page implements [`PhaseFunction`] and is registered by its line in the list at the foot of this
 //! file.
 
+pub mod henyey_greenstein;
+pub mod isotropic;
+pub mod rayleigh;
+
 use crate::catalogue::{Catalogue, Settings};
 use crate::numeric::Lane;
 
@@ -43,8 +47,6 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
 /// files and the row in `trueflight list`.
 macro_rules! phases {
     ($($module:ident :: $Page:ident,)*) => {
-        $(pub mod $module;)*
-
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "phases", pages: &[$($crate::page!($module)),*] };

@@ -1,5 +1,16 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
+pub mod free_flight;
+pub mod furnace;
+pub mod infinite_medium;
+pub mod lambertian;
+pub mod rod;
+pub mod single_scattering;
+pub mod slab;
+pub mod sphere;
+pub mod transmittance;
+pub mod transmittance_curve;
+
 use crate::catalogue::{Catalogue, Settings, Value};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
@@ -8,9 +19,19 @@ pub mod multiple_scattering;
 pub mod scene;
 pub mod sky;
 
+pub use free_flight::FreeFlight;
+pub use furnace::Furnace;
+pub use infinite_medium::InfiniteMedium;
+pub use lambertian::Lambertian;
 pub use multiple_scattering::MultipleScattering;
+pub use rod::Rod;
 pub use scene::{Albedo, Scene};
+pub use single_scattering::SingleScattering;
 pub use sky::Sky;
+pub use slab::Slab;
+pub use sphere::Sphere;
+pub use transmittance::Transmittance;
+pub use transmittance_curve::TransmittanceCurve;
 
 /// Hands every problem, in the order of the design, to another macro. From its one line here come the
 /// module, the name in case files, the reader of its cases, and its rows in `trueflight list`.
@@ -34,11 +55,6 @@ pub(crate) use each_problem;
 
 macro_rules! pages {
     ($($module:ident :: $Problem:ident,)*) => {
-        $(
-            pub mod $module;
-            pub use $module::$Problem;
-        )*
-
         /// Every problem.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "problems", pages: &[$(crate::page!($module)),*] };

@@ -5,7 +5,6 @@
 //! rows of a case share stands once, over the table.
 
 mod closing;
-pub mod judgement;
 pub mod layout;
 pub mod views;
 

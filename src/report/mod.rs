@@ -3,17 +3,26 @@
 //! Floor 6. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
 //! It is one file and one line in the list at the foot of this page.
 
+pub mod anatomy_plot;
+pub mod annotations;
 pub mod bench;
+pub mod case_csv;
 pub mod changes;
+pub mod checks_csv;
 pub mod console;
-pub mod gallery;
-pub mod judgement_junit;
+pub mod judge;
+pub mod junit;
 pub mod labels;
+pub mod markdown;
 pub mod number;
 pub mod plots;
+pub mod record_json;
+pub mod render;
 pub mod rows;
 pub mod self_test;
 pub mod stress;
+pub mod summary_csv;
+pub mod sweep_plot;
 pub mod totals;
 pub mod troubles;
 
@@ -131,9 +140,6 @@ pub fn case_path(case: &str, ending: &str) -> PathBuf {
 /// semicolon are written only where an option asks for them.
 macro_rules! reports {
     ($($module:ident :: $Report:ident,)*; $($asked:ident,)*) => {
-        $(pub mod $module;)*
-        $(pub mod $asked;)*
-
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };

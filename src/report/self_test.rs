@@ -2,13 +2,13 @@
 
 use std::fmt::Write;
 
-use crate::harness::self_test::calibration::Rate;
-use crate::harness::self_test::streams::ALPHA;
-use crate::harness::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::number::{count, exact, short};
 use crate::report::rows::table as csv;
 use crate::report::{Artifact, ReportError};
+use crate::self_test::calibration::Rate;
+use crate::self_test::streams::ALPHA;
+use crate::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
 
 /// The tables for the screen.
 #[must_use]

@@ -12,7 +12,7 @@ use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
 use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::baseline::{Baseline, BaselineError, Entry};
-use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, judge, run};
+use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, run, verdict};
 use trueflight::rng::Streams;
 
 const CASE: &str = "title = \"a case\"
@@ -35,7 +35,7 @@ fn options(seed: u64) -> Options {
 }
 
 fn record(plan: &Plan) -> Record {
-    judge::judged(plan, &run::draw(plan, &|_| {}), 0.0)
+    verdict::judged(plan, &run::draw(plan, &|_| {}), 0.0)
 }
 
 fn baseline(seed: u64) -> Baseline {

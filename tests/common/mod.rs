@@ -9,7 +9,7 @@ use fearless_simd::Level;
 use trueflight::catalogue::Settings;
 use trueflight::estimators::{DrawBuffer, Experiment, Kernel};
 use trueflight::harness::record::{Finding, Row, Verdict};
-use trueflight::harness::{Amount, Case, CaseError, Options, Plan, Record, Source, judge, run};
+use trueflight::harness::{Amount, Case, CaseError, Options, Plan, Record, Source, run, verdict};
 use trueflight::media::{Body, Medium};
 use trueflight::rng::Streams;
 
@@ -40,7 +40,7 @@ pub fn options(seed: u64, draws: u64) -> Options {
 pub fn judged(cases: &[Case], options: &Options) -> Record {
     let plan = Plan::new(cases, options);
     let draws = run::draw(&plan, &|_| {});
-    judge::judged(&plan, &draws, 0.0)
+    verdict::judged(&plan, &draws, 0.0)
 }
 
 /// Draws and judges one case written as text, from seed 1.
@@ -52,7 +52,7 @@ pub fn rows(text: &str, draws: u64) -> Vec<Row> {
 /// What theory says of one case written as text, as `trueflight predict` shows it.
 pub fn predicted(text: &str) -> Vec<Row> {
     let cases = [case("test", text)];
-    let record = judge::predicted(&Plan::new(&cases, &options(1, 1000)));
+    let record = verdict::predicted(&Plan::new(&cases, &options(1, 1000)));
     record.results.cases.into_iter().flat_map(|case| case.rows).collect()
 }
 

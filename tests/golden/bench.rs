@@ -2,12 +2,10 @@
 
 use std::path::PathBuf;
 
-use trueflight::harness::bench::clock::Clock;
-use trueflight::harness::bench::compare::{Change, Comparison};
-use trueflight::harness::bench::record::{
-    Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times,
-};
-use trueflight::harness::bench::spread::Spread;
+use trueflight::bench::clock::Clock;
+use trueflight::bench::compare::{Change, Comparison};
+use trueflight::bench::record::{Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times};
+use trueflight::bench::spread::Spread;
 use trueflight::report::bench::{console, render, rows};
 use trueflight::report::console::layout::Pen;
 

@@ -1,12 +1,12 @@
 //! Verdicts need grounds: nothing fails because of what its draws cannot show.
 
 use trueflight::estimators::DrawBuffer;
-use trueflight::harness::foreign::claim::{Claim, Given, ROUNDING};
-use trueflight::harness::foreign::judge::{Trial, Wanted};
 use trueflight::harness::plan::BLOCK;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::self_test::streams::{self, CLAIMS, LAWS, Law};
 use trueflight::harness::{Case, Options, Plan, Source};
+use trueflight::judge::claim::{Claim, Given, ROUNDING};
+use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::self_test::streams::{self, CLAIMS, LAWS, Law};
 
 use super::{Place, raw, uniform};
 

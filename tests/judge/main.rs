@@ -10,7 +10,7 @@ use assert_cmd::Command;
 use tempfile::TempDir;
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::plan::BLOCK;
-use trueflight::harness::{Amount, Case, Options, Plan, Source, judge, run};
+use trueflight::harness::{Amount, Case, Options, Plan, Source, run, verdict};
 use trueflight::stats::gate::{Decision, Design, GateSums, tolerance_of};
 
 const CASE: &str = "title = \"a case\"
@@ -325,7 +325,7 @@ fn bad_input_is_2_with_one_clear_error() {
 fn drawn(case: &Case, draws: u64) -> (Vec<f64>, serde_json::Value) {
     let options = Options { draws: Amount::Exactly(draws), ..Options::default() };
     let plan = Plan::new(std::slice::from_ref(case), &options);
-    let record = judge::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
     let planned = &plan.cases[0].experiments[1];
     let ready = planned.outcome.as_ref().expect("it is drawn");
     let (mut values, mut buffer) = (Vec::new(), DrawBuffer::new(1));

@@ -2,10 +2,10 @@
 
 use std::io::Read;
 
-use trueflight::harness::foreign::claim::{Claim, Given};
-use trueflight::harness::foreign::judge::{Trial, Wanted};
-use trueflight::harness::foreign::judgement::Stop;
-use trueflight::harness::foreign::{Draws, Format};
+use trueflight::judge::claim::{Claim, Given};
+use trueflight::judge::judgement::Stop;
+use trueflight::judge::trial::{Trial, Wanted};
+use trueflight::judge::{Draws, Format};
 
 use super::{CASE, Place, UNIFORM, raw, uniform};
 

@@ -9,7 +9,7 @@ mod settings;
 use common::{case, differs, none, options};
 use serde_json::Value;
 use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Plan, judge};
+use trueflight::harness::{Plan, verdict};
 
 const EQ21: &str = "volume.eq21 = {}
     ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }";
@@ -32,7 +32,7 @@ fn planned(rod: &str, estimator: &str) -> Vec<Row> {
     let text =
         format!("title = \"a rod\"\n[problem.rod]\n{rod}\nestimators = [{{ {estimator} = {{}} }}]");
     let cases = [case("test", &text)];
-    let record = judge::planned(&Plan::new(&cases, &options(1, 100_000)));
+    let record = verdict::planned(&Plan::new(&cases, &options(1, 100_000)));
     record.results.cases.into_iter().flat_map(|case| case.rows).collect()
 }
 

@@ -1,5 +1,12 @@
 //! Recipes for the control σ_c: what is integrated exactly. It may exceed σ_t.
 
+pub mod constant;
+pub mod explorers;
+pub mod field;
+pub mod mean;
+pub mod minimum;
+pub mod none;
+
 use super::{Refusal, Site, recipes};
 use crate::media::Control;
 

@@ -1,5 +1,8 @@
 //! Samplers of the free flight along a ray.
 
+pub mod inversion;
+pub mod woodcock;
+
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::FreeFlight;

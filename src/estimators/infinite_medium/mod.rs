@@ -1,5 +1,7 @@
 //! Walks from a point source in a medium without end.
 
+pub mod particle;
+
 use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};

@@ -1,5 +1,8 @@
 //! Walks through a body under light from all sides.
 
+pub mod particle;
+pub mod splitting;
+
 use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};

@@ -1,5 +1,8 @@
 //! Walks that gather the light of a sky.
 
+pub mod particle;
+pub mod splitting;
+
 use crate::estimators::space::{self, Particle, Sink, Start};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;

@@ -18,6 +18,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Rod;
 use crate::theory::ParticleRule;

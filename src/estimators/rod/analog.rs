@@ -10,6 +10,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.2.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Rod;
 use crate::theory::ParticleRule;

@@ -1,7 +1,13 @@
 //! Walks of a particle through a rod.
 
+pub mod adaptive;
+pub mod analog;
+pub mod non_terminating;
 pub mod packet;
+pub mod roulette;
+pub mod terminating;
 pub mod walk;
+pub mod weighted;
 
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::Rod;
@@ -91,6 +97,7 @@ macro_rules! walks {
         }
     };
 }
+use walks;
 
 estimators! {
     Rod:

@@ -13,6 +13,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.1 and 3.2, Eq. 9, and `SimulateParticle`.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Rod;
 use crate::theory::ParticleRule;

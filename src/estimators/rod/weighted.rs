@@ -15,6 +15,7 @@
 //! weight); the chances below σ_t: M. Galtier et al., *Integral formulation of null-collision Monte Carlo
 //! algorithms*, Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013).
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Rod;
 use crate::theory::ParticleRule;

@@ -1,5 +1,11 @@
 //! Recipes for the sampling extinction σ̂: any non-negative field that inverts exactly.
 
+pub mod constant;
+pub mod local_majorants;
+pub mod piecewise_constant;
+pub mod piecewise_linear;
+pub mod pilot;
+
 use super::{Refusal, Site, recipes};
 use crate::media::{Control, Majorants, Piecewise, Volume};
 

@@ -1,7 +1,15 @@
 //! Estimators of the radiance by single scattering of a point light.
 
+pub mod attenuation_driven;
+pub mod attenuation_resampled;
 pub mod connection;
+pub mod delta_tracking;
 pub mod main_part;
+pub mod scattering_driven;
+pub mod shared_walk;
+pub mod source_delta_mis;
+pub mod source_driven;
+pub mod source_scattering_mis;
 
 use crate::estimators::estimators;
 use crate::problems::SingleScattering;

@@ -12,6 +12,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Slab;
 use crate::theory::ParticleRule;

@@ -13,6 +13,7 @@
 //! null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38
 //! (2019), section 5.2.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Slab;
 use crate::theory::ParticleRule;

@@ -1,7 +1,12 @@
 //! Walks of the single particle model through a slab.
 
+pub mod adaptive;
+pub mod analog;
+pub mod non_terminating;
 pub mod packet;
+pub mod terminating;
 pub mod walk;
+pub mod weighted;
 
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
@@ -120,6 +125,7 @@ macro_rules! walks {
         }
     };
 }
+use walks;
 
 estimators! {
     Slab:

@@ -17,6 +17,7 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.2 and 3.3, Eq. 12.
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Slab;
 use crate::theory::ParticleRule;

@@ -15,6 +15,7 @@
 //! et al., *Integral formulation of null-collision Monte Carlo algorithms*, Journal of Quantitative
 //! Spectroscopy and Radiative Transfer 125 (2013).
 
+use super::walks;
 use crate::estimators::Estimator;
 use crate::problems::Slab;
 use crate::theory::ParticleRule;

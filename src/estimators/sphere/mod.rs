@@ -1,6 +1,8 @@
 //! Walks from an eye in or before a ball to its light.
 
 pub mod connect;
+pub mod next_event;
+pub mod particle;
 
 use crate::catalogue::rounded;
 use crate::estimators::space::{self, Particle, Start, Steps};

@@ -1,5 +1,19 @@
 //! Estimators of the transmittance of a ray.
 
+pub mod closed_form;
+pub mod decomposition;
+pub mod double;
+pub mod local_majorant;
+pub mod next_flight;
+pub mod ratio;
+pub mod ray_marching;
+pub mod regular;
+pub mod residual_ratio;
+pub mod single;
+pub mod unidirectional_mis;
+pub mod weighted_delta;
+pub mod woodcock;
+
 use crate::estimators::estimators;
 use crate::problems::Transmittance;
 

@@ -1,5 +1,6 @@
 //! Estimators of the transmittance at many distances from one walk.
 
+pub mod double;
 pub mod packet;
 pub mod portrait;
 

@@ -9,7 +9,7 @@
 //! temporary name and renamed.
 
 pub mod compare;
-pub(in crate::harness) mod file;
+pub(crate) mod file;
 pub mod scope;
 
 use std::io;

@@ -6,6 +6,22 @@
 //! a number of draws fixed beforehand; what must hold for every draw is watched on every draw; and
 //! the streams of random numbers are looked at themselves.
 
+pub mod atoms;
+pub mod counts;
+pub mod covariance;
+pub mod curve;
+pub mod depth;
+pub mod dispersion;
+pub mod distances;
+pub mod generator;
+pub mod invariant;
+pub mod lookups;
+pub mod mean;
+pub mod numeric;
+pub mod resolution;
+pub mod streams;
+pub mod variance;
+
 use super::case::Tolerance;
 use super::counted::Counted;
 use crate::catalogue::Catalogue;
@@ -299,8 +315,6 @@ pub fn is_uniform(name: &str) -> bool {
 /// Lists the checks: from one line each come the module, the name and the row in `list`.
 macro_rules! checks {
     ($($module:ident :: $Page:ident,)*) => {
-        $(pub mod $module;)*
-
         /// Every check, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "checks", pages: &[$($crate::page!($module)),*] };

@@ -1,7 +1,7 @@
 //! What changed since a stored bench, in words.
 
-use crate::harness::bench::compare::{Change, Comparison};
-use crate::harness::bench::spread::Spread;
+use crate::bench::compare::{Change, Comparison};
+use crate::bench::spread::Spread;
 use crate::report::changes::listed;
 use crate::report::number::{fixed, short};
 

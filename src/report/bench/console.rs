@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::changes;
-use crate::harness::bench::record::{Bench, BenchCase, BenchRow, Times};
-use crate::harness::bench::spread::Spread;
+use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
+use crate::bench::spread::Spread;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint, Pen, end_elided, wrapped};
 use crate::report::labels::Labels;
 use crate::report::number::{count, fixed, short, time};

@@ -1,6 +1,6 @@
 //! `CASE.error.csv`: the measured error of each experiment and channel against its price.
 
-use crate::harness::bench::record::BenchCase;
+use crate::bench::record::BenchCase;
 use crate::report::number::exact;
 use crate::report::rows::table;
 use crate::report::{Artifact, ReportError, case_path};

@@ -14,7 +14,7 @@ pub mod rows;
 
 use std::path::PathBuf;
 
-use crate::harness::bench::record::Bench;
+use crate::bench::record::Bench;
 use crate::report::{Artifact, ReportError};
 
 /// Every file of a bench.

@@ -5,7 +5,7 @@
 
 use plotters::style::{Color, RGBAColor};
 
-use crate::harness::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
+use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::report::labels::Labels;
 use crate::report::number::count;
 use crate::report::plots::font::{Typeface, fit};

@@ -5,8 +5,8 @@
 
 use serde::ser::{Serialize, Serializer};
 
-use crate::harness::bench::record::{Bench, BenchCase, BenchRow, Times};
-use crate::harness::bench::spread::Spread;
+use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
+use crate::bench::spread::Spread;
 use crate::report::ReportError;
 use crate::report::rows::{Cell, table};
 

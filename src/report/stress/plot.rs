@@ -2,13 +2,13 @@
 
 use plotters::style::Color;
 
-use crate::harness::stress::narrow::{Along, Curve, Point};
 use crate::report::ReportError;
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::Align;
 use crate::report::plots::style::{DARK, GREY, Style};
 use crate::report::plots::{Axis, Panel, Sheet};
+use crate::stress::narrow::{Along, Curve, Point};
 
 const LEFT: f64 = 84.0;
 const TOP: f64 = 132.0;

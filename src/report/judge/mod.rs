@@ -1,0 +1,4 @@
+//! What `judge` found, on the console and as `JUnit`.
+
+pub mod console;
+pub mod junit;

@@ -1,0 +1,81 @@
+//! Rendered pictures as files: a sheet of all images with their errors, the images themselves as PFM,
+//! and a table.
+
+pub mod colour;
+pub mod palette;
+pub mod pfm;
+pub mod sheet;
+pub mod table;
+
+use std::path::PathBuf;
+
+use crate::render::PictureRecord;
+use crate::render::record::{Exposure, ExposureRecord};
+use crate::report::{Artifact, ReportError};
+
+/// The files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator.
+///
+/// # Errors
+///
+/// Where the sheet cannot be painted.
+pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
+    let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
+    let png = sheet::png(record).map_err(wrong)?;
+    let mut files =
+        vec![Artifact { path: PathBuf::from(format!("{}.png", record.name)), bytes: png }];
+    let mut keep = |name: &str, image: &[f64]| {
+        let path = PathBuf::from(format!("{}/{name}.pfm", record.name));
+        files.push(Artifact { path, bytes: pfm::encode(record.size, image) });
+    };
+    keep("reference", &record.reference.image);
+    for (number, exposure) in (1..).zip(&record.exposures) {
+        if let Ok(Exposure { image, .. }) = &exposure.outcome {
+            keep(&format!("{number}-{}", plain(exposure)), image);
+        }
+    }
+    Ok(files)
+}
+
+/// The estimator's name without its settings: good for a file.
+fn plain(exposure: &ExposureRecord) -> &str {
+    exposure.estimator.split(' ').next().unwrap_or_default()
+}
+
+/// σ̂ and control in words.
+fn given(exposure: &ExposureRecord) -> String {
+    let mut words = Vec::new();
+    if !exposure.sampling.is_empty() {
+        words.push(format!("σ̂ {}", exposure.sampling));
+    }
+    if !exposure.control.is_empty() {
+        words.push(format!("control {}", exposure.control));
+    }
+    words.join(", ")
+}
+
+/// Three digits, without an exponent where that is short.
+#[must_use]
+pub fn short(x: f64) -> String {
+    let size = x.abs();
+    if size == 0.0 {
+        return "0".into();
+    }
+    if !(1e-4..1e6).contains(&size) {
+        return format!("{x:.2e}");
+    }
+    let decimals = [(100.0, 0), (10.0, 1), (1.0, 2), (0.1, 3), (0.01, 4), (0.001, 5)];
+    let decimals =
+        decimals.into_iter().find(|&(least, _)| size >= least).map_or(6, |found| found.1);
+    format!("{x:.decimals$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_have_three_digits() {
+        let shown = [0.0, 123_456.0, 12.34, 0.012_345, -0.5, 1.2e-7].map(short);
+        assert_eq!(shown, ["0", "123456", "12.3", "0.0123", "-0.500", "1.20e-7"]);
+    }
+}

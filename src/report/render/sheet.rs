@@ -1,0 +1,255 @@
+//! A picture's sheet: the reference and every estimator's image, below each its error in false colour,
+//! and below that what it cost.
+
+use super::{colour, given, palette, short};
+use crate::render::PictureRecord;
+use crate::render::record::{Exposure, ExposureRecord};
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::paint;
+use crate::report::plots::sheet::{Align, Image, Sheet};
+use crate::report::plots::style::{DARK, FAINT, GREY};
+
+/// Units of the sheet to a pixel of the file.
+const FILE_PIXEL: f64 = 2.0 / 3.0;
+/// The distance of images from each other and from the rim.
+const GAP: f64 = 20.0;
+/// Images in a row at most, the reference among them.
+const MOST: usize = 6;
+/// The size of letters, and the distance of lines.
+const LETTER: f64 = 10.5;
+const LINE: f64 = 15.0;
+
+/// The sheet as a PNG file.
+///
+/// # Errors
+///
+/// In words, where the painter gives up.
+pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
+    let face = Typeface::load().map_err(|error| error.to_string())?;
+    let sheet = compose(record, &face);
+    let (rgb, (width, height)) = paint::pixels_of(&sheet)?;
+    palette::encode(&rgb, width, height).map_err(|error| error.to_string())
+}
+
+/// Where a column of the sheet is.
+struct Column {
+    left: f64,
+    top: f64,
+    size: [f64; 2],
+}
+
+fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
+    let count = record.exposures.len() + 1;
+    // Rows of equal length, as few as can be.
+    let bands = count.div_ceil(MOST);
+    let across = count.div_ceil(bands);
+    let [columns, rows] = record.size;
+    // Small pictures are shown twice as large.
+    let zoom = if columns <= 160 { 2.0 } else { 1.0 } * FILE_PIXEL;
+    let size = [columns, rows].map(|n| n as f64 * zoom);
+    // Corners on whole pixels of the file.
+    let even = |x: f64| (x / 2.0).ceil() * 2.0;
+    let step = even(size[0].max(150.0) + GAP);
+    let room = step - GAP;
+    let below = record.exposures.iter().map(|exposure| words(face, exposure, room).len());
+    let lines = below.fold(4, usize::max);
+    let band = even(2.0 * size[1] + 14.0 + lines as f64 * LINE + GAP);
+    let head = 64.0;
+    let width = GAP + across as f64 * step;
+    let mut sheet = Sheet::new(width, head + bands as f64 * band);
+    let full = width - 2.0 * GAP;
+    let title = fit(face, &record.title, 16.0, full);
+    sheet.text([GAP, 22.0], title, 16.0, DARK, Align::Start);
+    let told = fit(face, &told(record), LETTER, full);
+    sheet.text([GAP, 44.0], told, LETTER, GREY, Align::Start);
+    for number in 0..count {
+        let (row, column) = (number / across, number % across);
+        let (left, top) = (GAP + column as f64 * step, head + row as f64 * band);
+        let place = Column { left, top, size };
+        match number.checked_sub(1) {
+            None => reference(&mut sheet, face, record, &place, room),
+            Some(index) => {
+                exposure(&mut sheet, face, record, &record.exposures[index], &place, room);
+            }
+        }
+    }
+    sheet
+}
+
+fn told(record: &PictureRecord) -> String {
+    let [columns, rows] = record.size;
+    format!(
+        "{} in {}, {columns} × {rows}; {} lookups for each of {} pixels that the volume covers; \
+         {} empty pixels cost no lookup and no random number",
+        record.problem, record.medium, record.budget, record.covered, record.empty
+    )
+}
+
+fn reference(
+    sheet: &mut Sheet,
+    face: &Typeface,
+    record: &PictureRecord,
+    place: &Column,
+    room: f64,
+) {
+    let Column { left, top, size } = *place;
+    sheet.image(picture(record, &record.reference.image, [left, top], size));
+    legend(sheet, record, place);
+    let mut lines = wrapped(face, &format!("reference: {}", record.reference.how), room, 3);
+    let found = &record.reference;
+    lines.push(format!("its RMS error {}", short(found.error)));
+    if found.lookups > 0.0 {
+        lines.push(format!("lookups/pixel {}", short(found.lookups)));
+    }
+    write(sheet, place, &lines);
+}
+
+/// What the colours of the errors mean, where the reference would have its own.
+fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
+    let Column { left, top, size } = *place;
+    let top = top + size[1] + 8.0;
+    let (high, low) = (top + 30.0, top + size[1] - 30.0);
+    let bar = [left + 20.0, left + 38.0];
+    let steps = 49_u32;
+    for step in 0..steps {
+        let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(steps);
+        let [r, g, b] = colour::signed(2.0 * f64::from(step) / f64::from(steps - 1) - 1.0);
+        let (y, end) = (at(step), at(step + 1));
+        let corners = vec![[bar[0], y], [bar[1], y], [bar[1], end], [bar[0], end]];
+        sheet.area(corners, crate::report::plots::style::ink(r, g, b));
+    }
+    let frame = [[bar[0], high], [bar[1], high], [bar[1], low], [bar[0], low], [bar[0], high]];
+    sheet.path(frame.to_vec(), 1.0, GREY);
+    let strongest = record.strongest;
+    let marks = [
+        (high, format!("≥ {}", number(strongest))),
+        (0.5 * (high + low), "0".into()),
+        (low, format!("≤ −{}", number(strongest))),
+    ];
+    for (y, text) in marks {
+        sheet.path(vec![[bar[1], y], [bar[1] + 5.0, y]], 1.0, GREY);
+        sheet.text([bar[1] + 9.0, y], text, LETTER, DARK, Align::Start);
+    }
+    let words = "image − reference";
+    sheet.text([left + 0.5 * size[0], top + 10.0], words, LETTER, DARK, Align::Middle);
+}
+
+/// A round number.
+fn number(x: f64) -> String {
+    if (1e-3..1e4).contains(&x) { format!("{x}") } else { format!("{x:e}") }
+}
+
+fn exposure(
+    sheet: &mut Sheet,
+    face: &Typeface,
+    record: &PictureRecord,
+    exposure: &ExposureRecord,
+    place: &Column,
+    room: f64,
+) {
+    let Column { left, top, size } = *place;
+    match &exposure.outcome {
+        Ok(found) => {
+            sheet.image(picture(record, &found.image, [left, top], size));
+            let below = [left, top + size[1] + 8.0];
+            sheet.image(difference(record, &found.image, below, size));
+        }
+        Err(reason) => {
+            frame(sheet, left, top, size);
+            frame(sheet, left, top + size[1] + 8.0, size);
+            for (i, line) in wrapped(face, &format!("refused: {reason}"), size[0] - 16.0, 7)
+                .into_iter()
+                .enumerate()
+            {
+                let y = top + 20.0 + LINE * i as f64;
+                sheet.text([left + 8.0, y], line, LETTER, DARK, Align::Start);
+            }
+        }
+    }
+    write(sheet, place, &words(face, exposure, room));
+}
+
+/// What stands below an image.
+fn words(face: &Typeface, exposure: &ExposureRecord, room: f64) -> Vec<String> {
+    let mut lines = wrapped(face, &exposure.estimator, room, 2);
+    lines.extend(wrapped(face, &given(exposure), room, 2));
+    lines.extend(exposure.outcome.iter().flat_map(costs));
+    lines
+}
+
+fn costs(found: &Exposure) -> Vec<String> {
+    let predicted = found.predicted_rmse.map(|rmse| format!(" (theory {})", short(rmse)));
+    let merit = found.figure_of_merit.map_or("–".into(), short);
+    let mut lines = vec![
+        format!("RMSE {}{}", short(found.rmse), predicted.unwrap_or_default()),
+        format!("lookups/pixel {}", short(found.lookups)),
+        format!("draws/pixel {}", short(found.draws)),
+        format!("figure of merit {merit}"),
+    ];
+    if found.pilots > 0.0 {
+        lines.push(format!("pilot lookups/pixel {}", short(found.pilots)));
+    }
+    lines
+}
+
+fn write(sheet: &mut Sheet, place: &Column, lines: &[String]) {
+    let Column { left, top, size } = *place;
+    let first = top + 2.0 * size[1] + 8.0 + 14.0;
+    for (i, line) in lines.iter().enumerate() {
+        let at = [left, first + LINE * i as f64];
+        sheet.text(at, line.as_str(), LETTER, DARK, Align::Start);
+    }
+}
+
+fn frame(sheet: &mut Sheet, left: f64, top: f64, size: [f64; 2]) {
+    let (right, low) = (left + size[0], top + size[1]);
+    let corners = [[left, top], [right, top], [right, low], [left, low], [left, top]];
+    sheet.path(corners.to_vec(), 1.0, FAINT);
+}
+
+fn picture(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2]) -> Image {
+    let pixels = image.iter().map(|x| colour::grey(x / record.white)).collect();
+    Image { at, size, columns: record.size[0], pixels }
+}
+
+fn difference(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2]) -> Image {
+    let pairs = image.iter().zip(&record.reference.image);
+    let pixels = pairs.map(|(x, truth)| colour::signed((x - truth) / record.strongest)).collect();
+    Image { at, size, columns: record.size[0], pixels }
+}
+
+/// A text in lines of a width; what does not fit into the last is cut.
+fn wrapped(face: &Typeface, text: &str, width: f64, most: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut() {
+            Some(line) if face.width(&format!("{line} {word}"), LETTER) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    if lines.len() > most {
+        let rest = lines.split_off(most - 1).join(" ");
+        lines.push(rest);
+    }
+    lines.into_iter().map(|line| fit(face, &line, LETTER, width)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_text_is_broken_at_spaces_and_cut_at_the_end() {
+        let face = Typeface::load().expect("the font is sound");
+        let text = "single (non-terminating, a=0.7) with a rather long explanation";
+        let lines = wrapped(&face, text, 120.0, 2);
+        assert_eq!(lines.len(), 2);
+        assert!(lines[1].ends_with('…'), "{lines:?}");
+        assert!(lines.iter().all(|line| face.width(line, LETTER) <= 120.0));
+        assert_eq!(wrapped(&face, "short", 120.0, 2), ["short"]);
+        assert!(wrapped(&face, "", 120.0, 2).is_empty());
+    }
+}

@@ -1,0 +1,259 @@
+//! The stress test's table on the screen, as CSV and as JSON, and single precision as CSV and a plot.
+
+mod plot;
+
+use std::fmt::Write;
+
+use serde::Serialize;
+
+use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
+use crate::report::number::{count, exact, short};
+use crate::report::plots;
+use crate::report::rows::table as csv;
+use crate::report::{Artifact, ReportError};
+use crate::stress::narrow::{Along, Curve, DRAWS};
+use crate::stress::{Row, Stress};
+
+/// The folder below the results.
+const FOLDER: &str = "stress";
+
+/// The tables for the screen.
+#[must_use]
+pub fn table(found: &Stress, pen: Pen) -> String {
+    let mut text = String::new();
+    let rows = &found.rows;
+    let column = |head, right, rank, field: &dyn Fn(&Row) -> String| Column {
+        head,
+        right,
+        rank,
+        fields: rows.iter().map(|row| Field::plain(field(row))).collect(),
+    };
+    let holds = |row: &Row| {
+        let (word, paint) = if row.holds() { ("yes", Paint::Green) } else { ("NO", Paint::Red) };
+        Field { text: word.to_owned(), paint }
+    };
+    let mut grid = Grid {
+        columns: vec![
+            column("quantity", false, 0, &|row| row.quantity.clone()),
+            column("range", false, 2, &|row| row.range.clone()),
+            column("trials", true, 1, &|row| count(row.trials)),
+            column("skipped", true, 1, &|row| match row.skipped {
+                0 => String::new(),
+                skipped => count(skipped),
+            }),
+            column("worst", true, 0, &|row| short(row.worst, 2)),
+            column("bound", true, 0, &|row| short(row.bound, 2)),
+            column("in", false, 0, &|row| row.measure.words().to_owned()),
+            Column {
+                head: "holds",
+                right: false,
+                rank: 0,
+                fields: rows.iter().map(holds).collect(),
+            },
+        ],
+    };
+    grid.fit(pen.width);
+    text.push_str(&grid.render(pen));
+    for row in rows.iter().filter(|row| !row.holds()) {
+        let said = if row.is_mostly_skipped() {
+            let Row { quantity, skipped, trials, first_skipped, .. } = row;
+            format!(
+                "{quantity}: {skipped} skipped, {trials} compared; first skipped: {first_skipped}"
+            )
+        } else {
+            format!("{}: {} at {}", row.quantity, exact(row.worst), row.place)
+        };
+        for line in wrapped(&said, pen.width) {
+            let _ = writeln!(text, "{}", pen.paint(Paint::Red, &line));
+        }
+    }
+    text.push('\n');
+    single_precision(&mut text, pen, &found.narrow.curves);
+    let broken = rows.iter().filter(|row| !row.holds()).count();
+    let verdict = if broken == 0 {
+        pen.paint(Paint::Green, &format!("all {} bounds hold", rows.len()))
+    } else {
+        pen.paint(Paint::Red, &format!("{broken} of {} bounds are broken", rows.len()))
+    };
+    let _ = writeln!(text, "{verdict} · {} s", short(found.seconds, 3));
+    text
+}
+
+fn single_precision(text: &mut String, pen: Pen, curves: &[Curve]) {
+    let title =
+        format!("single precision: its bias exceeds the error of {} draws from …", exact(DRAWS));
+    let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
+    let estimators: Vec<&Curve> =
+        curves.iter().filter(|curve| curve.along == Along::Steps).collect();
+    let of = |along: Along| -> Vec<Field> {
+        let curves = curves.iter().filter(|curve| curve.along == along);
+        let words = curves.map(|curve| {
+            let nowhere = || match curve.holds_to() {
+                Some(x) => format!("> {}", short(x, 3)),
+                None if curve.points.is_empty() => String::new(),
+                None => "not resolved".to_owned(),
+            };
+            curve.fails_from().map_or_else(nowhere, |x| short(x, 3))
+        });
+        words.map(Field::plain).collect()
+    };
+    let names = estimators.iter().map(|curve| Field::plain(curve.estimator.to_owned())).collect();
+    let column = |head, along| Column { head, right: true, rank: 0, fields: of(along) };
+    let mut grid = Grid {
+        columns: vec![
+            Column { head: "estimator", right: false, rank: 0, fields: names },
+            column("collisions", Along::Steps),
+            column("optical depth", Along::Depth),
+            column("origin, in lengths", Along::Origin),
+        ],
+    };
+    grid.fit(pen.width);
+    let _ = writeln!(text, "{}", grid.render(pen));
+}
+
+#[derive(Serialize)]
+struct JsonRow<'a> {
+    quantity: &'a str,
+    range: &'a str,
+    trials: u64,
+    skipped: u64,
+    measure: &'static str,
+    worst: Option<f64>,
+    bound: f64,
+    place: &'a str,
+    holds: bool,
+}
+
+#[derive(Serialize)]
+struct JsonPoint {
+    x: f64,
+    walks: f64,
+    bias: f64,
+    error: f64,
+    noise: Option<f64>,
+    exceeds: bool,
+}
+
+#[derive(Serialize)]
+struct JsonCurve {
+    family: &'static str,
+    estimator: &'static str,
+    along: &'static str,
+    fails_from: Option<f64>,
+    points: Vec<JsonPoint>,
+}
+
+#[derive(Serialize)]
+struct Document<'a> {
+    schema: u32,
+    holds: bool,
+    rows: Vec<JsonRow<'a>>,
+    single_precision: Vec<JsonCurve>,
+}
+
+/// A number that JSON knows.
+fn finite(x: f64) -> Option<f64> {
+    x.is_finite().then_some(x)
+}
+
+fn json(found: &Stress) -> Result<String, ReportError> {
+    let rows = found.rows.iter().map(|row| JsonRow {
+        quantity: &row.quantity,
+        range: &row.range,
+        trials: row.trials,
+        skipped: row.skipped,
+        measure: row.measure.words(),
+        worst: finite(row.worst),
+        bound: row.bound,
+        place: &row.place,
+        holds: row.holds(),
+    });
+    let curves = found.narrow.curves.iter().map(|curve| JsonCurve {
+        family: curve.family,
+        estimator: curve.estimator,
+        along: curve.along.word(),
+        fails_from: curve.fails_from(),
+        points: curve
+            .points
+            .iter()
+            .map(|point| JsonPoint {
+                x: point.x,
+                walks: point.walks,
+                bias: point.bias,
+                error: point.error,
+                noise: finite(point.noise),
+                exceeds: point.exceeds(),
+            })
+            .collect(),
+    });
+    let document = Document {
+        schema: 1,
+        holds: found.holds(),
+        rows: rows.collect(),
+        single_precision: curves.collect(),
+    };
+    Ok(serde_json::to_string_pretty(&document)? + "\n")
+}
+
+/// The tables as CSV and JSON and the plot of single precision, all below `stress/`.
+///
+/// # Errors
+///
+/// Where an encoder or the painter gives up.
+pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
+    let rows = found.rows.iter().map(|row| {
+        vec![
+            row.quantity.clone(),
+            row.range.clone(),
+            row.trials.to_string(),
+            row.skipped.to_string(),
+            row.measure.words().to_owned(),
+            exact(row.worst),
+            exact(row.bound),
+            row.place.clone(),
+            row.holds().to_string(),
+        ]
+    });
+    let header =
+        ["quantity", "range", "trials", "skipped", "measure", "worst", "bound", "where", "holds"];
+    let stress = csv("the stress test", header, rows)?;
+    let points = found.narrow.curves.iter().flat_map(|curve| {
+        curve.points.iter().map(|point| {
+            vec![
+                curve.family.to_owned(),
+                curve.estimator.to_owned(),
+                curve.along.word().to_owned(),
+                exact(point.x),
+                exact(point.walks),
+                exact(point.bias),
+                exact(point.error),
+                exact(point.noise),
+                point.exceeds().to_string(),
+            ]
+        })
+    });
+    let header = [
+        "family",
+        "estimator",
+        "along",
+        "x",
+        "walks",
+        "bias",
+        "bias_error",
+        "noise_1e8",
+        "exceeds",
+    ];
+    let narrow = csv("single precision", header, points)?;
+    let artifact = |name: &str, text: String| Artifact {
+        path: format!("{FOLDER}/{name}").into(),
+        bytes: text.into_bytes(),
+    };
+    let mut all = vec![
+        artifact("stress.csv", stress),
+        artifact("stress.json", json(found)?),
+        artifact("single-precision.csv", narrow),
+    ];
+    let sheet = plot::figure(&found.narrow.curves)?;
+    all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);
+    Ok(all)
+}

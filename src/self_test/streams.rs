@@ -1,0 +1,329 @@
+//! Correct draws of hard laws, judged as foreign draws are: does any of them fail?
+//!
+//! ```text
+//! laws    Bernoulli(1e-2 … 1e-6), log-normal (σ = 1, 2, 3), a spike of chance 1e-5 on a constant and
+//!         on noise of width 1e-4, a constant with a spread of 1e-9, Pareto draws less 1 (index 2.2
+//!         and 4.5), a signed product ∏(1 − 3tᵢ) over a Poisson number of uniform tᵢ, exponential
+//! claims  the truth; and the variance; and the kurtosis; the truth and a range
+//! ```
+//!
+//! Truth, variance and kurtosis are exact. Where a law has no finite kurtosis, or no range, that claim
+//! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
+//! each of the claims.
+
+use rand::RngExt;
+use rand_distr::{Distribution, Poisson, StandardNormal};
+use rayon::prelude::*;
+
+use crate::harness::record::Verdict;
+use crate::judge::claim::{Claim, Given, ROUNDING};
+use crate::judge::trial::{Trial, Wanted};
+use crate::rng::{Address, Stream, exponential, unit};
+use crate::stats::binomial;
+
+/// How many draws a stream has.
+const DRAWS: usize = 400_000;
+/// The chance that a correct stream fails.
+pub const ALPHA: f64 = 1e-3;
+/// The confidence at which a promise counts as broken.
+const CERTAIN: f64 = 1.0 - 1e-6;
+/// The range of draws that are never negative.
+const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
+/// How large a spike is.
+const SPIKE: f64 = 1e5;
+/// Its chance.
+const RARE: f64 = 1e-5;
+/// How wide the noise below spikes is.
+const NOISE: f64 = 1e-4;
+/// How wide the nearly constant law is.
+const NARROW: f64 = 1e-9;
+/// Λ of the signed product.
+const MEAN_FACTORS: f64 = 1.5;
+
+/// A law of draws with what is known of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// 1 with this chance, else 0.
+    Bernoulli(f64),
+    /// `e^{σz}`, z normal.
+    LogNormal(f64),
+    /// 1, and with chance 1e-5 1e5 more.
+    Spike,
+    /// The same with a uniform noise of width 1e-4.
+    NoisySpike,
+    /// Uniform on an interval of length 1e-9 about 1.
+    Narrow,
+    /// `u^{−1/a} − 1`.
+    Pareto(f64),
+    /// `∏(1 − 3tᵢ)`: r from 0 to 3.
+    Signed,
+    /// `e^{−x}`.
+    Exponential,
+    /// On [0, 1].
+    Uniform,
+}
+
+/// Every law.
+pub const LAWS: [Law; 15] = [
+    Law::Bernoulli(1e-2),
+    Law::Bernoulli(1e-3),
+    Law::Bernoulli(1e-4),
+    Law::Bernoulli(1e-5),
+    Law::Bernoulli(1e-6),
+    Law::LogNormal(1.0),
+    Law::LogNormal(2.0),
+    Law::LogNormal(3.0),
+    Law::Spike,
+    Law::NoisySpike,
+    Law::Narrow,
+    Law::Pareto(2.2),
+    Law::Pareto(4.5),
+    Law::Signed,
+    Law::Exponential,
+];
+
+/// What is claimed of the draws.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Claims {
+    /// The truth alone.
+    Truth,
+    /// And the variance.
+    Variance,
+    /// And the variance and the kurtosis.
+    Kurtosis,
+    /// The truth and a range.
+    Range,
+}
+
+/// Every combination of claims.
+pub const CLAIMS: [Claims; 4] = [Claims::Truth, Claims::Variance, Claims::Kurtosis, Claims::Range];
+
+impl std::fmt::Display for Claims {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Truth => "truth",
+            Self::Variance => "truth, variance",
+            Self::Kurtosis => "truth, variance, kurtosis",
+            Self::Range => "truth, range",
+        })
+    }
+}
+
+impl std::fmt::Display for Law {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Bernoulli(p) => write!(f, "Bernoulli {p:e}"),
+            Self::LogNormal(sigma) => write!(f, "log-normal, σ = {sigma}"),
+            Self::Spike => write!(f, "spike of 1e-5 on a constant"),
+            Self::NoisySpike => write!(f, "spike of 1e-5 on noise"),
+            Self::Narrow => write!(f, "nearly constant"),
+            Self::Pareto(index) => write!(f, "shifted Pareto, index {index}"),
+            Self::Signed => write!(f, "signed product, r to 3"),
+            Self::Exponential => write!(f, "exponential"),
+            Self::Uniform => write!(f, "uniform"),
+        }
+    }
+}
+
+/// Central moments from raw ones: variance and kurtosis.
+fn central([m1, m2, m3, m4]: [f64; 4]) -> (f64, f64) {
+    let variance = m2 - m1 * m1;
+    let fourth = m4 - 4.0 * m1 * m3 + 6.0 * m1 * m1 * m2 - 3.0 * m1.powi(4);
+    (variance, fourth / (variance * variance))
+}
+
+impl Law {
+    /// Mean, variance, kurtosis where it is finite, and range where there is one.
+    fn moments(self) -> (f64, f64, Option<f64>, Option<[f64; 2]>) {
+        let two_point = |p: f64| (1.0 - 3.0 * p * (1.0 - p)) / (p * (1.0 - p));
+        match self {
+            Self::Bernoulli(p) => (p, p * (1.0 - p), Some(two_point(p)), Some([0.0, 1.0])),
+            Self::LogNormal(sigma) => {
+                let w = (sigma * sigma).exp();
+                let kurtosis = w.powi(4) + 2.0 * w.powi(3) + 3.0 * w * w - 3.0;
+                (w.sqrt(), (w - 1.0) * w, Some(kurtosis), Some(POSITIVE))
+            }
+            Self::Spike => {
+                let variance = SPIKE * SPIKE * RARE * (1.0 - RARE);
+                let range = [1.0, 1.0 + SPIKE];
+                (1.0 + SPIKE * RARE, variance, Some(two_point(RARE)), Some([range[0], range[1]]))
+            }
+            Self::NoisySpike => {
+                // Sums of independent parts: variances add, fourth moments with 6 times the product.
+                let (spike, noise) = (SPIKE * SPIKE * RARE * (1.0 - RARE), NOISE * NOISE / 12.0);
+                let fourth =
+                    two_point(RARE) * spike * spike + 6.0 * spike * noise + 1.8 * noise * noise;
+                let variance = spike + noise;
+                let range = [1.0 - 0.5 * NOISE, 1.0 + SPIKE + 0.5 * NOISE];
+                let kurtosis = fourth / (variance * variance);
+                (1.0 + SPIKE * RARE, variance, Some(kurtosis), Some(range))
+            }
+            Self::Narrow => {
+                let half = 0.5 * NARROW;
+                (1.0, NARROW * NARROW / 12.0, Some(1.8), Some([1.0 - half, 1.0 + half]))
+            }
+            Self::Pareto(a) => {
+                let variance = a / ((a - 1.0) * (a - 1.0) * (a - 2.0));
+                let raw = |k: f64| a / (a - k);
+                let all = [1.0, 2.0, 3.0, 4.0].map(raw);
+                let kurtosis = (a > 4.0).then(|| central(all).1);
+                (1.0 / (a - 1.0), variance, kurtosis, Some(POSITIVE))
+            }
+            Self::Signed => {
+                // ∫(1 − 3t)^k dt over [0, 1].
+                let integral = |k: i32| (1.0 - (-2f64).powi(k + 1)) / (3.0 * f64::from(k + 1));
+                let raw = [1, 2, 3, 4].map(|k| (MEAN_FACTORS * (integral(k) - 1.0)).exp());
+                let (variance, kurtosis) = central(raw);
+                (raw[0], variance, Some(kurtosis), None)
+            }
+            Self::Exponential => (1.0, 1.0, Some(9.0), Some(POSITIVE)),
+            Self::Uniform => (0.5, 1.0 / 12.0, Some(1.8), Some([0.0, 1.0])),
+        }
+    }
+
+    /// What is claimed; `None` where the law has nothing of it.
+    #[must_use]
+    pub fn claim(self, claims: Claims) -> Option<Claim> {
+        let (truth, variance, kurtosis, range) = self.moments();
+        let given = Given { truth, rounding: ROUNDING, ..Given::default() };
+        let given = match claims {
+            Claims::Truth => given,
+            Claims::Variance => Given { variance: Some(variance), ..given },
+            Claims::Kurtosis => {
+                Given { variance: Some(variance), kurtosis: Some(kurtosis?), ..given }
+            }
+            Claims::Range => Given { range: Some(range?), ..given },
+        };
+        Claim::new(&given).ok()
+    }
+
+    /// A draw.
+    fn draw(self, rng: &mut Stream) -> f64 {
+        match self {
+            Self::Bernoulli(p) => f64::from(u8::from(unit(rng) < p)),
+            Self::LogNormal(sigma) => {
+                let z: f64 = StandardNormal.sample(rng);
+                (sigma * z).exp()
+            }
+            Self::Spike => 1.0 + if unit(rng) < RARE { SPIKE } else { 0.0 },
+            Self::NoisySpike => {
+                let spike = if unit(rng) < RARE { SPIKE } else { 0.0 };
+                1.0 + NOISE * (unit(rng) - 0.5) + spike
+            }
+            Self::Narrow => 1.0 + NARROW * (unit(rng) - 0.5),
+            Self::Pareto(a) => (1.0 - unit(rng)).powf(-1.0 / a) - 1.0,
+            Self::Signed => {
+                let number = Poisson::new(MEAN_FACTORS).map_or(0.0, |law| law.sample(rng));
+                let mut product = 1.0;
+                let mut left = number;
+                while left >= 1.0 {
+                    product *= 1.0 - 3.0 * rng.random::<f64>();
+                    left -= 1.0;
+                }
+                product
+            }
+            Self::Exponential => exponential(rng),
+            Self::Uniform => unit(rng),
+        }
+    }
+
+    /// The draws of one stream.
+    #[must_use]
+    pub fn draws(self, stream: u64) -> Vec<f64> {
+        let experiment = crate::rng::name_hash(&self.to_string());
+        let mut rng = Address { seed: 1, experiment, block: stream, lane: 0 }.stream();
+        (0..DRAWS).map(|_| self.draw(&mut rng)).collect()
+    }
+}
+
+impl StreamVerdicts {
+    /// Whether the promise that a correct stream fails with chance α at most is not refuted.
+    #[must_use]
+    pub fn is_kept(&self) -> bool {
+        binomial::interval(self.failed, self.streams, CERTAIN).0 <= ALPHA
+    }
+}
+
+/// How the streams of one law verdicts with one claim.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StreamVerdicts {
+    /// The law.
+    pub law: String,
+    /// The claim.
+    pub known: String,
+    /// How many streams were judged.
+    pub streams: u64,
+    /// How many passed, failed, and were inconclusive.
+    pub passed: u64,
+    /// See there.
+    pub failed: u64,
+    /// See there.
+    pub inconclusive: u64,
+    /// What the first that failed said.
+    pub reason: String,
+}
+
+/// Judges so many streams of every law with every claim; `step` is told of each stream.
+#[must_use]
+pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
+    LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
+}
+
+fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
+    let wanted = Wanted { alpha: ALPHA, ..Wanted::default() };
+    let trials: Vec<(Claims, Trial)> = CLAIMS
+        .into_iter()
+        .filter_map(|known| {
+            let trial = Trial::new(law.claim(known)?, wanted, Some(DRAWS as u64)).ok()?;
+            Some((known, trial))
+        })
+        .collect();
+    let judged: Vec<Vec<(Verdict, String)>> = (0..streams)
+        .into_par_iter()
+        .map(|stream| {
+            let draws = law.draws(stream);
+            let found = trials.iter().map(|(_, trial)| {
+                let judgement = trial.judge_all(&draws);
+                (judgement.verdict, judgement.reason)
+            });
+            let found = found.collect();
+            step(1);
+            found
+        })
+        .collect();
+    let verdicts = trials.iter().enumerate().map(|(k, (known, _))| {
+        let count = |verdict| judged.iter().filter(|found| found[k].0 == verdict).count() as u64;
+        let failure = judged.iter().find(|found| found[k].0 == Verdict::Fail);
+        StreamVerdicts {
+            law: law.to_string(),
+            known: known.to_string(),
+            streams,
+            passed: count(Verdict::Pass),
+            failed: count(Verdict::Fail),
+            inconclusive: count(Verdict::Inconclusive),
+            reason: failure.map_or(String::new(), |found| found[k].1.clone()),
+        }
+    });
+    verdicts.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_promise_is_broken_by_more_fails_than_chance_allows() {
+        let of = |failed| StreamVerdicts {
+            law: String::new(),
+            known: String::new(),
+            streams: 1000,
+            passed: 1000 - failed,
+            failed,
+            inconclusive: 0,
+            reason: String::new(),
+        };
+        // One is expected; P(12 or more) of a Poisson number of mean 1 is 8e-10, P(5 or more) 4e-3.
+        assert!(of(0).is_kept() && of(4).is_kept());
+        assert!(!of(12).is_kept() && !of(1000).is_kept());
+    }
+}
