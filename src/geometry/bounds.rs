@@ -15,13 +15,11 @@ pub struct Aabb {
 
 impl Aabb {
     /// The point of the box that is nearest to `p`.
-    #[must_use]
     pub fn nearest(&self, p: Point) -> Point {
         Point(std::array::from_fn(|i| p.0[i].max(self.low.0[i]).min(self.high.0[i])))
     }
 
     /// The values that `p·direction` takes in the box.
-    #[must_use]
     pub fn reach(&self, direction: Point) -> Span {
         (0..3).fold(Span::empty(0.0), |reach, i| {
             let (a, b) = (self.low.0[i] * direction.0[i], self.high.0[i] * direction.0[i]);
@@ -30,7 +28,6 @@ impl Aabb {
     }
 
     /// The part shared with another box; `None` where they do not meet.
-    #[must_use]
     pub fn intersect(&self, other: &Self) -> Option<Self> {
         let low: [f64; 3] = std::array::from_fn(|i| self.low.0[i].max(other.low.0[i]));
         let high: [f64; 3] = std::array::from_fn(|i| self.high.0[i].min(other.high.0[i]));
@@ -57,7 +54,6 @@ pub enum Bounds {
 impl Bounds {
     /// The stretch of the ray that is inside: empty for a ray that misses or only grazes, from 0
     /// for one that starts inside.
-    #[must_use]
     pub fn clip(&self, ray: &Ray) -> Span {
         match self {
             Self::Everywhere => ray.span(),
@@ -67,7 +63,6 @@ impl Bounds {
     }
 
     /// Its ends with bounds on their errors, which are nothing where the ray itself begins or ends.
-    #[must_use]
     pub fn ends(&self, ray: &Ray) -> [Known; 2] {
         let inside = self.clip(ray);
         let roundings = match self {
@@ -84,7 +79,6 @@ impl Bounds {
     }
 
     /// Whether the point is inside or on the boundary.
-    #[must_use]
     pub fn contains(&self, p: Point) -> bool {
         match self {
             Self::Everywhere => true,
@@ -94,7 +88,6 @@ impl Bounds {
     }
 
     /// The volume of the body, length³; infinite for all of space.
-    #[must_use]
     pub fn content(&self) -> f64 {
         match self {
             Self::Everywhere => f64::INFINITY,
@@ -104,7 +97,6 @@ impl Bounds {
     }
 
     /// The area of its boundary, length²; `None` for all of space, which has none.
-    #[must_use]
     pub fn surface(&self) -> Option<f64> {
         match self {
             Self::Everywhere => None,
@@ -117,7 +109,6 @@ impl Bounds {
     }
 
     /// The smallest box around the body; `None` for all of space.
-    #[must_use]
     pub fn enclosing_box(&self) -> Option<Aabb> {
         match self {
             Self::Everywhere => None,

@@ -14,7 +14,6 @@ use crate::numeric::Lane;
 
 /// Two unit vectors that are perpendicular to a unit vector and to each other.
 #[inline(always)]
-#[must_use]
 pub fn across(direction: Point) -> [Point; 2] {
     let [x, y, z] = direction.0;
     let sign = 1f64.copysign(z);
@@ -25,7 +24,6 @@ pub fn across(direction: Point) -> [Point; 2] {
 
 /// The direction at an angle of the given cosine from another, at an azimuth in turns.
 #[inline(always)]
-#[must_use]
 pub fn turned(direction: Point, cosine: f64, turns: f64) -> Point {
     let angle = std::f64::consts::TAU * turns;
     let sine = Lane::or_more((1.0 - cosine) * (1.0 + cosine), 0.0).sqrt();

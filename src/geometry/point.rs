@@ -8,7 +8,6 @@ pub struct Point(pub [f64; 3]);
 
 impl Point {
     /// Scalar product.
-    #[must_use]
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
@@ -22,14 +21,12 @@ impl Point {
     }
 
     /// Euclidean length.
-    #[must_use]
     pub fn norm(self) -> f64 {
         self.dot(self).sqrt()
     }
 
     /// The vector of length 1 in the same direction, scaled so that neither very long nor very
     /// short vectors overflow; `None` for the zero vector and for infinite ones.
-    #[must_use]
     pub fn normalised(self) -> Option<Self> {
         let largest = self.0.iter().fold(0.0f64, |m, x| m.max(x.abs()));
         if largest <= 0.0 || !largest.is_finite() {

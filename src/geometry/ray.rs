@@ -16,21 +16,18 @@ pub struct Ray {
 
 impl Ray {
     /// A ray along `direction`, which need not have length 1; `None` if it has no direction.
-    #[must_use]
     pub fn new(origin: Point, direction: Point, length: f64) -> Option<Self> {
         let direction = direction.normalised()?;
         Some(Self { origin, direction, length })
     }
 
     /// The point at distance `t`.
-    #[must_use]
     #[inline]
     pub fn at(&self, t: f64) -> Point {
         self.origin + self.direction * t
     }
 
     /// `[0, length]`.
-    #[must_use]
     pub fn span(&self) -> Span {
         Span::new(0.0, self.length)
     }

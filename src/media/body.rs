@@ -112,7 +112,6 @@ impl Body {
     }
 
     /// The field's name in the catalogue.
-    #[must_use]
     pub fn name(&self) -> &str {
         match self {
             Self::Line { name, .. } | Self::Volume { name, .. } => name,
@@ -120,7 +119,6 @@ impl Body {
     }
 
     /// The field along its line or ray, clipped to its bounds.
-    #[must_use]
     pub fn medium(&self) -> Medium {
         match self {
             Self::Line { profile, span, .. } => Medium::new(profile.clone(), *span, *span),

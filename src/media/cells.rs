@@ -17,7 +17,6 @@ pub struct Cells {
 
 impl Cells {
     /// The cells of the integer lattice on `inside`; a stretch without length is one cell.
-    #[must_use]
     #[allow(clippy::cast_possible_truncation)] // a lattice is addressed by 32-bit integers
     pub fn cross(start: [f64; 3], slope: [f64; 3], inside: Span) -> Self {
         let mut ends = vec![inside.from, inside.to];
@@ -37,19 +36,16 @@ impl Cells {
     }
 
     /// The number of cells.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.ends.len() - 1
     }
 
     /// One cell's stretch.
-    #[must_use]
     pub fn cell(&self, index: usize) -> Span {
         Span::new(self.ends[index], self.ends[index + 1])
     }
 
     /// The crossings inside a stretch.
-    #[must_use]
     pub fn crossings(&self, span: Span) -> Vec<f64> {
         self.ends.iter().copied().filter(|&t| span.contains_inside(t)).collect()
     }
@@ -71,7 +67,6 @@ impl Cells {
     }
 
     /// The integral over a stretch; the error is that of the sums, not of `integral` itself.
-    #[must_use]
     pub fn integrate(&self, span: Span, integral: impl Fn(usize, Span, Span) -> f64) -> Known {
         let integral = |index, part| integral(index, self.cell(index), part);
         let (first, last) = (self.find(span.from), self.find(span.to));
@@ -87,7 +82,6 @@ impl Cells {
 
     /// Where the integral of a non-negative field from the beginning of the stretch reaches
     /// `depth`; `None` where the stretch ends first.
-    #[must_use]
     pub fn invert(
         &self,
         span: Span,

@@ -24,7 +24,6 @@ pub struct Constant {
 
 impl Constant {
     /// With `σ_t ≥ 0`, 1/length, within bounds.
-    #[must_use]
     pub fn new(extinction: f64, bounds: Bounds) -> Self {
         Self { extinction, bounds }
     }

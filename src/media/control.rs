@@ -21,7 +21,6 @@ pub enum Control {
 
 impl Control {
     /// `σ_c(t)` in 1/length.
-    #[must_use]
     #[inline(always)]
     pub fn extinction<L: Lane>(&self, t: L) -> L {
         match self {
@@ -53,7 +52,6 @@ impl Control {
     }
 
     /// The value, where there is only one.
-    #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         match self {
             Self::None => Some(0.0),
@@ -63,7 +61,6 @@ impl Control {
     }
 
     /// `∫σ_c` over a span inside the medium's support.
-    #[must_use]
     pub fn optical_depth(&self, span: Span) -> Known {
         match self {
             Self::None => Known::new(0.0, 0.0),
@@ -73,7 +70,6 @@ impl Control {
     }
 
     /// The kinks of the control, in any order.
-    #[must_use]
     pub fn breaks(&self) -> Vec<f64> {
         match self {
             Self::None => Vec::new(),
@@ -88,7 +84,6 @@ impl Control {
     }
 
     /// Whether there is no control.
-    #[must_use]
     pub fn is_none(&self) -> bool {
         matches!(self, Self::None)
     }

@@ -29,7 +29,6 @@ pub struct Cubics {
 impl Cubics {
     /// The cubics that `cubic` gives for the cell about a distance, in powers of the distance from
     /// its beginning: it is asked with both.
-    #[must_use]
     pub fn new(
         start: [f64; 3],
         slope: [f64; 3],

@@ -15,7 +15,6 @@ pub struct Cursor {
 
 impl Piecewise {
     /// A walk from the first knot, or from where a field begins that is [`Piecewise::even`].
-    #[must_use]
     #[inline]
     pub fn begin(&self) -> Cursor {
         let t = self.even.as_ref().map_or(self.knots[0], |even| even.from);

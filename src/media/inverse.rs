@@ -33,7 +33,6 @@ impl Inverse {
     }
 
     /// See [`Medium::free_flight`].
-    #[must_use]
     pub fn free_flight(&self, depth: f64) -> Option<f64> {
         let Some(table) = &self.table else { return self.medium.free_flight(depth) };
         self.medium.profile().visit(Flight { table, depth })

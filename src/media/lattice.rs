@@ -34,7 +34,6 @@ pub enum Fade {
 impl Fade {
     /// `w(t)`.
     #[inline(always)]
-    #[must_use]
     pub fn weight<L: Lane>(self, t: L) -> L {
         match self {
             Self::Quintic => t * t * t * (t * (t * 6.0 - 15.0) + 10.0),
@@ -43,7 +42,6 @@ impl Fade {
     }
 
     /// The largest `|noise|` that any choice of gradients allows, to rounding.
-    #[must_use]
     pub fn bound(self) -> f64 {
         match self {
             Self::Quintic => 1.036_353_811_211_802_7,
@@ -60,7 +58,6 @@ fn mix<W: Words32>(h: W) -> W {
 
 /// The hash of a lattice point.
 #[inline(always)]
-#[must_use]
 pub fn hash3(x: u32, y: u32, z: u32, seed: u32) -> u32 {
     let [a, b, c] = STRIDES;
     let hash = x.wrapping_mul(a) ^ y.wrapping_mul(b) ^ z.wrapping_mul(c) ^ seed;
@@ -116,7 +113,6 @@ fn between<L: Lane>(w: L, a: L, b: L) -> L {
 
 /// Gradient noise at a point, in lattice coordinates below `2^51`.
 #[inline(always)]
-#[must_use]
 pub fn noise<L: Lane>(p: [L; 3], seed: u32, fade: Fade) -> L {
     let ((i, x), (j, y), (k, z)) = (floor(p[0]), floor(p[1]), floor(p[2]));
     let (x1, y1, z1) = (x - 1.0, y - 1.0, z - 1.0);
@@ -142,7 +138,6 @@ pub struct Cell {
 
 impl Cell {
     /// The cell that holds a point.
-    #[must_use]
     pub fn around(p: [f64; 3], seed: u32) -> Self {
         let corner = p.map(|x| floor(x).0);
         let hashes = corner_hashes(corner, seed);
@@ -151,7 +146,6 @@ impl Cell {
     }
 
     /// The cell's polynomial.
-    #[must_use]
     pub fn value(&self, p: [f64; 3], fade: Fade) -> f64 {
         let at: [f64; 3] = std::array::from_fn(|j| p[j] - self.corner[j]);
         let slopes = std::array::from_fn(|n| {
@@ -170,7 +164,6 @@ fn gradient(hashes: u64, end: u32) -> [f64; 3] {
 }
 
 /// The largest `|start| + |slope·t|` of any axis on a stretch; not a number where one is none.
-#[must_use]
 pub fn farthest(start: [f64; 3], slope: [f64; 3], inside: Span) -> f64 {
     let t = inside.from.abs().max(inside.to.abs());
     let reach = start.iter().zip(slope).map(|(a, b)| a.abs() + b.abs() * t);

@@ -26,19 +26,16 @@ pub struct Piecewise {
 
 impl Piecewise {
     /// One value on the whole span.
-    #[must_use]
     pub fn constant(value: f64, span: Span) -> Self {
         Self::steps(&[span.from, span.to], &[value])
     }
 
     /// `values[i]` between `breaks[i]` and `breaks[i + 1]`; breaks ascend.
-    #[must_use]
     pub fn steps(breaks: &[f64], values: &[f64]) -> Self {
         Self::pieces(breaks, values.to_vec(), vec![0.0; values.len()])
     }
 
     /// Straight lines through the points `(knots[i], values[i])`; knots ascend.
-    #[must_use]
     pub fn lines(knots: &[f64], values: &[f64]) -> Self {
         let pieces = knots.windows(2).zip(values.windows(2));
         let slope = pieces.map(|(k, v)| (v[1] - v[0]) / (k[1] - k[0])).collect();
@@ -46,7 +43,6 @@ impl Piecewise {
     }
 
     /// Straight lines between the given `(first, last)` values of each piece; knots ascend.
-    #[must_use]
     pub fn joined(knots: &[f64], ends: impl Iterator<Item = (f64, f64)>) -> Self {
         let lines = knots.windows(2).zip(ends);
         let (left, slope) =
@@ -122,32 +118,27 @@ impl Piecewise {
     }
 
     /// The knots, ascending.
-    #[must_use]
     pub fn knots(&self) -> &[f64] {
         &self.knots
     }
 
     /// The value, if there is only one.
-    #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         (self.left.len() == 1 && self.slope[0] == 0.0).then(|| self.left[0])
     }
 
     /// The field's one value other than zero, if it is so simple.
-    #[must_use]
     #[inline]
     pub fn even(&self) -> Option<&Even> {
         self.even.as_ref()
     }
 
     /// How many pieces there are.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.left.len()
     }
 
     /// Whether no piece has a slope.
-    #[must_use]
     pub fn is_steps(&self) -> bool {
         self.slope.iter().all(|&slope| slope == 0.0)
     }
@@ -169,7 +160,6 @@ impl Piecewise {
     }
 
     /// The field at `t`.
-    #[must_use]
     #[inline(always)]
     pub fn value<L: Lane>(&self, t: L) -> L {
         if let [value] = self.left[..]

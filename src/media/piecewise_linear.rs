@@ -88,20 +88,17 @@ impl Layers {
     }
 
     /// `σ_t` at the height of `p`.
-    #[must_use]
     pub fn extinction_at(&self, p: Point) -> f64 {
         self.pieces.value(p.dot(self.axis))
     }
 
     /// The largest value at any height that the box reaches.
-    #[must_use]
     pub fn majorant(&self, within: &Aabb) -> f64 {
         let span = within.reach(self.axis);
         self.pieces.on(span).corner_values().fold(0.0, f64::max)
     }
 
     /// The pieces as the ray crosses them: heights `p·axis` become distances.
-    #[must_use]
     pub fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
         let (height, climb) = (ray.origin.dot(self.axis), ray.direction.dot(self.axis));
         // A ray that climbs by less than rounding over its length stays in its layer.

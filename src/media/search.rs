@@ -28,7 +28,6 @@ pub struct Search {
 
 impl Search {
     /// Among the pieces between two or more knots, which ascend.
-    #[must_use]
     pub fn new(knots: &[f64]) -> Self {
         let (knots, pieces) = (knots.to_vec(), knots.len() - 1);
         if pieces <= FEW {

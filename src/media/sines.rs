@@ -82,13 +82,11 @@ impl Extinction for Waves {
 }
 
 /// `sin x / x`.
-#[must_use]
 pub fn sinc(x: f64) -> f64 {
     if x == 0.0 { 1.0 } else { x.sin() / x }
 }
 
 /// The largest `sin` of any angle between the two.
-#[must_use]
 pub fn highest_sine(angles: Span) -> f64 {
     let crest = FRAC_PI_2 + TAU * ((angles.from - FRAC_PI_2) / TAU).ceil();
     if crest <= angles.to { 1.0 } else { angles.from.sin().max(angles.to.sin()) }

@@ -46,7 +46,6 @@ pub struct Voxels {
 
 impl Voxels {
     /// The samples times a factor, in a box. With `Vertices` there are two or more along each axis.
-    #[must_use]
     pub fn new(
         samples: &Samples,
         factor: f64,
@@ -81,32 +80,27 @@ impl Voxels {
     }
 
     /// The box.
-    #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.bounds
     }
 
     /// The largest sample.
-    #[must_use]
     pub fn peak(&self) -> f64 {
         self.peak
     }
 
     /// Whether the field jumps between cells.
-    #[must_use]
     pub fn jumps(&self) -> bool {
         self.interpolation == Interpolation::Nearest
     }
 
     /// A point in lattice coordinates: cells lie between whole numbers.
-    #[must_use]
     pub fn lattice(&self, p: Point) -> [f64; 3] {
         let from = p - self.bounds.low;
         std::array::from_fn(|j| from.0[j] * self.scale[j] + self.shift)
     }
 
     /// A direction in lattice coordinates.
-    #[must_use]
     pub fn lattice_direction(&self, d: Point) -> [f64; 3] {
         std::array::from_fn(|j| d.0[j] * self.scale[j])
     }
@@ -129,7 +123,6 @@ impl Voxels {
 
     /// The field at a place in lattice coordinates.
     #[inline(always)]
-    #[must_use]
     pub fn value(&self, u: [f64; 3]) -> f64 {
         let ([i, j, k], [x, y, z]) = self.place(u);
         let [nx, ny, _] = self.size;
@@ -149,7 +142,6 @@ impl Voxels {
 
     /// The field along a stretch of ray within the cell about `middle`: a polynomial in the place
     /// `x ∈ [0, 1]` of the stretch, which begins at `start` and turns by `step` in all.
-    #[must_use]
     pub fn cubic(&self, middle: [f64; 3], start: [f64; 3], step: [f64; 3]) -> [f64; 4] {
         let ([i, j, k], _) = self.place(middle);
         let [nx, ny, _] = self.size;
@@ -176,7 +168,6 @@ impl Voxels {
     }
 
     /// The largest sample that a lookup in the box can touch.
-    #[must_use]
     pub fn highest(&self, within: &Aabb) -> f64 {
         // A billionth of a cell covers the rounding of a lookup's place.
         let low = self.place(self.lattice(within.low).map(|u| u - 1e-9)).0;

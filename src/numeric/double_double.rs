@@ -27,7 +27,6 @@ pub struct Wide {
 
 /// The sum of two doubles and its rounding error, exactly.
 #[inline]
-#[must_use]
 pub fn two_sum(a: f64, b: f64) -> Wide {
     let high = a + b;
     let moved = high - a;
@@ -43,7 +42,6 @@ fn quick_two_sum(a: f64, b: f64) -> Wide {
 
 /// The product of two doubles and its rounding error, exactly but for underflow.
 #[inline]
-#[must_use]
 pub fn two_prod(a: f64, b: f64) -> Wide {
     let high = a * b;
     Wide { high, low: a.mul_add(b, -high) }
@@ -58,19 +56,16 @@ impl Wide {
     pub const ONE: Self = Self { high: 1.0, low: 0.0 };
 
     /// The product of two doubles.
-    #[must_use]
     pub fn product(a: f64, b: f64) -> Self {
         two_prod(a, b)
     }
 
     /// The quotient of two doubles.
-    #[must_use]
     pub fn ratio(a: f64, b: f64) -> Self {
         Self::from(a) / Self::from(b)
     }
 
     /// The nearest double.
-    #[must_use]
     pub fn value(self) -> f64 {
         self.high + self.low
     }
@@ -181,7 +176,6 @@ impl Wide {
     }
 
     /// `sin self` and `cos self`, in radians, `|self| < 1e6`.
-    #[must_use]
     pub fn sin_cos(self) -> [Self; 2] {
         const HALVINGS: u32 = 6;
         let turns = (self.high / (2.0 * std::f64::consts::PI)).round();
@@ -207,7 +201,6 @@ impl Wide {
     }
 
     /// `|found − self|/|self|`; the absolute difference where this is 0.
-    #[must_use]
     pub fn relative_error(self, found: f64) -> f64 {
         let off = (Self::from(found) - self).abs().value();
         if self.high == 0.0 { off } else { off / self.high.abs() }

@@ -16,13 +16,11 @@ pub struct Known {
 
 impl Known {
     /// A value whose only error is its own rounding to a double.
-    #[must_use]
     pub fn exact(value: f64) -> Self {
         Self { value, error: f64::EPSILON * value.abs() }
     }
 
     /// A value with the given bound on its absolute error.
-    #[must_use]
     pub fn new(value: f64, error: f64) -> Self {
         Self { value, error }
     }
@@ -53,31 +51,26 @@ pub struct Span {
 
 impl Span {
     /// The stretch `[from, to]`.
-    #[must_use]
     pub fn new(from: f64, to: f64) -> Self {
         Self { from, to }
     }
 
     /// A stretch of length zero at `at`.
-    #[must_use]
     pub fn empty(at: f64) -> Self {
         Self { from: at, to: at }
     }
 
     /// `to − from`, never negative.
-    #[must_use]
     pub fn length(self) -> f64 {
         (self.to - self.from).max(0.0)
     }
 
     /// Whether the stretch has no length.
-    #[must_use]
     pub fn is_empty(self) -> bool {
         self.length() <= 0.0
     }
 
     /// The midpoint.
-    #[must_use]
     pub fn middle(self) -> f64 {
         0.5 * (self.from + self.to)
     }
@@ -91,7 +84,6 @@ impl Span {
     }
 
     /// Whether `t` lies strictly inside.
-    #[must_use]
     pub fn contains_inside(self, t: f64) -> bool {
         self.from < t && t < self.to
     }

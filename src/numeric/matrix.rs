@@ -11,7 +11,6 @@ pub struct Matrix {
 
 impl Matrix {
     /// Made entry by entry, from the row and the column of each; at least one column.
-    #[must_use]
     pub fn new(rows: usize, columns: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
         let columns = columns.max(1);
         let places = (0..rows * columns).map(|place| (place / columns, place % columns));
@@ -19,25 +18,21 @@ impl Matrix {
     }
 
     /// How many rows there are.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.entries.len() / self.columns
     }
 
     /// How many columns there are.
-    #[must_use]
     pub fn columns(&self) -> usize {
         self.columns
     }
 
     /// A row.
-    #[must_use]
     pub fn row(&self, row: usize) -> &[f64] {
         &self.entries[row * self.columns..][..self.columns]
     }
 
     /// An entry.
-    #[must_use]
     pub fn at(&self, row: usize, column: usize) -> f64 {
         self.row(row)[column]
     }
@@ -88,7 +83,6 @@ impl Matrix {
     }
 
     /// The product with a vector of which the first entries count, as many as there are columns.
-    #[must_use]
     pub fn applied(&self, vector: &[f64]) -> Vec<f64> {
         let rows = self.entries.chunks(self.columns);
         rows.map(|row| row.iter().zip(vector).map(|(x, y)| x * y).sum()).collect()
@@ -98,7 +92,6 @@ impl Matrix {
     /// of `1 − A` is positive. For `A ≥ 0` these are positive exactly where the series
     /// `1 + A + A² + …` converges (A. Berman, R. J. Plemmons, *Nonnegative Matrices in the
     /// Mathematical Sciences*, 1979, chapter 6), and then X is its product with B.
-    #[must_use]
     pub fn series_times(&self, other: &Self) -> Option<Self> {
         let (n, columns) = (self.columns, other.columns);
         let mut left: Vec<f64> = self.entries[..n * n].iter().map(|x| -x).collect();

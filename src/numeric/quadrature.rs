@@ -22,7 +22,6 @@ pub struct GaussLegendre {
 
 impl GaussLegendre {
     /// The rule with `n ≥ 1` nodes.
-    #[must_use]
     pub fn new(n: usize) -> Self {
         let (nodes, weights): (Vec<f64>, Vec<f64>) =
             (0..n).map(|i| node_and_weight(n, n - 1 - i)).unzip();

@@ -37,7 +37,6 @@ impl Sum {
     }
 
     /// The sum so far.
-    #[must_use]
     pub fn value(&self) -> f64 {
         self.sum + self.correction
     }
@@ -56,7 +55,6 @@ const LANES: usize = 16;
 
 /// `Σ f(x)` in sixteen lanes.
 #[inline(always)]
-#[must_use]
 pub fn sum_in_lanes(values: &[f64], f: impl Fn(f64) -> f64) -> f64 {
     let (rows, rest) = values.as_chunks::<LANES>();
     let mut lanes = [0.0; LANES];
@@ -70,7 +68,6 @@ pub fn sum_in_lanes(values: &[f64], f: impl Fn(f64) -> f64) -> f64 {
 
 /// `Σ f(x, y)` over two lists of the same length, likewise.
 #[inline]
-#[must_use]
 pub fn sum_of_pairs(x: &[f64], y: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
     let ((x, last_x), (y, last_y)) = (x.as_chunks::<LANES>(), y.as_chunks::<LANES>());
     let mut lanes = [0.0; LANES];

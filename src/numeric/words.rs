@@ -26,14 +26,12 @@ pub trait Words32: Copy {
 
 /// The bits of an element with these two words.
 #[inline(always)]
-#[must_use]
 pub fn joined([low, high]: [u32; 2]) -> u64 {
     u64::from(low) | u64::from(high) << 32
 }
 
 /// The two words of an element.
 #[inline(always)]
-#[must_use]
 #[allow(clippy::cast_possible_truncation)] // the halves
 pub fn apart(element: u64) -> [u32; 2] {
     [element as u32, (element >> 32) as u32]

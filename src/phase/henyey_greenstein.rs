@@ -36,13 +36,11 @@ pub struct HenyeyGreenstein {
 
 impl HenyeyGreenstein {
     /// With mean cosine `g`; `None` unless `−1 < g < 1`.
-    #[must_use]
     pub fn new(g: f64) -> Option<Self> {
         (g.abs() < 1.0).then_some(Self { g })
     }
 
     /// The mean cosine.
-    #[must_use]
     pub fn g(&self) -> f64 {
         self.g
     }

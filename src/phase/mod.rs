@@ -71,7 +71,6 @@ macro_rules! phases {
             }
 
             /// The name in case files, and the settings if there are any.
-            #[must_use]
             pub fn label(&self) -> String {
                 let (module, settings) = match self {
                     $(Self::$Page(page) => (stringify!($module), page.settings())),*
@@ -82,13 +81,11 @@ macro_rules! phases {
 
             /// `p(cos θ)`, 1/sr, for `cos θ` from −1 to 1.
             #[inline]
-            #[must_use]
             pub fn value<L: Lane>(&self, cosine: L) -> L {
                 match self { $(Self::$Page(page) => page.value(cosine)),* }
             }
 
             /// The Legendre moment `χ_l`.
-            #[must_use]
             pub fn moment(&self, order: usize) -> f64 {
                 match self { $(Self::$Page(page) => page.moment(order)),* }
             }
@@ -96,7 +93,6 @@ macro_rules! phases {
             /// The cosine below which a share `u` of all light is scattered; with `u` uniform in
             /// [0, 1], `cos θ` has its law.
             #[inline]
-            #[must_use]
             pub fn cosine<L: Lane>(&self, u: L) -> L {
                 match self { $(Self::$Page(page) => page.cosine(u)),* }
             }

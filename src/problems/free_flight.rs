@@ -22,7 +22,6 @@ pub struct FreeFlight {
 
 impl FreeFlight {
     /// Where optical depths are reached; prepared when it is first asked for.
-    #[must_use]
     pub fn inverse(&self) -> &Inverse {
         self.inverse.get_or_init(|| self.medium.inverse())
     }

@@ -41,19 +41,16 @@ pub struct Furnace {
 
 impl Furnace {
     /// The medium in space.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// Where the ray enters the bounds, or begins within them.
-    #[must_use]
     pub fn entry(&self) -> Point {
         self.entry
     }
 
     /// The direction of the ray.
-    #[must_use]
     pub fn direction(&self) -> Point {
         self.direction
     }

@@ -44,25 +44,21 @@ pub struct InfiniteMedium {
 
 impl InfiniteMedium {
     /// The medium in space.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// σ_t.
-    #[must_use]
     pub fn extinction(&self) -> f64 {
         self.extinction
     }
 
     /// a.
-    #[must_use]
     pub fn albedo(&self) -> f64 {
         self.scene.albedo.even().unwrap_or(0.0)
     }
 
     /// The distances within which collisions are counted.
-    #[must_use]
     pub fn radii(&self) -> &[f64] {
         &self.radii
     }

@@ -54,19 +54,16 @@ pub struct Lambertian {
 
 impl Lambertian {
     /// The medium in space.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// The boundary.
-    #[must_use]
     pub fn bounds(&self) -> Bounds {
         self.scene.volume.bounds()
     }
 
     /// `4/S`, 1/length².
-    #[must_use]
     pub fn four_over_surface(&self) -> f64 {
         self.bounds().surface().map_or(0.0, |surface| 4.0 / surface)
     }
@@ -78,7 +75,6 @@ impl Lambertian {
 
     /// The place on the boundary that two numbers find, evenly, and the normal there that points inward.
     #[inline(always)]
-    #[must_use]
     pub fn place(&self, u: f64, v: f64) -> (Point, Point) {
         match self.bounds() {
             Bounds::Sphere { centre, radius } => {

@@ -29,7 +29,6 @@ pub struct MultipleScattering {
 
 impl MultipleScattering {
     /// Along a ray.
-    #[must_use]
     pub fn new(scene: Scene, sky: Sky, ray: Ray) -> Self {
         let support = scene.volume.bounds().clip(&ray);
         let profile = Arc::new(scene.volume.along(&ray, support));
@@ -38,26 +37,22 @@ impl MultipleScattering {
     }
 
     /// The medium in space.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// The light from around it.
-    #[must_use]
     pub fn sky(&self) -> &Sky {
         &self.sky
     }
 
     /// Where the ray enters the bounds, and its direction; `None` where it misses them.
-    #[must_use]
     pub fn entry(&self) -> Option<[Point; 2]> {
         let inside = self.medium.support();
         (!inside.is_empty()).then(|| [self.ray.at(inside.from), self.ray.direction])
     }
 
     /// The radiance of the sky behind the volume.
-    #[must_use]
     pub fn background(&self) -> f64 {
         self.sky.radiance(self.ray.direction)
     }

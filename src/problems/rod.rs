@@ -64,7 +64,6 @@ pub enum Seen {
 
 impl Seen {
     /// The channel's name.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::ReflectedBy(order) => format!("reflectance, order {order}"),
@@ -103,7 +102,6 @@ impl AsRef<[f64]> for Values {
 
 impl Rod {
     /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
-    #[must_use]
     pub fn new(
         medium: Medium,
         albedo: &Piecewise,
@@ -116,26 +114,22 @@ impl Rod {
     }
 
     /// How many parts of the rod have their flux as a channel: 0 or all of them.
-    #[must_use]
     pub fn parts(&self) -> usize {
         self.parts
     }
 
     /// The length of such a part.
-    #[must_use]
     pub fn width(&self) -> f64 {
         self.medium.support().length() / self.parts.max(1) as f64
     }
 
     /// Where the rod begins.
-    #[must_use]
     pub fn begin(&self) -> f64 {
         self.medium.support().from
     }
 
     /// The part that holds a distance inside the rod.
     #[inline(always)]
-    #[must_use]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most the number of parts
     pub fn part(&self, t: f64) -> usize {
         let part = (t - self.begin()) / self.width();
@@ -143,26 +137,22 @@ impl Rod {
     }
 
     /// a, as a function of the distance.
-    #[must_use]
     pub fn albedo(&self) -> &Piecewise {
         &self.albedo
     }
 
     /// `p_f`, as a function of the distance.
-    #[must_use]
     pub fn forward(&self) -> &Piecewise {
         &self.forward
     }
 
     /// What the channels of a draw are about, the last two always reflectance and transmittance.
-    #[must_use]
     pub fn channels(&self) -> &[Seen] {
         &self.channels
     }
 }
 
 /// The channels that a case asks for.
-#[must_use]
 pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
     let mut channels: Vec<Seen> = (0..parts).map(Seen::Flux).collect();
     if let Some(highest) = orders {

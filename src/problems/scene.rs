@@ -20,7 +20,6 @@ pub enum Albedo {
 impl Albedo {
     /// a at a place.
     #[inline(always)]
-    #[must_use]
     pub fn at(&self, place: Point) -> f64 {
         match self {
             Self::Even(albedo) => *albedo,
@@ -29,7 +28,6 @@ impl Albedo {
     }
 
     /// The least and the largest value that it may have.
-    #[must_use]
     pub fn range(&self) -> [f64; 2] {
         match self {
             Self::Even(albedo) => [*albedo; 2],
@@ -38,7 +36,6 @@ impl Albedo {
     }
 
     /// a, where it is the same everywhere.
-    #[must_use]
     pub fn even(&self) -> Option<f64> {
         match self {
             Self::Even(albedo) => Some(*albedo),

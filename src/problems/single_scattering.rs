@@ -111,7 +111,6 @@ impl SingleScattering {
     }
 
     /// The volume.
-    #[must_use]
     pub fn volume(&self) -> &Volume {
         &self.volume
     }
@@ -122,19 +121,16 @@ impl SingleScattering {
     }
 
     /// The albedo a.
-    #[must_use]
     pub fn albedo(&self) -> f64 {
         self.albedo
     }
 
     /// Where the ray is nearest to the light, from its origin.
-    #[must_use]
     pub fn foot(&self) -> f64 {
         self.light.foot
     }
 
     /// D, the distance of the light from the ray's line.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         self.light.distance
     }
@@ -155,14 +151,12 @@ impl SingleScattering {
     /// `a p(cos θ) Φ/(4π r²)`: what `σ_t` scatters at `p(s)` towards the ray's origin, but for the
     /// two transmittances.
     #[inline(always)]
-    #[must_use]
     pub fn source(&self, s: f64) -> f64 {
         self.scattered(s, self.cosine(s))
     }
 
     /// `cos θ` of light that is scattered at `p(s)` towards the ray's origin.
     #[inline(always)]
-    #[must_use]
     pub fn cosine(&self, s: f64) -> f64 {
         // (p − l)·d = s − foot: beyond the foot the light travels on along the ray.
         let cosine = (self.light.foot - s) / self.square(s).sqrt();
@@ -171,7 +165,6 @@ impl SingleScattering {
 
     /// `a p(cos θ) Φ/(4π r²)` with r that of `p(s)`.
     #[inline(always)]
-    #[must_use]
     pub fn scattered(&self, s: f64, cosine: f64) -> f64 {
         let phase = self.phase.value(cosine);
         self.albedo * phase * self.light.power / (4.0 * PI * self.square(s))
@@ -180,20 +173,17 @@ impl SingleScattering {
     /// The distance along the ray that the light sees at an angle from its foot, which lies between
     /// two right angles.
     #[inline(always)]
-    #[must_use]
     pub fn at_angle(&self, angle: f64) -> f64 {
         self.light.foot + self.light.distance * (Lane::sin(angle) / Lane::cos(angle))
     }
 
     /// The angles of the ends of the support.
-    #[must_use]
     pub fn angles(&self) -> Span {
         self.light.angles
     }
 
     /// The density over distance of points whose angles are uniform: `D/(Δθ r²)`, 1/length.
     #[inline(always)]
-    #[must_use]
     pub fn equiangular_density(&self, s: f64) -> f64 {
         self.equiangular_density_beyond(s - self.light.foot)
     }
@@ -201,7 +191,6 @@ impl SingleScattering {
     /// The same at the point so far beyond the foot: next to the light `s` has lost the digits of its
     /// distance from there.
     #[inline(always)]
-    #[must_use]
     pub fn equiangular_density_beyond(&self, along: f64) -> f64 {
         self.light.distance / (self.light.width * self.square_beyond(along))
     }
@@ -212,7 +201,6 @@ impl SingleScattering {
     /// ```text
     /// ε (4 + |d ln p/d cos θ|)
     /// ```
-    #[must_use]
     pub fn source_beyond(&self, along: f64) -> [f64; 2] {
         const STEP: f64 = 1e-7;
         let square = self.square_beyond(along);
@@ -226,7 +214,6 @@ impl SingleScattering {
 
     /// The ray from `p(s)` to the light, and its stretch within the bounds of the volume; `None`
     /// where that is empty.
-    #[must_use]
     pub fn shadow(&self, s: f64) -> Option<(Ray, Span)> {
         let from = self.ray.at(s);
         let length = self.square(s).sqrt();
@@ -236,7 +223,6 @@ impl SingleScattering {
     }
 
     /// The field along the ray from `p(s)` to the light; `None` where that is outside the bounds.
-    #[must_use]
     pub fn shadow_medium(&self, s: f64) -> Option<Medium> {
         let (ray, inside) = self.shadow(s)?;
         Some(Medium::new(Arc::new(self.volume.along(&ray, inside)), ray.span(), inside))
@@ -244,7 +230,6 @@ impl SingleScattering {
 
     /// A number that σ_t exceeds on no shadow ray: the volume's majorant over the box about the
     /// lit stretch and the light.
-    #[must_use]
     pub fn shadow_majorant(&self) -> f64 {
         let support = self.medium.support();
         let ends = [self.ray.at(support.from), self.ray.at(support.to), self.light.position];

@@ -62,7 +62,6 @@ impl Sky {
     }
 
     /// The radiance that comes against a direction of looking.
-    #[must_use]
     pub fn radiance(&self, direction: Point) -> f64 {
         match *self {
             Self::Constant { radiance } => radiance,

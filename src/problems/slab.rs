@@ -58,19 +58,16 @@ pub struct Slab {
 
 impl Slab {
     /// A slab whose depth is the distance along a medium, with an albedo in `[0, 1]`.
-    #[must_use]
     pub fn new(medium: Medium, albedo: f64, incidence: Incidence) -> Self {
         Self { medium, albedo, incidence }
     }
 
     /// a.
-    #[must_use]
     pub fn albedo(&self) -> f64 {
         self.albedo
     }
 
     /// Light and phase function.
-    #[must_use]
     pub fn incidence(&self) -> &Incidence {
         &self.incidence
     }

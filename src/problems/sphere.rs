@@ -75,76 +75,64 @@ pub struct Sphere {
 
 impl Sphere {
     /// The medium in space.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
     /// The centre of the ball.
-    #[must_use]
     pub fn centre(&self) -> Point {
         self.centre
     }
 
     /// R.
-    #[must_use]
     pub fn radius(&self) -> f64 {
         self.radius
     }
 
     /// Where light comes from.
-    #[must_use]
     pub fn light(&self) -> Light {
         self.light
     }
 
     /// What is sought.
-    #[must_use]
     pub fn sought(&self) -> Sought {
         self.sought
     }
 
     /// σ_t as a function of the squared distance from the centre.
-    #[must_use]
     pub fn extinction(&self, r2: f64) -> f64 {
         self.scene.volume.extinction_at(self.centre + Point([r2.sqrt(), 0.0, 0.0]))
     }
 
     /// A bound on σ_t.
-    #[must_use]
     pub fn majorant(&self) -> f64 {
         let within = self.scene.volume.bounds().enclosing_box();
         within.map_or(f64::INFINITY, |within| self.scene.volume.majorant(&within))
     }
 
     /// How far the line of the ray is from the centre.
-    #[must_use]
     pub fn offset(&self) -> f64 {
         let to_centre = self.centre - self.ray.origin;
         (to_centre - self.ray.direction * to_centre.dot(self.ray.direction)).norm()
     }
 
     /// Where the ray begins, from where it is nearest to the centre.
-    #[must_use]
     pub fn begins(&self) -> f64 {
         (self.ray.origin - self.centre).dot(self.ray.direction)
     }
 
     /// How far the ray's origin is from the centre.
-    #[must_use]
     pub fn distance(&self) -> f64 {
         (self.ray.origin - self.centre).norm()
     }
 
     /// Where the ray enters the ball, or begins within it.
-    #[must_use]
     pub fn entry(&self) -> Point {
         let ray = Ray { length: f64::INFINITY, ..self.ray };
         ray.at(self.scene.volume.bounds().clip(&ray).from)
     }
 
     /// The direction of the ray.
-    #[must_use]
     pub fn direction(&self) -> Point {
         self.ray.direction
     }

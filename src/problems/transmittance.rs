@@ -32,7 +32,6 @@ pub struct Transmittance {
 
 impl Transmittance {
     /// Of the medium's ray.
-    #[must_use]
     pub fn new(medium: Medium) -> Self {
         Self { medium }
     }

@@ -43,7 +43,6 @@ impl AsRef<[f64]> for Values {
 
 impl TransmittanceCurve {
     /// The distances, ascending.
-    #[must_use]
     pub fn ascending(&self) -> &[f64] {
         &self.distances
     }

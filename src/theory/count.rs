@@ -29,7 +29,6 @@ pub struct CountLaw {
 
 impl CountLaw {
     /// The same number every time.
-    #[must_use]
     pub fn always(number: f64) -> Self {
         let mut pmf = Vec::new();
         if number.fract() == 0.0 && (0.0..=LARGEST_MEAN).contains(&number) {
@@ -39,7 +38,6 @@ impl CountLaw {
     }
 
     /// Poisson with the given mean: a walk through `∫σ̂` that nothing ends early.
-    #[must_use]
     pub fn poisson(mean: f64) -> Self {
         let mut pmf = Vec::new();
         if (0.0..=LARGEST_MEAN).contains(&mean) {
@@ -49,7 +47,6 @@ impl CountLaw {
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
-    #[must_use]
     pub fn of_factorial_moments([mean, pairs, triples, quadruples]: [f64; 4]) -> Self {
         let variance = pairs + mean - mean * mean;
         // A number that is all but certain leaves a variance of rounding.
@@ -75,7 +72,6 @@ impl CountLaw {
     /// ```
     ///
     /// Without probabilities, for Λ > 2000, moments are those of a walk with `r` constant.
-    #[must_use]
     pub fn in_layers(collisions: f64, deaths: f64) -> Self {
         let poisson = Self::poisson(collisions);
         if !(deaths > 1e-13 && deaths <= collisions && collisions.is_finite()) {
@@ -161,7 +157,6 @@ fn whole(x: f64) -> usize {
 /// ```text
 /// P = e^{−m} mⁿ / n!
 /// ```
-#[must_use]
 pub fn poisson(n: u32, mean: f64) -> f64 {
     if mean == 0.0 {
         return if n == 0 { 1.0 } else { 0.0 };

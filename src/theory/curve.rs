@@ -16,7 +16,6 @@ use super::{Channel, Moments, Prediction};
 use crate::numeric::Span;
 
 /// Predicts `T̂` at ascending distances.
-#[must_use]
 pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
     let mesh = product.mesh(distances);
     let support = mesh.support();

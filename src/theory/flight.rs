@@ -14,7 +14,6 @@ use crate::numeric::{Known, Span};
 pub const CLASSES: usize = 1020;
 
 /// Mean depth and its moments, and the law of the distance, measured from the ray's beginning.
-#[must_use]
 pub fn predict(mesh: &Mesh, lookups: CountLaw) -> Prediction {
     let ray = mesh.medium().span();
     let fine = mesh.refined(&[], &|mesh, panel| {

@@ -26,7 +26,6 @@ const HALVINGS: i32 = 48;
 const NODES: usize = 20;
 
 /// `H(μ)` for the albedo a in `[0, 1]` and μ in `[0, 1]`, to [`ERROR`].
-#[must_use]
 pub fn h_function(albedo: f64, cosine: f64) -> f64 {
     let rule = GaussLegendre::new(NODES);
     let mut sum = Sum::default();

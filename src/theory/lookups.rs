@@ -27,7 +27,6 @@ const RARE: f64 = 1e-18;
 impl Product<'_> {
     /// The law of the number of lookups; `all` are the integrals over the whole of this estimator's
     /// own mesh.
-    #[must_use]
     pub fn lookups(&self, mesh: &Mesh, all: &Integrals) -> CountLaw {
         let law = all.count();
         if !(self.laws && law.pmf.is_empty() && law.mean <= LARGEST_MEAN) {

@@ -72,7 +72,6 @@ fn is_rough(tails: &[Tail], parent: &[Tail]) -> bool {
 
 impl Mesh {
     /// Cuts the support of a medium and looks σ_t up at every node.
-    #[must_use]
     pub fn new(medium: Medium) -> Self {
         let support = medium.support();
         let mut ends = medium.breaks();
@@ -110,7 +109,6 @@ impl Mesh {
 
     /// Cuts the support into equal panels of 16 nodes, whatever breaks the medium has: a quick look at a
     /// field of thousands of pieces. The error of integrals on it is not known: it is infinite.
-    #[must_use]
     pub fn even(medium: Medium, panels: usize) -> Self {
         let support = medium.support();
         let rule = GaussLegendre::new(NODES);
@@ -135,19 +133,16 @@ impl Mesh {
     }
 
     /// The medium.
-    #[must_use]
     pub fn medium(&self) -> &Medium {
         &self.medium
     }
 
     /// The support of the medium, which the panels cover.
-    #[must_use]
     pub fn support(&self) -> Span {
         self.medium.support()
     }
 
     /// The panels in ascending order.
-    #[must_use]
     pub fn panels(&self) -> impl DoubleEndedIterator<Item = Panel<'_>> + ExactSizeIterator {
         let n = self.rule.nodes.len();
         self.panels.iter().enumerate().map(move |(i, &span)| {
@@ -268,7 +263,6 @@ impl Mesh {
     }
 
     /// `∫ f` over a panel, from values at its nodes.
-    #[must_use]
     pub fn integral(&self, panel: Panel<'_>, f: &[f64]) -> f64 {
         panel.span.length() * dot(&self.rule.weights, f)
     }
@@ -279,7 +273,6 @@ impl Mesh {
     }
 
     /// `∫ f` from the panel's beginning to each of its nodes.
-    #[must_use]
     pub fn running(&self, panel: Panel<'_>, f: &[f64]) -> Vec<f64> {
         let length = panel.span.length();
         self.rule.running.iter().map(|row| length * dot(row, f)).collect()
@@ -298,7 +291,6 @@ impl Mesh {
 
     /// A relative error bound for integrals on this mesh: how far `∫σ_t` by quadrature is from the
     /// exact optical depth, and 1e-13 for what that does not show.
-    #[must_use]
     pub fn relative_error(&self) -> f64 {
         self.error
     }
@@ -370,7 +362,6 @@ impl Mesh {
     }
 
     /// τ over the support.
-    #[must_use]
     pub fn optical_depth(&self) -> Known {
         self.depth.unwrap_or_else(|| self.medium.optical_depth(self.support()))
     }

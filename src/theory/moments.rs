@@ -13,7 +13,6 @@ pub struct Moments {
 
 /// A number that is not negative and known to within `off`, and its relative error. One that is smaller than
 /// that is taken for `off` itself, which is right to 100 %: zero would promise that draws do not vary.
-#[must_use]
 pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
     if value.is_nan() || off.is_nan() || off == f64::INFINITY {
         return [value, f64::INFINITY];
@@ -24,7 +23,6 @@ pub(super) fn not_negative(value: f64, off: f64) -> [f64; 2] {
 
 impl Moments {
     /// A draw without spread.
-    #[must_use]
     pub fn certain(scale: f64) -> Self {
         Self { scale, relative: [0.0; 3], error: 0.0 }
     }
@@ -42,7 +40,6 @@ impl Moments {
     ///
     /// Used where |J₂| and |J₃| are below 1/4, where the powers of `u` are small and nothing
     /// cancels; beyond, the exponentials are subtracted directly. `losses[k − 1]` is J_k.
-    #[must_use]
     pub fn of_product(scale: f64, losses: [f64; 4], error: f64) -> Self {
         let [_, j2, j3, j4] = losses;
         let [m2, m3, m4] = if j2.abs() < 0.25 && j3.abs() < 0.25 {
@@ -55,20 +52,17 @@ impl Moments {
     }
 
     /// `Var[X]`.
-    #[must_use]
     pub fn variance(&self) -> f64 {
         self.scale * self.scale * self.relative[0]
     }
 
     /// `μ₃/μ₂^{3/2}`; `None` without spread.
-    #[must_use]
     pub fn skewness(&self) -> Option<f64> {
         let [m2, m3, _] = self.relative;
         (m2 > 0.0).then(|| if m2.is_infinite() { f64::INFINITY } else { m3 / m2.powf(1.5) })
     }
 
     /// `μ₄/μ₂²`, 3 for the normal law; infinite where the moments overflow, `None` without spread.
-    #[must_use]
     pub fn kurtosis(&self) -> Option<f64> {
         let [m2, _, m4] = self.relative;
         (m2 > 0.0).then(|| if m4.is_infinite() { f64::INFINITY } else { m4 / (m2 * m2) })
@@ -79,7 +73,6 @@ impl Moments {
     /// ```text
     /// Var[s²]/μ₂² = (μ₄/μ₂² − (n − 3)/(n − 1)) / n
     /// ```
-    #[must_use]
     pub fn spread_of_sample_variance(&self, n: f64) -> Option<f64> {
         self.kurtosis().map(|kurtosis| (kurtosis - (n - 3.0) / (n - 1.0)) / n)
     }

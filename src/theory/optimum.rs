@@ -32,7 +32,6 @@ const COARSE: usize = 51;
 /// `predict` answers `None` where the estimator is refused. Where the figure of merit still rises
 /// at the upper end, it is followed by factors of ten until it gains less than 0.1 %, and the answer
 /// is the σ̂ that reaches 90 % of that limit.
-#[must_use]
 pub fn best_constants(
     scale: f64,
     predict: impl Fn(f64) -> Option<Prediction> + Sync,

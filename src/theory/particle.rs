@@ -62,7 +62,6 @@ impl Odds {
     /// `Q_k = q_t((1 − r)/q_t)^k` and `S_k = q_s(a r/q_s)^k`, the k-th moments of what goes straight on and
     /// of what is scattered, given their means `1 − r` and `a r`.
     #[inline]
-    #[must_use]
     pub fn moments(&self, [straight, scattered]: [f64; 2], k: i32) -> [f64; 2] {
         if k == 0 {
             return [self.transmit, self.scatter];
@@ -84,7 +83,6 @@ impl Odds {
 
     /// What a uniform number decides: scattering first, as in `SimulateParticle`.
     #[inline(always)]
-    #[must_use]
     pub fn decide(&self, number: f64) -> Event {
         if number < self.scatter {
             Event::Scattered
@@ -117,7 +115,6 @@ impl ParticleRule {
         [Self::Terminating, Self::NonTerminating, Self::Adaptive, Self::Analog, Self::Weighted];
 
     /// The name in case files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Terminating => "terminating",
@@ -133,7 +130,6 @@ impl ParticleRule {
     /// Outside the range of [`ParticleRule::limits`] they are what the formula says and no
     /// chances: a forced walk compares a number with them as any renderer would, and is biased.
     #[inline(always)]
-    #[must_use]
     pub fn odds<L: Lane>(self, ratio: L, albedo: L) -> Odds<L> {
         let one = ratio.each(1.0);
         match self {
@@ -150,7 +146,6 @@ impl ParticleRule {
     }
 
     /// The smallest and the largest r for which the odds are chances.
-    #[must_use]
     pub fn limits(self, albedo: f64) -> [f64; 2] {
         match self {
             Self::Terminating => [0.0, 2.0 / (albedo + 1.0)],
@@ -162,7 +157,6 @@ impl ParticleRule {
     }
 
     /// The same as an inequality; empty for a rule that exists for every r.
-    #[must_use]
     pub fn needs(self) -> &'static str {
         match self {
             Self::Terminating => "0 ≤ r ≤ 2/(a + 1)",
@@ -172,7 +166,6 @@ impl ParticleRule {
     }
 
     /// The ratios at which the odds or one of their derivatives jump: panels end there.
-    #[must_use]
     pub fn kinks(self, albedo: f64) -> Vec<f64> {
         match self {
             Self::Adaptive => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],

@@ -76,7 +76,6 @@ impl Tails {
 
 impl Channel {
     /// A single unbiased channel.
-    #[must_use]
     pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
         let (unit, moments) = (truth.value, Some(moments));
         let name = String::new();
@@ -96,7 +95,6 @@ impl Channel {
 
     /// A bound on the relative error of the variance and, where it is known, of the fourth central moment:
     /// that of the moments in units of the mean, that of the unit, and rounding.
-    #[must_use]
     pub fn moments_error(&self) -> Option<f64> {
         let moments = self.moments?;
         if moments.relative[0] == 0.0 {
@@ -112,7 +110,6 @@ impl Channel {
     }
 
     /// An unbiased transmittance of the given optical depth, in units of `exp(−log_unit)`.
-    #[must_use]
     pub fn transmittance(depth: Known, log_unit: f64, moments: Moments, tails: Tails) -> Self {
         let truth = transmittance(depth, log_unit);
         let thin = depth.value > 0.0 && depth.value < THIN;
@@ -122,7 +119,6 @@ impl Channel {
 }
 
 /// `T e^{log_unit} = exp(log_unit − τ)`.
-#[must_use]
 pub fn transmittance(depth: Known, log_unit: f64) -> Known {
     Known::new(depth.value - log_unit, depth.error).exp_neg()
 }
@@ -211,7 +207,6 @@ impl Prediction {
     }
 
     /// An experiment with one unbiased channel.
-    #[must_use]
     pub fn single(channel: Channel, lookups: CountLaw) -> Self {
         Self {
             channels: vec![channel],
@@ -227,7 +222,6 @@ impl Prediction {
 
     /// `1/(V · E[M])`, the efficiency per lookup, of a channel; `None` where either is unknown or
     /// zero.
-    #[must_use]
     pub fn figure_of_merit(&self, channel: usize) -> Option<f64> {
         let variance = self.channels.get(channel)?.moments?.variance();
         let cost = self.lookups.as_ref()?.mean;

@@ -67,7 +67,6 @@ pub(super) struct Nodes {
 
 impl<'a> Product<'a> {
     /// A product estimator that ends at collisions only.
-    #[must_use]
     pub fn new(
         mesh: &'a Mesh,
         sampling: &'a Piecewise,
@@ -92,7 +91,6 @@ impl<'a> Product<'a> {
 
     /// The mesh on which this estimator's integrands are smooth: cut at the breaks of σ̂ and
     /// control and where the ratio crosses a kink of the rule.
-    #[must_use]
     pub fn mesh(&self, further_cuts: &[f64]) -> Mesh {
         let mut cuts = further_cuts.to_vec();
         cuts.extend(self.sampling.knots());
@@ -128,7 +126,6 @@ impl<'a> Product<'a> {
 
     /// All integrals from the beginning of the support to each of `ends` (ascending; the mesh must
     /// be cut there).
-    #[must_use]
     pub fn integrals(&self, mesh: &Mesh, ends: &[f64]) -> Vec<Integrals> {
         let mut total = Totals::default();
         let mut found = Vec::with_capacity(ends.len());
@@ -144,7 +141,6 @@ impl<'a> Product<'a> {
     }
 
     /// Mean, moments, rarity, costs and stability of the estimate of `T` over the whole support.
-    #[must_use]
     pub fn predict(&self) -> Prediction {
         let mesh = self.mesh(&[]);
         let all = self.integrals(&mesh, &[mesh.support().to])[0];
@@ -166,7 +162,6 @@ impl<'a> Product<'a> {
 
 impl Integrals {
     /// How heavy the tails of a draw are.
-    #[must_use]
     pub fn tails(&self) -> Tails {
         let [fourth, eighth] = self.growth;
         Tails {
@@ -177,7 +172,6 @@ impl Integrals {
 
     /// Mean, variance and kurtosis of the number of lookups; the probabilities only where the law
     /// is Poisson or certain, see [`Product::lookups`].
-    #[must_use]
     pub fn count(&self) -> CountLaw {
         let mean = self.lookups[0];
         // A walk that nothing ends early makes Poisson many lookups.

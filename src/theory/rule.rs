@@ -18,7 +18,6 @@ pub struct Outcome<L = f64> {
 
 impl Outcome {
     /// `E[(1 − W)^k]`.
-    #[must_use]
     pub fn mean_loss(&self, k: i32) -> f64 {
         self.death + self.survival * self.loss.powi(k)
     }

@@ -44,7 +44,6 @@ pub trait Source {
 }
 
 /// Mean, moments and cost of such an estimator over the whole support, at constant `σ̄ > 0`.
-#[must_use]
 pub fn predict(mesh: &Mesh, sampling: f64, source: &dyn Source) -> Prediction {
     let end = mesh.support().to;
     let layer = cuts(mesh, sampling);
@@ -146,7 +145,6 @@ fn sweep(
 }
 
 /// `x^k` for small k.
-#[must_use]
 pub fn power(x: f64, k: usize) -> f64 {
     std::iter::repeat_n(x, k).product()
 }
@@ -157,7 +155,6 @@ fn lost(ratio: f64, k: usize) -> f64 {
 }
 
 /// `C(k, j)`.
-#[must_use]
 pub fn binomial(k: usize, j: usize) -> f64 {
     (1..=j).map(|i| (k + 1 - i) as f64 / i as f64).product()
 }

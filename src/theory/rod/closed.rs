@@ -10,7 +10,6 @@
 use crate::numeric::Known;
 
 /// R and T.
-#[must_use]
 pub fn leaving(depth: Known, albedo: f64, forward: f64) -> [Known; 2] {
     let tau = depth.value;
     // 1 − a p_f without the cancellation at a white, forward rod.

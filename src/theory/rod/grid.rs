@@ -50,14 +50,12 @@ pub struct Step {
 impl Step {
     /// `Q_k` and `S_k`.
     #[inline]
-    #[must_use]
     pub fn moments(&self, k: i32) -> [f64; 2] {
         self.odds.moments(self.means, k)
     }
 
     /// What a particle that collides here is worth to the k-th power, by what it is worth afterwards.
     #[inline]
-    #[must_use]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
         let [q, s] = self.moments(k);
         let backward = 1.0 - self.forward;
@@ -70,7 +68,6 @@ impl Step {
 
     /// A and B of the k-th moment.
     #[inline]
-    #[must_use]
     pub fn rates(&self, k: i32) -> [f64; 2] {
         let [q, s] = self.moments(k);
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
@@ -105,7 +102,6 @@ pub struct Walk<'a> {
 impl<'a> Walk<'a> {
     /// Cuts the rod where a, `p_f` or σ̂ has a knot and where the rule changes; `None` where that
     /// makes more steps than theory can do.
-    #[must_use]
     pub fn new(
         mesh: &Mesh,
         rod: &'a Rod,
@@ -173,7 +169,6 @@ impl<'a> Walk<'a> {
     }
 
     /// The grid whose steps are so many times shorter than the coarsest grid's.
-    #[must_use]
     pub fn grid(&self, finer: usize) -> Grid {
         let mut steps = Vec::new();
         for &(span, count) in &self.panels {
@@ -192,7 +187,6 @@ impl<'a> Walk<'a> {
     }
 
     /// How many steps the coarsest grid has.
-    #[must_use]
     pub fn coarsest(&self) -> usize {
         self.panels.iter().map(|panel| panel.1).sum()
     }
@@ -205,14 +199,12 @@ pub struct Worth(Vec<[f64; 2]>);
 impl Worth {
     /// In the middle of a step.
     #[inline]
-    #[must_use]
     pub fn middle(&self, step: usize) -> [f64; 2] {
         let (from, to) = (self.0[step], self.0[step + 1]);
         [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])]
     }
 
     /// Of the particle that enters.
-    #[must_use]
     pub fn entering(&self) -> f64 {
         self.0[0][0]
     }
@@ -273,7 +265,6 @@ impl Grid {
     }
 
     /// One over the length of the parts in which the flux is looked at.
-    #[must_use]
     pub fn parts_per_length(&self) -> f64 {
         self.parts_per_length
     }
@@ -284,7 +275,6 @@ impl Grid {
     /// What has been passed reflects back ρ, and the next layer r: their echoes `Σ(ρr)^n` diverge
     /// where ρr reaches 1. This is so on the grid, which finds the critical length to about a
     /// ten-thousandth; see [`Self::margin`].
-    #[must_use]
     pub fn critical(&self, k: i32, longer: f64) -> Option<f64> {
         let mut passed = 0.0;
         for step in &self.steps {
@@ -307,7 +297,6 @@ impl Grid {
     /// The moment exists where y stays positive, and is 1/y for what passes. Over a layer
     /// `y → y (1 − ρr)/t` with ρ = z/y. It is smooth in the steps' lengths even where y is 0. `None` where y
     /// turns more than once, or steps are too long.
-    #[must_use]
     pub fn margin(&self, k: i32) -> Option<f64> {
         let (mut passed, mut turns) = (0.0, 0);
         for step in &self.steps {

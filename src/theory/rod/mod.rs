@@ -30,7 +30,6 @@ use crate::problems::rod::Seen;
 use crate::problems::{Problem, Rod};
 
 /// The exact answer of every channel; `None` where the rod has more steps than theory can do.
-#[must_use]
 pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let support = mesh.support();
     let depth = rod.medium().optical_depth(support);
@@ -119,7 +118,6 @@ fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
 /// it has none, and not even that where the rod is too long.
 ///
 /// Without `laws`, as for lines in plots, only variances and mean lookups are good.
-#[must_use]
 pub fn predict(
     mesh: &Mesh,
     rod: &Rod,
@@ -152,7 +150,6 @@ pub fn predict(
 }
 
 /// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
-#[must_use]
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
     let truth = truth(mesh, rod).unwrap_or_else(unknown);

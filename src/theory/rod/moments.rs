@@ -62,7 +62,6 @@ pub type Numbers<'f> = dyn Fn(&Grid) -> Option<Vec<f64>> + 'f;
 
 /// The numbers that finer and finer grids tend to, each with a bound on its absolute error; `None`
 /// where a grid has no answer.
-#[must_use]
 pub fn romberg(
     walk: &Walk<'_>,
     precision: Precision,
@@ -77,7 +76,6 @@ pub fn romberg(
 
 /// The same of positive numbers that are next to where they are infinite, like 1/y next to y = 0: there
 /// they are no series in the steps' lengths, but `1/(1 + x)` is.
-#[must_use]
 pub fn next_to_divergence(walk: &Walk<'_>, numbers: &Numbers<'_>) -> Option<Vec<[f64; 2]>> {
     let inverse = |grid: &Grid| Some(numbers(grid)?.iter().map(|x| 1.0 / (1.0 + x)).collect());
     let Limit { numbers: found, last, .. } = limit(walk, Precision::FULL, &inverse)?;
@@ -151,7 +149,6 @@ pub enum Existence {
 
 impl Existence {
     /// Of some moments.
-    #[must_use]
     pub fn of<const N: usize>(walk: &Walk<'_>, powers: [i32; N]) -> [Self; N] {
         let fine = walk.grid(FINER);
         powers.map(|k| Self::on(walk, &fine, k))
@@ -213,7 +210,6 @@ const BEGINNING: [f64; 2] = [1.0, 0.0];
 const END: [f64; 2] = [0.0, 1.0];
 
 /// `E[X^k]` of a channel.
-#[must_use]
 pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
     let worth = match seen {
         Seen::Reflected => leaving(grid, k, BEGINNING)?,
@@ -299,7 +295,6 @@ fn score_times(
 }
 
 /// See [`Joint`]; what leaves at the beginning is reflectance.
-#[must_use]
 pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
     let ends = if reflected { BEGINNING } else { END };
     let mut joint = [[0.0; 2]; 2];
@@ -313,7 +308,6 @@ pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
 }
 
 /// The factorial moments `E[M(M − 1)…(M − n + 1)]` of the number of lookups, n = 1 … 4.
-#[must_use]
 pub fn lookups(grid: &Grid) -> Option<[f64; 4]> {
     let mut found = [0.0; 4];
     let mut worth: Option<Worth> = None;

@@ -37,7 +37,6 @@ pub struct Camera<'a> {
 
 impl<'a> Camera<'a> {
     /// Integrates along the ray.
-    #[must_use]
     pub fn new(
         mesh: &'a Mesh,
         sampling: &'a Piecewise,
@@ -148,7 +147,6 @@ impl<'a> Camera<'a> {
     }
 
     /// The moments of the estimate up to `s`.
-    #[must_use]
     pub fn passage(&self, s: f64) -> Passage {
         let depth = self.depth(s);
         match self.along {
@@ -167,7 +165,6 @@ impl<'a> Camera<'a> {
     }
 
     /// What a walk of weights loses up to `s`.
-    #[must_use]
     pub fn losses(&self, s: f64) -> Losses {
         let [_, b, c, d, _, size, cube, mixed, ..] = self.at(s);
         let signed = [0.0, self.depth(s).value, b, c, d];
@@ -175,20 +172,17 @@ impl<'a> Camera<'a> {
     }
 
     /// σ̂ and `w = 1 − r` at a point.
-    #[must_use]
     pub fn collision(&self, s: f64, extinction: f64) -> [f64; 2] {
         let sampling = self.sampling.value(s);
         [sampling, 1.0 - (extinction - self.control.extinction(s)) / sampling]
     }
 
     /// `∫σ̂` over the whole support.
-    #[must_use]
     pub fn collisions(&self) -> f64 {
         self.sums[self.sums.len() - 1][FLOWN]
     }
 
     /// The distances where σ̂, the control or the size of a weight have kinks.
-    #[must_use]
     pub fn cuts(&self) -> &[f64] {
         &self.cuts
     }

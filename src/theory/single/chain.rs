@@ -45,7 +45,6 @@ pub struct Solved {
 
 impl<'a> Chain<'a> {
     /// On the given panels of the stretched variable.
-    #[must_use]
     pub fn new(scene: &'a Scene<'a>, panels: &[Span]) -> Self {
         let losses = |x: f64| scene.camera.losses(scene.stretched(x).s);
         let panel = |&x: &Span| {
@@ -63,7 +62,6 @@ impl<'a> Chain<'a> {
     }
 
     /// Whether a weight changes its sign somewhere.
-    #[must_use]
     pub fn is_signed(&self) -> bool {
         let mut nodes = self.panels.iter().flat_map(|panel| &panel.nodes);
         nodes.any(|at| at.collision[0] > 0.0 && at.collision[1] < 0.0)
@@ -71,7 +69,6 @@ impl<'a> Chain<'a> {
 
     /// Solves for one functional: `loss` picks its A, and `f` is asked at each node, of which it is
     /// told the panel and the place.
-    #[must_use]
     pub fn solve(
         &self,
         loss: &dyn Fn(&Losses) -> f64,
@@ -106,7 +103,6 @@ impl<'a> Chain<'a> {
 }
 
 /// The panels, each cut in two.
-#[must_use]
 pub fn halved(panels: &[Span]) -> Vec<Span> {
     let halves = |x: &Span| [Span::new(x.from, x.middle()), Span::new(x.middle(), x.to)];
     panels.iter().flat_map(halves).collect()

@@ -10,7 +10,6 @@ const NODES: usize = 16;
 /// L by panels that are even in the angle seen from the light, in which `1/r²` is constant; the optical
 /// depths are exact. The error is what half as many panels differ by: nearly always far more than
 /// what is left, but no bound.
-#[must_use]
 pub fn radiance(problem: &SingleScattering, panels: usize) -> Known {
     if problem.medium().support().is_empty() {
         return Known::exact(0.0);

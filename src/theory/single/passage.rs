@@ -53,27 +53,23 @@ const ROUNDINGS: f64 = 8.0;
 /// ```
 ///
 /// The difference would leave ε σ̂ of rounding, however small the residual.
-#[must_use]
 pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
     let sum = (0..k).fold(0.0, |sum, _| sum * weight + 1.0);
     f64::from(k) * control + residual * sum
 }
 
 /// What [`loss`] sums up for k = 4, all with the same sign: at least as much as for a smaller k.
-#[must_use]
 pub fn size(control: f64, residual: f64, weight: f64) -> f64 {
     loss(4, control.abs(), residual.abs(), weight.abs())
 }
 
 /// The error of exponents that are integrals of losses.
-#[must_use]
 pub fn rounding(size: f64) -> f64 {
     f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
 impl Passage {
     /// A transmittance that is known.
-    #[must_use]
     pub fn exact(depth: Known) -> Self {
         let power = |k: f64| (-k * depth.value).exp();
         let powers = [1.0, power(1.0), power(2.0), power(3.0), power(4.0)];
@@ -84,7 +80,6 @@ impl Passage {
     }
 
     /// A transmittance of nothing.
-    #[must_use]
     pub fn free() -> Self {
         Self::exact(Known::new(0.0, 0.0))
     }
@@ -92,7 +87,6 @@ impl Passage {
     /// A product of Poisson factors with the given exponents, in the order of [`POWERS`], and the
     /// given mean number of collisions. It always comes through. The exponents are off by an error, and sums
     /// of losses of a size.
-    #[must_use]
     pub fn product(exponents: [f64; 5], collisions: f64, [error, size]: [f64; 2]) -> Self {
         let [a, b, c, d, eighth] = exponents.map(|x| (-x).exp());
         let lookups = poisson(collisions);
@@ -106,7 +100,6 @@ impl Passage {
     /// ```text
     /// E[N (N − 1) … (N − k + 1)] = k ∫ σ̄ e^{−τ(t)} (∫₀ᵗ σ̄ − τ(t))^{k−1} dt
     /// ```
-    #[must_use]
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
         let chance = (-depth.value).exp();
         let [f1, f2, f3, f4] = factorial;
@@ -119,7 +112,6 @@ impl Passage {
     }
 
     /// Of a shadow ray.
-    #[must_use]
     pub fn of_shadow(tracking: Tracking, medium: Option<&Medium>, rule: &GaussLegendre) -> Self {
         let Some(medium) = medium else { return Self::free() };
         let support = medium.support();
@@ -154,13 +146,11 @@ impl Passage {
 }
 
 /// `E[N^k]`, k = 0 … 4, of a Poisson number.
-#[must_use]
 pub fn poisson(m: f64) -> [f64; 5] {
     [1.0, m, m * (1.0 + m), m * (1.0 + m * (3.0 + m)), m * (1.0 + m * (7.0 + m * (6.0 + m)))]
 }
 
 /// `E[(M + N)^k]`, k = 0 … 4, of independent numbers.
-#[must_use]
 pub fn added(a: [f64; 5], b: [f64; 5]) -> [f64; 5] {
     const PASCAL: [[f64; 5]; 5] = [
         [1.0, 0.0, 0.0, 0.0, 0.0],

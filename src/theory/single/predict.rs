@@ -61,7 +61,6 @@ const LEAST: f64 = 1e-280;
 
 impl Points {
     /// Of one technique.
-    #[must_use]
     pub fn of(scene: &Scene, technique: &Technique) -> Self {
         let mut parts = [MOMENT; 13];
         parts[5..9].fill(LOOKUPS);
@@ -136,7 +135,6 @@ impl Points {
     }
 
     /// What theory says of the draws.
-    #[must_use]
     pub fn prediction(&self) -> Prediction {
         let [_, mean, second, third, fourth] = self.powers;
         let [r2, r3, r4] = [second / mean.powi(2), third / mean.powi(3), fourth / mean.powi(4)];
@@ -173,7 +171,6 @@ impl Points {
 const HIDDEN: f64 = 1e-12;
 
 /// The law of a count, with the raw moments of what it is more than its least, without probabilities.
-#[must_use]
 pub fn count(least: f64, [_, mean, second, third, fourth]: [f64; 5]) -> CountLaw {
     let square = mean * mean;
     let variance = second - square;

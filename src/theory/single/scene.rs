@@ -44,7 +44,6 @@ pub struct Node {
 impl Node {
     /// `E[(N − 1)^k]` of a draw that scatters here: beside one lookup those, unless there is nothing, of the
     /// walk from the origin and, if that came through, of the shadow ray.
-    #[must_use]
     pub fn lookups(&self) -> [f64; 5] {
         if self.extinction <= 0.0 {
             return [1.0, 0.0, 0.0, 0.0, 0.0];
@@ -92,7 +91,6 @@ pub struct Integral<const N: usize> {
 
 impl<'a> Scene<'a> {
     /// Joins the parts.
-    #[must_use]
     pub fn new(
         problem: &'a SingleScattering,
         camera: Camera<'a>,
@@ -103,13 +101,11 @@ impl<'a> Scene<'a> {
     }
 
     /// The Gauss rule of a panel.
-    #[must_use]
     pub fn rule(&self) -> &GaussLegendre {
         &self.rule
     }
 
     /// All that is known at a distance.
-    #[must_use]
     pub fn node(&self, Place { s, along, .. }: Place) -> Node {
         let medium = self.problem.medium();
         let depth = medium.optical_depth(Span::new(medium.support().from, s));
@@ -133,7 +129,6 @@ impl<'a> Scene<'a> {
 
     /// The place at the stretched variable: `s = foot + D sinh x`, in which `1/r²` is smooth however
     /// near the light is.
-    #[must_use]
     pub fn stretched(&self, x: f64) -> Place {
         let distance = self.problem.distance();
         let along = distance * x.sinh();
@@ -141,7 +136,6 @@ impl<'a> Scene<'a> {
     }
 
     /// L by quadrature of exact optical depths, once for all experiments on it.
-    #[must_use]
     pub fn radiance(&self) -> Known {
         let problem = self.problem;
         let medium = problem.medium();
@@ -200,7 +194,6 @@ impl<'a> Scene<'a> {
 
     /// `∫ f ds` over the support: panels are halved until the two resolutions agree to the given
     /// parts of the whole.
-    #[must_use]
     pub fn integrate<const N: usize>(
         &self,
         parts: [f64; N],

@@ -136,7 +136,6 @@ fn raw([k1, k2, k3, k4]: [f64; 4]) -> [f64; 5] {
 }
 
 /// At every collision.
-#[must_use]
 pub fn at_collisions(scene: &Scene) -> Points {
     let AtCollisions { panels, cumulants, counted, rounding } = panels_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
@@ -178,7 +177,6 @@ fn power(x: f64, k: usize) -> f64 {
 /// ```text
 /// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
 /// ```
-#[must_use]
 pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
     let AtCollisions { panels, rounding, .. } = panels_at_collisions(scene);
     let powers = |panels: &[Span]| {
@@ -239,7 +237,6 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
 }
 
 /// At `count` points of a density, all with the transmittance of one walk over the whole ray.
-#[must_use]
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);

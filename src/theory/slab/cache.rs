@@ -25,7 +25,6 @@ type Slot = Arc<OnceLock<Option<Answer>>>;
 static ANSWERS: LazyLock<Mutex<HashMap<Key, Slot>>> = LazyLock::new(Mutex::default);
 
 /// [`answer`], which is worked out once and only once, whoever asks.
-#[must_use]
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
     let key = Key {
         cosine: match incidence.light {

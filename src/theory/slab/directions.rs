@@ -30,7 +30,6 @@ pub struct Directions {
 
 impl Directions {
     /// A quadrature of `count` cosines, and further cosines of incidence.
-    #[must_use]
     pub fn new(phase: &Phase, count: usize, further: &[f64]) -> Self {
         let rule = GaussLegendre::new(count);
         let mut cosines: Vec<f64> = rule.nodes.iter().map(|x| x * x).collect();
@@ -60,7 +59,6 @@ impl Directions {
     }
 
     /// How many cosines the quadrature has.
-    #[must_use]
     pub fn count(&self) -> usize {
         self.weights.len()
     }
@@ -88,14 +86,12 @@ fn legendre(x: f64, count: usize) -> Vec<f64> {
 
 /// How many cosines resolve a phase function down to moments of the given size: measured errors of
 /// reflectances fall like `g^{2n}`.
-#[must_use]
 pub fn needed(phase: &Phase, faintest: f64) -> usize {
     let last = (0..2 * MOST).rposition(|l| phase.moment(l).abs() >= faintest).unwrap_or(0);
     (last / 2 + 1).min(MOST)
 }
 
 /// Whether so many directions can be had.
-#[must_use]
 pub fn are_enough(phase: &Phase, faintest: f64) -> bool {
     phase.moment(2 * MOST).abs() < faintest
 }

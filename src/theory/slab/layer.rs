@@ -35,7 +35,6 @@ pub struct Slice {
 
 impl Slice {
     /// What a collision takes out of the beam, `1 − Q`.
-    #[must_use]
     pub fn lost(&self) -> f64 {
         1.0 - self.straight
     }
@@ -62,7 +61,6 @@ fn mean_decay(y: f64) -> f64 {
 impl Layer {
     /// A homogeneous layer by `doublings` doublings of one so thin that light scatters in it once at
     /// most; `None` where the expected energy is infinite.
-    #[must_use]
     pub fn homogeneous(directions: &Directions, slice: &Slice, doublings: i32) -> Option<Self> {
         // Without loss, light along the layer meets collision after collision without end.
         if slice.lost() < 0.0 || (slice.lost() == 0.0 && slice.scattered > 0.0) {
@@ -114,7 +112,6 @@ impl Layer {
     }
 
     /// The layer on top of another one.
-    #[must_use]
     pub fn over(&self, below: &Self) -> Option<Self> {
         let there_and_back = below.reflected.times(&self.reflected).square();
         // X = R₂(A₁ + R₁X), by the same series.

@@ -114,7 +114,6 @@ impl Resolution {
 
 /// Whether two answers of different resolution tell the error of an exact one: not where both would
 /// have the most directions, as for Henyey–Greenstein of |g| > 0.935.
-#[must_use]
 pub fn resolves(phase: &Phase) -> bool {
     directions::are_enough(phase, Resolution::FINE.coarser().faintest)
 }
@@ -138,13 +137,11 @@ const THICK: f64 = 5.0;
 const MOST_DOUBLINGS: f64 = 100.0;
 
 /// What becomes of light in a stack of layers, from above; `None` where a share is infinite.
-#[must_use]
 pub fn solve(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Answer> {
     solve_all(&incidence.phase, &[incidence.light], slices, resolution)?.pop()
 }
 
 /// The same for several lights, which share the work.
-#[must_use]
 pub fn solve_all(
     phase: &Phase,
     lights: &[Light],
@@ -184,13 +181,11 @@ pub fn solve_all(
 }
 
 /// The same at one resolution, without error bounds.
-#[must_use]
 pub fn energy(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Energy> {
     energies(&incidence.phase, &[incidence.light], slices, resolution)?.pop()
 }
 
 /// The same for several lights.
-#[must_use]
 pub fn energies(
     phase: &Phase,
     lights: &[Light],
@@ -248,13 +243,11 @@ fn stack(directions: &Directions, slices: &[Slice], error: f64) -> Option<Layer>
 
 /// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
 /// number of collisions. `None` where they are infinite, which takes an albedo above 1.
-#[must_use]
 pub fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
     answers(&incidence.phase, &[incidence.light], depth, albedo)?.pop()
 }
 
 /// The same for several lights.
-#[must_use]
 pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
     let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
     let answers = solve_all(phase, lights, &[slice], Resolution::FINE)?;

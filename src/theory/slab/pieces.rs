@@ -39,7 +39,6 @@ pub struct Piece {
 
 impl Piece {
     /// A layer of one ratio.
-    #[must_use]
     pub fn of(flown: f64, ratio: f64) -> Self {
         Self { flown, ratios: vec![[1.0, ratio]] }
     }
@@ -74,7 +73,6 @@ pub enum Pieces {
 impl Pieces {
     /// The layers of a medium under a sampling extinction, for a walk whose moments have kinks at some ratios
     /// and any of the given lights.
-    #[must_use]
     pub fn new(mesh: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> Self {
         let cut = mesh.refined(sampling.knots(), &|_, _| Vec::new());
         let mut exact: Vec<Piece> = Vec::new();

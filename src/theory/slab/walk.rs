@@ -80,7 +80,6 @@ pub struct Walk {
 
 impl Walk {
     /// What theory says, given the exact answer.
-    #[must_use]
     pub fn predict(&self, truth: &Answer) -> Prediction {
         let lights = [self.incidence.light];
         let raw = POWERS.map(|k| self.moments(k, &lights, std::slice::from_ref(truth)));
@@ -89,7 +88,6 @@ impl Walk {
     }
 
     /// The same for several lights, which share the work.
-    #[must_use]
     pub fn predict_all(&self, lights: &[Light], truths: &[Answer]) -> Vec<Prediction> {
         let raw = POWERS.map(|k| self.moments(k, lights, truths));
         let laws = self.lookups(lights).into_iter().chain(std::iter::repeat(None));
@@ -110,7 +108,6 @@ impl Walk {
     }
 
     /// Whether the second moments exist: where they do not, no number of draws would settle.
-    #[must_use]
     pub fn second_moment(&self) -> Existence {
         // A weight that never grows stays at 1 at most.
         let grows = |ratio: f64| {

@@ -33,13 +33,11 @@ const RINGS: usize = 8;
 const ROWS: usize = 4;
 
 /// `∫σ_t dV` over a volume; `None` for one without bounds.
-#[must_use]
 pub fn content(volume: &Volume) -> Option<Known> {
     by_chords(volume, MOST_CHORDS)
 }
 
 /// The same with so many chords in a resolution at most.
-#[must_use]
 pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
     let within = volume.bounds().enclosing_box()?;
     let height = within.high.0[2] - within.low.0[2];

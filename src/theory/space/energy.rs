@@ -59,7 +59,6 @@ struct Extremes {
 
 impl Walks {
     /// The largest r, without the rounding of a majorant.
-    #[must_use]
     pub fn ratio(&self) -> f64 {
         if self.largest_ratio <= 1.0 + SLACK {
             self.largest_ratio.min(1.0)
@@ -69,14 +68,12 @@ impl Walks {
     }
 
     /// Whether no weight ever exceeds that at the start.
-    #[must_use]
     pub fn never_grows(&self) -> bool {
         self.ratio() <= 1.0
     }
 
     /// Whether the energy has a bound whatever the size of the volume: no weight grows, or none faster
     /// than walks end.
-    #[must_use]
     pub fn is_tame(&self) -> bool {
         let limit = 2.0 / (1.0 + self.albedo[1]);
         let settles = self.rule != ParticleRule::Weighted && self.roulette.is_none();
@@ -84,7 +81,6 @@ impl Walks {
     }
 
     /// A bound on the variance of the energy that a particle brings; `None` where none is known.
-    #[must_use]
     pub fn energy_variance(&self) -> Option<f64> {
         let extremes = self.extremes();
         if let Some(below) = self.roulette {

@@ -75,7 +75,6 @@ fn share(x: f64) -> f64 {
 }
 
 /// The expected number of collisions within an optical distance of the source, for an albedo in `[0, 1)`.
-#[must_use]
 pub fn collisions_within(albedo: f64, distance: f64) -> Known {
     let scattered = cut(albedo, |nu| share(distance / nu));
     let settled = if albedo < FAINT {
@@ -92,7 +91,6 @@ pub fn collisions_within(albedo: f64, distance: f64) -> Known {
 
 /// The fluence at an optical distance from a source of power 1, in units of `σ_t²`; for an albedo in
 /// `[0, 1)`.
-#[must_use]
 pub fn fluence(albedo: f64, distance: f64) -> Known {
     let scattered = cut(albedo, |nu| (-distance / nu).exp() / (nu * nu));
     let settled = if albedo < FAINT {
@@ -109,7 +107,6 @@ pub fn fluence(albedo: f64, distance: f64) -> Known {
 }
 
 /// `E[r²]` at absorption, in units of `1/σ_t²`, for any phase function of mean cosine g.
-#[must_use]
 pub fn square_at_absorption(albedo: f64, mean_cosine: f64) -> f64 {
     // 1 − a g without the cancellation where both are nearly one.
     let lost = (1.0 - albedo) + albedo * (1.0 - mean_cosine);

@@ -52,7 +52,6 @@ pub(super) struct Stretch {
 
 impl Ball<'_> {
     /// The ray that begins at a distance from its foot and looks on.
-    #[must_use]
     pub fn passage(&self, offset2: f64, from: f64) -> Passage {
         let half = (self.radius * self.radius - offset2).max(0.0).sqrt();
         let from = from.max(-half);

@@ -72,7 +72,6 @@ impl Scene {
 }
 
 /// The answer, which is worked out once and only once, whoever asks.
-#[must_use]
 pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
     let slot = {
         // A panic of someone else leaves whole slots behind.

@@ -31,7 +31,6 @@ fn doubling(scale: f64, end: f64) -> Vec<f64> {
 }
 
 /// All sights from a point at the distance r from the centre, `0 ≤ r ≤ R`.
-#[must_use]
 pub fn from_point(
     r: f64,
     radius: f64,

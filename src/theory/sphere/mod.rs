@@ -84,7 +84,6 @@ fn product(weights: &[f64], values: &[f64]) -> f64 {
 
 impl<'a> Solved<'a> {
     /// Solves the equation; `None` where the medium is no medium: σ_t or a negative, or a above 1.
-    #[must_use]
     pub fn new(
         ball: &'a Ball<'a>,
         albedo: f64,
@@ -147,7 +146,6 @@ impl<'a> Solved<'a> {
     }
 
     /// The answer to a question.
-    #[must_use]
     pub fn answer(&self, asked: Asked) -> f64 {
         let (direct, weights) = self.arriving(asked);
         direct + product(&weights, &self.source)
@@ -210,14 +208,12 @@ pub struct Spread {
 
 impl Spread {
     /// The bound on `E[X²]`, given that on `E[T̂²]/T`.
-    #[must_use]
     pub fn square(&self, gain: f64) -> f64 {
         self.unscattered + gain * self.lit + self.crossed
     }
 }
 
 /// Answers to several questions about one ball, with their errors; `None` where it is no medium.
-#[must_use]
 pub fn answers(
     ball: &Ball,
     albedo: f64,
@@ -234,7 +230,6 @@ pub fn answers(
 }
 
 /// Whether there is a black sphere that light may end on.
-#[must_use]
 pub fn centre_of(core: Option<f64>) -> Centre {
     core.map_or(Centre::Medium, Centre::Black)
 }

@@ -95,7 +95,6 @@ fn unscattered(ball: &Ball, passage: &Passage, resolution: Resolution, rules: &R
 /// For each line of sight, by its distance from the centre, which is not 0: the radiance that a point
 /// source of power 1 at the centre sends along it after one scattering, after two, …, and in all, with
 /// their errors. `None` where the ball is no medium, or is not a medium up to its centre.
-#[must_use]
 pub fn orders(
     ball: &Ball,
     albedo: f64,

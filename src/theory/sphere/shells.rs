@@ -55,7 +55,6 @@ impl Resolution {
 
     /// Around what is at the centre: shells as wide as a small black sphere follow `1/r²` badly, all three
     /// answers alike.
-    #[must_use]
     pub(super) fn about(self, centre: Centre, radius: f64) -> Self {
         match centre {
             Centre::Black(core) => {
@@ -128,7 +127,6 @@ pub struct Shells {
 
 impl Shells {
     /// Cuts a ball of a radius, in which `extinction` is a function of `r²`.
-    #[must_use]
     pub fn new(
         radius: f64,
         centre: Centre,
@@ -184,7 +182,6 @@ impl Shells {
     }
 
     /// The values of `r²` at all nodes.
-    #[must_use]
     pub fn nodes(&self, rules: &Rules) -> Vec<f64> {
         let at = |shell: &Shell| -> Vec<f64> {
             let nodes = &rules.of(shell.nodes).nodes;
@@ -200,13 +197,11 @@ pub struct Rules(Vec<GaussLegendre>);
 
 impl Rules {
     /// Rules of up to so many nodes.
-    #[must_use]
     pub fn new(most: usize) -> Self {
         Self((1..=most.max(1)).map(GaussLegendre::new).collect())
     }
 
     /// The rule of so many nodes, or of the most that there are.
-    #[must_use]
     pub fn of(&self, nodes: usize) -> &GaussLegendre {
         &self.0[nodes.clamp(1, self.0.len()) - 1]
     }
@@ -223,7 +218,6 @@ pub struct Row(Vec<f64>);
 
 impl Row {
     /// Of so many nodes.
-    #[must_use]
     pub fn new(count: usize) -> Self {
         Self(vec![0.0; count])
     }
@@ -241,7 +235,6 @@ impl Row {
     }
 
     /// The weights of the values at the nodes.
-    #[must_use]
     pub fn weights(&self, shells: &Shells, rules: &Rules) -> Vec<f64> {
         let mut weights = Vec::with_capacity(self.0.len());
         for shell in &shells.shells {
