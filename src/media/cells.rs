@@ -19,15 +19,13 @@ impl Cells {
     /// The cells of the integer lattice on `inside`; a stretch without length is one cell.
     #[allow(clippy::cast_possible_truncation)] // a lattice is addressed by 32-bit integers
     pub fn cross(start: [f64; 3], slope: [f64; 3], inside: Span) -> Self {
-        let mut ends = vec![inside.from, inside.to];
+        let mut planes = Vec::new();
         for (a, b) in start.into_iter().zip(slope).filter(|&(_, b)| b != 0.0) {
             let (p, q) = (a + b * inside.from, a + b * inside.to);
-            let planes = p.min(q).ceil() as i64..=p.max(q).floor() as i64;
-            let crossings = planes.map(|n| (n as f64 - a) / b);
-            ends.extend(crossings.filter(|&t| inside.contains_inside(t)));
+            let crossed = p.min(q).ceil() as i64..=p.max(q).floor() as i64;
+            planes.extend(crossed.map(|n| (n as f64 - a) / b));
         }
-        ends.sort_by(f64::total_cmp);
-        ends.dedup();
+        let mut ends = inside.cut(planes);
         if ends.len() == 1 {
             ends.push(inside.to);
         }

@@ -70,6 +70,25 @@ impl Span {
         self.length() <= 0.0
     }
 
+    /// The stretches between neighbours of an ascending list.
+    pub fn between(ends: &[f64]) -> impl ExactSizeIterator<Item = Self> + DoubleEndedIterator + '_ {
+        ends.windows(2).map(|pair| Self::new(pair[0], pair[1]))
+    }
+
+    /// Both ends and the places strictly inside, ascending, each once.
+    pub fn cut(self, mut places: Vec<f64>) -> Vec<f64> {
+        places.retain(|&t| self.contains_inside(t));
+        places.extend([self.from, self.to]);
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        places
+    }
+
+    /// The two stretches on either side of the midpoint.
+    pub fn halves(self) -> [Self; 2] {
+        [Self::new(self.from, self.middle()), Self::new(self.middle(), self.to)]
+    }
+
     /// The midpoint.
     pub fn middle(self) -> f64 {
         0.5 * (self.from + self.to)

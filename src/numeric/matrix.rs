@@ -88,6 +88,12 @@ impl Matrix {
         rows.map(|row| row.iter().zip(vector).map(|(x, y)| x * y).sum()).collect()
     }
 
+    /// `(1 − A)⁻¹ b`, see [`Self::series_times`].
+    pub fn series(&self, b: &[f64]) -> Option<Vec<f64>> {
+        let found = self.series_times(&Self { columns: 1, entries: b.to_vec() })?;
+        Some(found.entries)
+    }
+
     /// The X with `(1 − A) X = B`, of A the square and of B as many rows; `None` unless every pivot
     /// of `1 − A` is positive. For `A ≥ 0` these are positive exactly where the series
     /// `1 + A + A² + …` converges (A. Berman, R. J. Plemmons, *Nonnegative Matrices in the

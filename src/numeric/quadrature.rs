@@ -1,5 +1,7 @@
 //! Gauss–Legendre quadrature, and running integrals at its nodes.
 
+use super::Span;
+
 /// An `n`-point Gauss–Legendre rule on `[0, 1]` with the matrix of its running integrals.
 ///
 /// ```text
@@ -41,6 +43,18 @@ impl GaussLegendre {
             })
             .collect();
         Self { nodes, weights, running }
+    }
+
+    /// The nodes on a stretch, each with its weight; the weights sum to its length.
+    pub fn on(&self, span: Span) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let length = span.to - span.from;
+        let points = self.nodes.iter().zip(&self.weights);
+        points.map(move |(x, weight)| (span.from + length * x, length * weight))
+    }
+
+    /// The nodes on a stretch.
+    pub fn nodes_on(&self, span: Span) -> Vec<f64> {
+        self.on(span).map(|(t, _)| t).collect()
     }
 
     /// `∫_from^to f`.

@@ -15,7 +15,7 @@ use crate::problems::{
     Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, Transmittance,
 };
 use crate::theory::Mesh;
-use crate::theory::single::glance;
+use crate::theory::single::quick;
 
 /// A problem that pictures are made of.
 pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
@@ -138,7 +138,7 @@ impl Subject for SingleScattering {
     }
 
     fn by_quadrature(&self, panels: usize) -> Option<Known> {
-        Some(glance::radiance(self, panels))
+        Some(quick::radiance(self, panels))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::chains::{Chain, Term};
 use crate::numeric::Wide;
 use crate::problems::SingleScattering;
-use crate::theory::single::passage::{added, poisson};
+use crate::theory::raw::{added, poisson};
 use crate::theory::single::predict::Found;
 use crate::theory::single::{Along, Node, Points, Scene, Technique, Tracking, walks};
 use crate::theory::volterra::binomial;

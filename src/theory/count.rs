@@ -3,6 +3,7 @@
 use statrs::function::gamma::{gamma, gamma_lr};
 
 use super::product::Integrals;
+use super::raw;
 
 /// Above this mean a law is left without probabilities.
 pub const LARGEST_MEAN: f64 = 2000.0;
@@ -47,15 +48,15 @@ impl CountLaw {
     }
 
     /// Mean, variance and kurtosis from `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4; no probabilities.
-    pub fn of_factorial_moments([mean, pairs, triples, quadruples]: [f64; 4]) -> Self {
+    pub fn of_factorial_moments(factorial: [f64; 4]) -> Self {
+        let [mean, pairs, ..] = factorial;
         let variance = pairs + mean - mean * mean;
         // A number that is all but certain leaves a variance of rounding.
         if variance <= 1e-12 * mean * mean {
             return Self::always(mean);
         }
-        let raw = [mean, pairs + mean, triples + 3.0 * pairs + mean];
-        let raw4 = quadruples + 6.0 * triples + 7.0 * pairs + mean;
-        let fourth = raw4 - 4.0 * mean * raw[2] + 6.0 * mean * mean * raw[1] - 3.0 * mean.powi(4);
+        let [_, _, square, cube, fourth] = raw::of_factorial(factorial);
+        let fourth = fourth - 4.0 * mean * cube + 6.0 * mean * mean * square - 3.0 * mean.powi(4);
         let kurtosis = (fourth / (variance * variance)).max(1.0);
         Self { mean, variance, error: 0.0, kurtosis, poisson: false, pmf: Vec::new() }
     }

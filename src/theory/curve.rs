@@ -42,12 +42,11 @@ pub fn predict(product: &Product<'_>, distances: &[f64]) -> Prediction {
     Prediction {
         channels,
         lookups: Some(product.lookups(&mesh, &whole)),
-        layers: None,
         random_numbers: Some(whole.flown + 1.0),
-        law: None,
         covariances,
         increments: increments(&upto, mesh.relative_error()),
         stable_share: (length > 0.0).then(|| (whole.stable / length).min(1.0)),
+        ..Prediction::default()
     }
 }
 

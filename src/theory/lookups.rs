@@ -15,7 +15,6 @@ use super::Mesh;
 use super::count::{CountLaw, LARGEST_MEAN, Window};
 use super::mesh::Panel;
 use super::product::{Integrals, Product};
-use crate::numeric::Span;
 use crate::numeric::sum::Sum;
 
 /// A panel with more survived collisions than this, or than half a standard deviation of those before,
@@ -66,8 +65,7 @@ impl Walk {
         let middle = panel.span.middle();
         let most = COLLISIONS.max(0.5 * self.survivals.value().max(0.0).sqrt());
         if survived > most && panel.span.contains_inside(middle) {
-            let Span { from, to } = panel.span;
-            for span in [Span::new(from, middle), Span::new(middle, to)] {
+            for span in panel.span.halves() {
                 if self.alive() < RARE {
                     return;
                 }

@@ -74,11 +74,7 @@ impl Mesh {
     /// Cuts the support of a medium and looks σ_t up at every node.
     pub fn new(medium: Medium) -> Self {
         let support = medium.support();
-        let mut ends = medium.breaks();
-        ends.retain(|&t| support.contains_inside(t));
-        ends.extend([support.from, support.to]);
-        ends.sort_by(f64::total_cmp);
-        ends.dedup();
+        let ends = support.cut(medium.breaks());
         let many = ends.len() > MANY;
         let nodes = if many { medium.panel_nodes().unwrap_or(NODES) } else { NODES };
         let rule = GaussLegendre::new(nodes);
@@ -94,13 +90,11 @@ impl Mesh {
             error: 0.0,
             depth: None,
         };
-        let spans = || ends.windows(2).map(|pair| Span::new(pair[0], pair[1]));
-        let scale =
-            |nodes: Vec<f64>| mesh.medium.extinctions(&nodes).into_iter().fold(0.0, f64::max);
-        let whole =
-            if many { 0.0 } else { spans().map(|s| scale(mesh.nodes(s))).fold(0.0, f64::max) };
-        let whole = [Tail { scale: whole, size: f64::INFINITY }];
-        for span in ends.windows(2).map(|pair| Span::new(pair[0], pair[1])) {
+        let largest =
+            |span: Span| mesh.medium.extinctions(&mesh.nodes(span)).into_iter().fold(0.0, f64::max);
+        let scale = if many { 0.0 } else { Span::between(&ends).map(largest).fold(0.0, f64::max) };
+        let whole = [Tail { scale, size: f64::INFINITY }];
+        for span in Span::between(&ends) {
             mesh.grow(span, HALVINGS, &|_, panel| vec![panel.extinction.to_vec()], &whole);
         }
         mesh.error += mesh.measured_error();
@@ -181,8 +175,8 @@ impl Mesh {
             ends.extend(inside);
             ends.push(panel.span.to);
             ends.dedup();
-            for pair in ends.windows(2) {
-                fine.grow(Span::new(pair[0], pair[1]), HALVINGS, smooth, &whole);
+            for span in Span::between(&ends) {
+                fine.grow(span, HALVINGS, smooth, &whole);
             }
         }
         fine
@@ -241,8 +235,9 @@ impl Mesh {
             self.error += share * left;
         }
         if rough && room && span.contains_inside(middle) {
-            self.grow(Span::new(span.from, middle), halvings - 1, smooth, &tails);
-            self.grow(Span::new(middle, span.to), halvings - 1, smooth, &tails);
+            for half in span.halves() {
+                self.grow(half, halvings - 1, smooth, &tails);
+            }
         } else {
             self.keep(panel);
         }
@@ -250,7 +245,7 @@ impl Mesh {
 
     /// The distances of the nodes of a panel.
     pub(super) fn nodes(&self, span: Span) -> Vec<f64> {
-        self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect()
+        self.rule.nodes_on(span)
     }
 
     fn tails(&self, functions: &[Vec<f64>], parent: &[Tail]) -> Vec<Tail> {

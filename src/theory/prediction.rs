@@ -4,7 +4,7 @@ use super::{CountLaw, Moments};
 use crate::numeric::Known;
 
 /// What theory says of an experiment before a draw is made.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Prediction {
     /// One entry per channel of the value.
     pub channels: Vec<Channel>,
@@ -76,18 +76,16 @@ impl Tails {
 
 impl Channel {
     /// A single unbiased channel.
-    pub fn unbiased(truth: Known, moments: Moments, tails: Tails) -> Self {
-        let (unit, moments) = (truth.value, Some(moments));
-        let name = String::new();
+    pub fn unbiased(truth: Known, moments: impl Into<Option<Moments>>, tails: Tails) -> Self {
         Self {
-            name,
+            name: String::new(),
             truth,
             mean: truth,
-            moments,
+            moments: moments.into(),
             most_variance: None,
             by_pilots: false,
             tails,
-            unit,
+            unit: truth.value,
             log_unit: 0.0,
             losses: None,
         }
@@ -187,16 +185,7 @@ impl Prediction {
             channel.moments = None;
             channel.most_variance = None;
         }
-        Self {
-            channels,
-            lookups: None,
-            layers: None,
-            random_numbers: None,
-            law: None,
-            covariances: Vec::new(),
-            increments: Vec::new(),
-            stable_share: self.stable_share,
-        }
+        Self { channels, stable_share: self.stable_share, ..Self::default() }
     }
 
     /// The same of order-free draws: their values have the same law, their lookups may have not.
@@ -208,16 +197,7 @@ impl Prediction {
 
     /// An experiment with one unbiased channel.
     pub fn single(channel: Channel, lookups: CountLaw) -> Self {
-        Self {
-            channels: vec![channel],
-            lookups: Some(lookups),
-            layers: None,
-            random_numbers: None,
-            law: None,
-            covariances: Vec::new(),
-            increments: Vec::new(),
-            stable_share: None,
-        }
+        Self { channels: vec![channel], lookups: Some(lookups), ..Self::default() }
     }
 
     /// `1/(V · E[M])`, the efficiency per lookup, of a channel; `None` where either is unknown or

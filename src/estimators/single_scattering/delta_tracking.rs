@@ -24,7 +24,7 @@ use crate::numeric::Span;
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::single::passage::{added, poisson};
+use crate::theory::raw::{added, poisson};
 use crate::theory::single::predict::Found;
 use crate::theory::single::{Along, Node, Points, Technique, Tracking};
 

@@ -60,6 +60,11 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     known.collect()
 }
 
+/// The same, not a number where it is unknown.
+fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
+    truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()])
+}
+
 fn has_closed_form(seen: Seen) -> bool {
     matches!(seen, Seen::Reflected | Seen::Transmitted | Seen::Absorbed)
 }
@@ -125,50 +130,34 @@ pub fn predict(
     rule: ParticleRule,
     laws: bool,
 ) -> Prediction {
-    let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
-    let truth = truth(mesh, rod).unwrap_or_else(unknown);
+    let truth = truth_or_nan(mesh, rod);
     let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Found::of(&walk, laws));
     let channel = |(index, (seen, &truth)): (usize, (&Seen, &Known))| {
         let raw = found.as_ref().map(|found| &found.raw[index]);
         let moments = raw.map(|raw| central(truth, raw));
-        let (name, tails) = (seen.name(), raw.map_or(Tails::LIGHT, tails));
-        Channel { name, moments, ..Channel::unbiased(truth, Moments::certain(1.0), tails) }
+        let tails = raw.map_or(Tails::LIGHT, tails);
+        Channel { name: seen.name(), ..Channel::unbiased(truth, moments, tails) }
     };
     let channels = rod.channels().iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
         lookups: found.as_ref().map(Found::lookups),
-        layers: None,
-        random_numbers: None,
-        law: None,
         covariances: found
             .as_ref()
             .map_or_else(Vec::new, |found| covariances(rod.channels(), &truth, found)),
-        increments: Vec::new(),
-        stable_share: None,
+        ..Prediction::default()
     }
 }
 
 /// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
-    let unknown = || vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()];
-    let truth = truth(mesh, rod).unwrap_or_else(unknown);
+    let truth = truth_or_nan(mesh, rod);
     let channels = rod.channels().iter().zip(truth).map(|(seen, truth)| Channel {
         name: seen.name(),
-        moments: None,
         most_variance: Some(truth.value * (1.0 - truth.value)),
-        ..Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT)
+        ..Channel::unbiased(truth, None, Tails::LIGHT)
     });
-    Prediction {
-        channels: channels.collect(),
-        lookups: None,
-        layers: None,
-        random_numbers: None,
-        law: None,
-        covariances: Vec::new(),
-        increments: Vec::new(),
-        stable_share: None,
-    }
+    Prediction { channels: channels.collect(), ..Prediction::default() }
 }
 
 /// Raw moments of all channels.

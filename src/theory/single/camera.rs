@@ -1,7 +1,7 @@
 //! The transmittance from the ray's origin to any point of the ray, as it is estimated.
 
 use super::Along;
-use super::passage::{POWERS, Passage, loss, rounding, size};
+use super::segment::{POWERS, Segment, loss, rounding, size};
 use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Span};
@@ -123,13 +123,11 @@ impl<'a> Camera<'a> {
     }
 
     fn over(&self, span: Span) -> [f64; COUNT] {
-        let nodes: Vec<f64> =
-            self.rule.nodes.iter().map(|x| span.from + x * (span.to - span.from)).collect();
-        let sigma = self.mesh.medium().extinctions(&nodes);
+        let sigma = self.mesh.medium().extinctions(&self.rule.nodes_on(span));
         let mut sum = [0.0; COUNT];
-        for ((&t, &sigma), &weight) in nodes.iter().zip(&sigma).zip(&self.rule.weights) {
+        for ((t, weight), sigma) in self.rule.on(span).zip(sigma) {
             let values = self.integrand(t, sigma);
-            sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * span.length() * x);
+            sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * x);
         }
         sum
     }
@@ -147,19 +145,19 @@ impl<'a> Camera<'a> {
     }
 
     /// The moments of the estimate up to `s`.
-    pub fn passage(&self, s: f64) -> Passage {
+    pub fn segment(&self, s: f64) -> Segment {
         let depth = self.depth(s);
         match self.along {
-            Along::Exact => Passage::exact(depth),
+            Along::Exact => Segment::exact(depth),
             Along::Ratio => {
                 let [_, b, c, d, e, .., flown, size] = self.at(s);
                 let error = rounding(size) + 4.0 * depth.error;
-                Passage::product([depth.value, b, c, d, e], flown, [error, size])
+                Segment::product([depth.value, b, c, d, e], flown, [error, size])
             }
             Along::Delta => {
                 let [a, b, c, d, ..] = self.at(s);
                 let from = self.mesh.support().from;
-                Passage::decided(depth, self.flown(Span::new(from, s)), [a, b, c, d])
+                Segment::decided(depth, self.flown(Span::new(from, s)), [a, b, c, d])
             }
         }
     }

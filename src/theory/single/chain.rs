@@ -104,6 +104,5 @@ impl<'a> Chain<'a> {
 
 /// The panels, each cut in two.
 pub fn halved(panels: &[Span]) -> Vec<Span> {
-    let halves = |x: &Span| [Span::new(x.from, x.middle()), Span::new(x.middle(), x.to)];
-    panels.iter().flat_map(halves).collect()
+    panels.iter().flat_map(|x| x.halves()).collect()
 }

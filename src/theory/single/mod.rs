@@ -15,16 +15,16 @@
 
 pub mod camera;
 pub mod chain;
-pub mod glance;
-pub mod passage;
 pub mod predict;
+pub mod quick;
 pub mod scene;
+pub mod segment;
 pub mod walks;
 
 pub use camera::Camera;
-pub use passage::{Passage, Tracking};
 pub use predict::{Points, Technique};
 pub use scene::{Node, Scene};
+pub use segment::{Segment, Tracking};
 
 /// How the transmittance from the ray's origin to a scattering point is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Draws that scatter at one point, or at one point of each of two techniques.
 
-use super::passage::added;
 use super::scene::{Node, Scene};
 use crate::numeric::Known;
+use crate::theory::raw::added;
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// The agreement that is asked of two resolutions, relative to the whole: of moments.
@@ -158,12 +158,9 @@ impl Points {
         let eighth = self.eighth.map_or(f64::NAN, |eighth| eighth / (fourth * fourth));
         // How rare the draws are that make the variance is not worked out.
         let tails = Tails { rare_event_size: f64::NAN, eighth_moment_ratio: eighth };
-        let certain = Channel::unbiased(self.truth, Moments::certain(mean), tails);
-        let channel = Channel { moments, ..certain };
-        let prediction = Prediction::single(channel, CountLaw::always(0.0));
+        let channels = vec![Channel::unbiased(self.truth, moments, tails)];
         let law = |raw| CountLaw { error: self.counted, ..count(self.least, raw) };
-        let lookups = self.lookups.map(law);
-        Prediction { lookups, ..prediction }
+        Prediction { channels, lookups: self.lookups.map(law), ..Prediction::default() }
     }
 }
 

@@ -1,11 +1,12 @@
 //! A point of the ray with all that theory knows there, and adaptive integrals over the ray.
 
 use super::camera::Camera;
-use super::passage::{Passage, Tracking, added};
+use super::segment::{Segment, Tracking};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
 use crate::numeric::{Known, Span};
 use crate::problems::{Problem, SingleScattering};
+use crate::theory::raw::added;
 
 /// The agreement that is asked of two resolutions of L, relative to the whole.
 const RADIANCE: f64 = 2e-14;
@@ -36,9 +37,9 @@ pub struct Node {
     /// A relative error bound of `extinction · source`, and of `transmittance`.
     pub error: [f64; 2],
     /// The transmittance from there as it is estimated.
-    pub camera: Passage,
+    pub camera: Segment,
     /// That of the shadow ray.
-    pub shadow: Passage,
+    pub shadow: Segment,
 }
 
 impl Node {
@@ -48,7 +49,7 @@ impl Node {
         if self.extinction <= 0.0 {
             return [1.0, 0.0, 0.0, 0.0, 0.0];
         }
-        let Passage { lookups, through, .. } = self.camera;
+        let Segment { lookups, through, .. } = self.camera;
         let with_shadow = added(through, self.shadow.lookups);
         let ended: [f64; 5] = std::array::from_fn(|k| lookups[k] - through[k]);
         std::array::from_fn(|k| with_shadow[k] + ended[k])
@@ -110,7 +111,7 @@ impl<'a> Scene<'a> {
         let medium = self.problem.medium();
         let depth = medium.optical_depth(Span::new(medium.support().from, s));
         let cast = self.problem.shadow_medium(s);
-        let mut shadow = Passage::of_shadow(self.shadow, cast.as_ref(), &self.rule);
+        let mut shadow = Segment::of_shadow(self.shadow, cast.as_ref(), &self.rule);
         // The shadow ray begins at s, which is rounded.
         let place = f64::EPSILON * (s.abs() + self.problem.foot().abs());
         shadow.error += shadow.size * place / along.hypot(self.problem.distance());
@@ -122,7 +123,7 @@ impl<'a> Scene<'a> {
             source,
             transmittance: (-depth.value).exp(),
             error: [rounding, depth.error + f64::EPSILON],
-            camera: self.camera.passage(s),
+            camera: self.camera.segment(s),
             shadow,
         }
     }
@@ -214,22 +215,20 @@ impl<'a> Scene<'a> {
             return Integral { value: [0.0; N], error: [0.0; N], panels: Vec::new() };
         }
         let ends = self.ends(cuts);
-        let spans = ends.windows(2).map(|pair| Span::new(pair[0], pair[1]));
         let mut open: Vec<(Span, [f64; N], u32)> =
-            spans.map(|x| (x, self.panel(x, f), HALVINGS)).collect();
+            Span::between(&ends).map(|x| (x, self.panel(x, f), HALVINGS)).collect();
         let scale: [f64; N] =
             std::array::from_fn(|i| open.iter().map(|(_, value, _)| value[i].abs()).sum());
         open.reverse();
         let (mut sums, mut error) = ([Sum::default(); N], [0.0; N]);
         let mut panels = Vec::new();
         while let Some((x, coarse, halvings)) = open.pop() {
-            let middle = x.middle();
-            let halves = [Span::new(x.from, middle), Span::new(middle, x.to)];
+            let halves = x.halves();
             let [left, right] = halves.map(|x| self.panel(x, f));
             let apart: [f64; N] = std::array::from_fn(|i| (left[i] + right[i] - coarse[i]).abs());
             let rough = (0..N).any(|i| apart[i] > parts[i] * scale[i]);
             let room =
-                halvings > 0 && panels.len() + open.len() < MOST && x.contains_inside(middle);
+                halvings > 0 && panels.len() + open.len() < MOST && x.contains_inside(x.middle());
             if rough && room {
                 open.push((halves[1], right, halvings - 1));
                 open.push((halves[0], left, halvings - 1));

@@ -8,10 +8,11 @@
 
 use super::camera::Losses;
 use super::chain::{At, Chain, Solved, halved};
-use super::passage::{Passage, added, poisson};
 use super::predict::{DENSITY, LOOKUPS, MOMENT, Points};
 use super::scene::{Node, Scene};
+use super::segment::Segment;
 use crate::numeric::Span;
+use crate::theory::raw::{self, BINOMIAL, added, poisson};
 
 /// The orders `n₁ … n₄` of the moments of a shared walk, from the fewest points to the most.
 pub const ORDERS: [[usize; 4]; 11] = [
@@ -26,14 +27,6 @@ pub const ORDERS: [[usize; 4]; 11] = [
     [0, 2, 0, 0],
     [2, 1, 0, 0],
     [4, 0, 0, 0],
-];
-
-const BINOMIAL: [[f64; 5]; 5] = [
-    [1.0, 0.0, 0.0, 0.0, 0.0],
-    [1.0, 1.0, 0.0, 0.0, 0.0],
-    [1.0, 2.0, 1.0, 0.0, 0.0],
-    [1.0, 3.0, 3.0, 1.0, 0.0],
-    [1.0, 4.0, 6.0, 4.0, 1.0],
 ];
 
 /// Moments on the panels and on their halves, and a relative error bound: the difference, and the rounding of
@@ -101,7 +94,7 @@ fn panels_at_collisions(scene: &Scene) -> AtCollisions {
         };
         // A compound Poisson number: its cumulants are moments of what each collision costs.
         let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::free().lookups };
+            if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups };
         let each = added([1.0; 5], shadow);
         [
             power(1),
@@ -125,14 +118,6 @@ fn panels_at_collisions(scene: &Scene) -> AtCollisions {
         counted: SUMS + found.error[4] / k1,
         rounding: average(&[p1, p2, p3, p4], rounded),
     }
-}
-
-/// Raw moments from cumulants.
-fn raw([k1, k2, k3, k4]: [f64; 4]) -> [f64; 5] {
-    let second = k2 + k1 * k1;
-    let third = k3 + 3.0 * k2 * k1 + k1.powi(3);
-    let fourth = k4 + 4.0 * k3 * k1 + 3.0 * k2 * k2 + 6.0 * k2 * k1 * k1 + k1.powi(4);
-    [1.0, k1, second, third, fourth]
 }
 
 /// At every collision.
@@ -164,7 +149,7 @@ pub fn at_collisions(scene: &Scene) -> Points {
         [of(&chain, true), sizes]
     };
     let (powers, error) = both(&panels, rounding, powers);
-    let (truth, lookups) = (scene.radiance(), Some(raw(cumulants)));
+    let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
     Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
 }
 
@@ -248,7 +233,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
     let found = scene.integrate(parts, &|node| {
         let each = |k: usize| scored(node, k) * node.camera.powers[k];
         let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Passage::free().lookups };
+            if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups };
         let cost = |k: usize| density(node) * shadow[k];
         let rounded = |k: usize| each(k).abs() * (blur(node) + 4.0 * DENSITY);
         [

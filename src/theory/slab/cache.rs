@@ -1,14 +1,9 @@
 //! Answers that were worked out before: experiments of one slab share theirs.
 
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
-
 use super::{Answer, answer};
 use crate::numeric::Known;
 use crate::problems::slab::{Incidence, Light};
-
-/// More answers than this are forgotten, all together.
-const MOST: usize = 4096;
+use crate::theory::memo::Memo;
 
 /// What an answer is found by: the bits of all numbers, and the phase function in words, which tell
 /// every digit of its settings.
@@ -20,9 +15,7 @@ struct Key {
     albedo: u64,
 }
 
-type Slot = Arc<OnceLock<Option<Answer>>>;
-
-static ANSWERS: LazyLock<Mutex<HashMap<Key, Slot>>> = LazyLock::new(Mutex::default);
+static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
 
 /// [`answer`], which is worked out once and only once, whoever asks.
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
@@ -35,15 +28,7 @@ pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer
         depth: [depth.value.to_bits(), depth.error.to_bits()],
         albedo: albedo.to_bits(),
     };
-    let slot = {
-        // A panic of someone else leaves whole slots behind.
-        let mut answers = ANSWERS.lock().unwrap_or_else(PoisonError::into_inner);
-        if answers.len() >= MOST {
-            answers.clear();
-        }
-        answers.entry(key).or_default().clone()
-    };
-    *slot.get_or_init(|| answer(incidence, depth, albedo))
+    ANSWERS.get(key, || answer(incidence, depth, albedo))
 }
 
 #[cfg(test)]

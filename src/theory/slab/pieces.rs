@@ -104,13 +104,6 @@ impl Pieces {
 /// they are still few with them; and the same layers cut in two.
 fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> [Vec<Piece>; 2] {
     let support = cut.support();
-    let within = |mut breaks: Vec<f64>| {
-        breaks.retain(|&t| support.contains_inside(t));
-        breaks.extend([support.from, support.to]);
-        breaks.sort_by(f64::total_cmp);
-        breaks.dedup();
-        breaks
-    };
     let mut knots = cut.medium().breaks();
     knots.extend(sampling.knots());
     let passed = |&ratio: &f64| {
@@ -121,7 +114,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
         })
     };
     let both = knots.iter().copied().chain(kinks.iter().flat_map(passed)).collect();
-    let (knots, breaks) = (within(knots), within(both));
+    let (knots, breaks) = (support.cut(knots), support.cut(both));
     let few = [&breaks, &knots].into_iter().find(|breaks| breaks.len() <= MOST_BREAKS);
     let stretches = few.cloned().unwrap_or_else(|| vec![support.from, support.to]);
     let layers = (2 * cut.panels().len()).clamp(COARSE[0], COARSE[1]);
@@ -171,14 +164,12 @@ fn piece(
     ends.extend(breaks.iter().copied().filter(|&t| within.contains_inside(t)));
     ends.push(within.to);
     let mut ratios: Vec<[f64; 2]> = Vec::new();
-    for ends in ends.windows(2) {
-        let width = ends[1] - ends[0];
-        let at: Vec<f64> = rule.nodes.iter().map(|x| ends[0] + width * x).collect();
-        let extinction = mesh.medium().extinctions(&at);
-        for ((&t, sigma), weight) in at.iter().zip(extinction).zip(&rule.weights) {
+    for span in Span::between(&ends) {
+        let extinction = mesh.medium().extinctions(&rule.nodes_on(span));
+        for ((t, weight), sigma) in rule.on(span).zip(extinction) {
             let here = sampling.value(t);
             if here > 0.0 {
-                ratios.push([width * weight * here, sigma / here]);
+                ratios.push([weight * here, sigma / here]);
             }
         }
     }

@@ -253,16 +253,8 @@ fn predicted(
         let both = second_r.value * t * t + second_t.value * r * r - 3.0 * r * r * t * t;
         Covariance { pair: [0, 1], value: -r * t, variance: both - (r * t).powi(2) }
     });
-    Prediction {
-        channels,
-        lookups,
-        layers: None,
-        random_numbers: None,
-        law: None,
-        covariances: covariances.into_iter().filter(|c| c.variance.is_finite()).collect(),
-        increments: Vec::new(),
-        stable_share: None,
-    }
+    let covariances = covariances.into_iter().filter(|c| c.variance.is_finite()).collect();
+    Prediction { channels, lookups, covariances, ..Prediction::default() }
 }
 
 /// What two cuts say together: the error of the finer one is a quarter of the other's, and what directions
@@ -322,30 +314,14 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
         Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
     });
     let tails = match (moments, fourth, eighth) {
-        (Some(moments), Some(fourth), Some(eighth)) => Tails {
-            rare_event_size: moments.kurtosis().unwrap_or(1.0),
-            eighth_moment_ratio: eighth.value / (fourth.value * fourth.value),
-        },
+        (Some(moments), Some(fourth), Some(eighth)) => {
+            let ratio = eighth.value / (fourth.value * fourth.value);
+            Tails {
+                rare_event_size: moments.kurtosis().unwrap_or(1.0),
+                eighth_moment_ratio: if ratio.is_nan() { f64::INFINITY } else { ratio },
+            }
+        }
         _ => Tails { rare_event_size: f64::INFINITY, eighth_moment_ratio: f64::INFINITY },
     };
-    let tails = Tails {
-        eighth_moment_ratio: if tails.eighth_moment_ratio.is_nan() {
-            f64::INFINITY
-        } else {
-            tails.eighth_moment_ratio
-        },
-        ..tails
-    };
-    Channel {
-        name: name.to_owned(),
-        truth,
-        mean: truth,
-        moments,
-        most_variance: None,
-        by_pilots: false,
-        tails,
-        unit: t,
-        log_unit: 0.0,
-        losses: None,
-    }
+    Channel { name: name.to_owned(), ..Channel::unbiased(truth, moments, tails) }
 }

@@ -15,9 +15,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::media::{Medium, Volume};
-use crate::numeric::Known;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
+use crate::numeric::{Known, Span};
 
 /// Two resolutions that agree so well need no third, relative to the whole.
 const AGREED: f64 = 1e-13;
@@ -208,7 +208,7 @@ fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
     let (low, high) = (within.low.0, within.high.0);
     let mut direction = Point([0.0; 3]);
     direction.0[axis] = 1.0;
-    let mut ends = vec![low[axis], high[axis]];
+    let mut ends = Vec::new();
     // Cells are the same along all edges.
     for edge in 0..if has_cells(volume) { 1 } else { 4 } {
         let mut origin = low;
@@ -222,10 +222,7 @@ fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
         let breaks = Medium::new(profile, ray.span(), ray.span()).breaks();
         ends.extend(breaks.into_iter().map(|t| low[axis] + t));
     }
-    ends.retain(|end| (low[axis]..=high[axis]).contains(end));
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
-    ends
+    Span::new(low[axis], high[axis]).cut(ends)
 }
 
 /// Nodes and weights of Gauss' rule in n panels between each two ends.

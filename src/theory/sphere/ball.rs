@@ -26,9 +26,9 @@ pub struct Ball<'a> {
     pub extinction: &'a dyn Fn(f64) -> f64,
 }
 
-/// A ray from `from` to `to`, distances from its foot.
+/// A ray or a part of one, from `from` to `to`, distances from its foot.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passage {
+pub struct Chord {
     /// The square of its distance from the centre.
     pub offset2: f64,
     /// Where it begins.
@@ -39,20 +39,9 @@ pub struct Passage {
     pub hits: bool,
 }
 
-/// A part of a ray, by distances from its foot.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Stretch {
-    /// The square of the ray's distance from the centre.
-    pub offset2: f64,
-    /// Where it begins.
-    pub from: f64,
-    /// Where it ends.
-    pub to: f64,
-}
-
 impl Ball<'_> {
     /// The ray that begins at a distance from its foot and looks on.
-    pub fn passage(&self, offset2: f64, from: f64) -> Passage {
+    pub fn chord(&self, offset2: f64, from: f64) -> Chord {
         let half = (self.radius * self.radius - offset2).max(0.0).sqrt();
         let from = from.max(-half);
         if let Centre::Black(core) = self.centre
@@ -60,25 +49,25 @@ impl Ball<'_> {
             && offset2 < core * core
         {
             let to = -(core * core - offset2).sqrt();
-            return Passage { offset2, from, to: to.max(from), hits: true };
+            return Chord { offset2, from, to: to.max(from), hits: true };
         }
-        Passage { offset2, from, to: half.max(from), hits: false }
+        Chord { offset2, from, to: half.max(from), hits: false }
     }
 
     /// Adds `weight ∫ σ_t S e^{−τ} dt` to a row, and answers `e^{−τ}` at the ray's end.
     pub fn collect(
         &self,
-        passage: &Passage,
+        chord: &Chord,
         shells: &Shells,
         rules: &Rules,
         weight: f64,
         row: &mut Row,
     ) -> f64 {
         let mut depth = 0.0;
-        crossings(passage, shells, |shell, from, to| {
+        crossings(chord, shells, |shell, from, to| {
             let nodes = (shell.nodes + BEYOND).max(FEWEST);
-            let stretch = Stretch { offset2: passage.offset2, from, to };
-            self.panel(stretch, rules.of(nodes), &mut depth, |r2, share| {
+            let part = Chord { from, to, ..*chord };
+            self.panel(&part, rules.of(nodes), &mut depth, |r2, share| {
                 row.add(shell, r2, weight * share);
             });
         });
@@ -88,12 +77,12 @@ impl Ball<'_> {
     /// One panel: hands out `r²` and `σ_t e^{−τ} dt` at each node, and adds to the optical depth.
     pub(super) fn panel(
         &self,
-        stretch: Stretch,
+        part: &Chord,
         rule: &GaussLegendre,
         depth: &mut f64,
         mut each: impl FnMut(f64, f64),
     ) {
-        let Stretch { offset2, from, to } = stretch;
+        let &Chord { offset2, from, to, .. } = part;
         let middle = 0.5 * (from + to);
         let guess = (self.extinction)(offset2 + middle * middle) * (to - from);
         let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
@@ -119,18 +108,18 @@ impl Ball<'_> {
 }
 
 /// The parts of a ray in each shell, in their order.
-fn crossings(passage: &Passage, shells: &Shells, mut each: impl FnMut(&Shell, f64, f64)) {
-    let at = |r2: f64| (r2 - passage.offset2).max(0.0).sqrt();
+fn crossings(chord: &Chord, shells: &Shells, mut each: impl FnMut(&Shell, f64, f64)) {
+    let at = |r2: f64| (r2 - chord.offset2).max(0.0).sqrt();
     // Inwards, through the shell of the foot, and out again.
     for shell in shells.shells.iter().rev() {
         let (outer, inner) = (-at(shell.to), -at(shell.from));
-        let (from, to) = (outer.max(passage.from), inner.min(passage.to));
+        let (from, to) = (outer.max(chord.from), inner.min(chord.to));
         if from < to {
             each(shell, from, to);
         }
     }
     for shell in &shells.shells {
-        let (from, to) = (at(shell.from).max(passage.from), at(shell.to).min(passage.to));
+        let (from, to) = (at(shell.from).max(chord.from), at(shell.to).min(chord.to));
         if from < to {
             each(shell, from, to);
         }

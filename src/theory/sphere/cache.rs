@@ -1,15 +1,10 @@
 //! Answers that were worked out before: experiments of one ball share theirs.
 
-use std::collections::HashMap;
-use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
-
 use super::ball::Ball;
 use super::shells::Resolution;
-use super::{Asked, Lights, Solved, Spread, centre_of};
+use super::{Asked, Lights, Spread, centre_of, solved};
 use crate::numeric::Known;
-
-/// More answers than this are forgotten, all together.
-const MOST: usize = 1024;
+use crate::theory::memo::Memo;
 
 /// All that an answer depends on, but for σ_t.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,9 +32,7 @@ pub struct Answer {
     pub spread: Spread,
 }
 
-type Slot = Arc<OnceLock<Option<Answer>>>;
-
-static ANSWERS: LazyLock<Mutex<HashMap<Vec<u64>, Slot>>> = LazyLock::new(Mutex::default);
+static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
 
 impl Scene {
     /// The bits of all numbers, and of σ_t at so many places that no other field shares them.
@@ -62,10 +55,8 @@ impl Scene {
     fn answer(&self, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
         let centre = centre_of(self.core);
         let ball = Ball { radius: self.radius, centre, extinction };
-        let solve = |resolution| Solved::new(&ball, self.albedo, self.lights, resolution);
         let resolution = Resolution::COARSE.about(centre, self.radius);
-        let [fine, coarse, coarsest] = resolution.all().map(solve);
-        let solved = [fine?, coarse?, coarsest?];
+        let solved = solved(&ball, self.albedo, self.lights, resolution)?;
         let value = resolution.known(solved.each_ref().map(|s| s.answer(self.asked)));
         Some(Answer { value, spread: solved[0].spread(self.asked, self.is_distant)? })
     }
@@ -73,15 +64,7 @@ impl Scene {
 
 /// The answer, which is worked out once and only once, whoever asks.
 pub fn cached(scene: &Scene, extinction: &dyn Fn(f64) -> f64) -> Option<Answer> {
-    let slot = {
-        // A panic of someone else leaves whole slots behind.
-        let mut answers = ANSWERS.lock().unwrap_or_else(PoisonError::into_inner);
-        if answers.len() >= MOST {
-            answers.clear();
-        }
-        answers.entry(scene.key(extinction)).or_default().clone()
-    };
-    *slot.get_or_init(|| scene.answer(extinction))
+    ANSWERS.get(scene.key(extinction), || scene.answer(extinction))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@
 //! centre, seen in a direction of the cosine ν with the outward one; the line of sight ends after the
 //! length s, at the surface or at a black sphere, where the radiance is L. J is a polynomial of `r²` in
 //! each of many shells ([`shells`]); the equation is met at their Gauss nodes, with the integrals along
-//! lines of sight cut at the shells' surfaces ([`ball`]) and graded over directions ([`directions`]).
+//! lines of sight cut at the shells' surfaces ([`ball`]) and graded over directions ([`views`]).
 //! Any answer is computed three times, with fewer nodes and a coarser grading the second and the third
 //! time, and the differences tell its error: two may agree by chance.
 //!
@@ -22,9 +22,9 @@
 
 pub mod ball;
 pub mod cache;
-pub mod directions;
 pub mod point;
 pub mod shells;
+pub mod views;
 
 use crate::numeric::Known;
 use crate::numeric::matrix::Matrix;
@@ -109,27 +109,24 @@ impl<'a> Solved<'a> {
     /// What a score g at each scattering, a function of the place given at the nodes, comes to:
     /// `aY` of `Y = g + K aY`.
     fn gathered(&self, score: &[f64]) -> Option<Vec<f64>> {
-        let scattered = Matrix::new(score.len(), 1, |i, _| self.albedo * score[i]);
-        let found = self.matrix.series_times(&scattered)?;
-        let found: Vec<f64> = (0..score.len()).map(|i| found.at(i, 0)).collect();
-        found.iter().all(|x| x.is_finite()).then_some(found)
+        let scattered: Vec<f64> = score.iter().map(|g| self.albedo * g).collect();
+        self.matrix.series(&scattered).filter(|found| found.iter().all(|x| x.is_finite()))
     }
 
     /// Adds what arrives along one line of sight to a row; answers the unscattered part.
-    fn sight(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
-        let passage = self.ball.passage(offset2, from);
-        let left = self.ball.collect(&passage, &self.shells, &self.rules, weight, row);
-        weight * left * if passage.hits { self.lights.core } else { self.lights.environment }
+    fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
+        let chord = self.ball.chord(offset2, from);
+        let left = self.ball.collect(&chord, &self.shells, &self.rules, weight, row);
+        weight * left * if chord.hits { self.lights.core } else { self.lights.environment }
     }
 
     fn mean_row(&self, r: f64) -> Arriving {
         let mut row = Row::new(self.shells.count);
         let ball = self.ball;
-        let sights =
-            directions::from_point(r, ball.radius, ball.centre, self.resolution, &self.rules);
-        let direct: f64 = sights
+        let views = views::from_point(r, ball.radius, ball.centre, self.resolution, &self.rules);
+        let direct: f64 = views
             .iter()
-            .map(|sight| self.sight(sight.offset2, sight.from, sight.weight, &mut row))
+            .map(|view| self.view(view.offset2, view.from, view.weight, &mut row))
             .sum();
         (direct, row.weights(&self.shells, &self.rules))
     }
@@ -139,7 +136,7 @@ impl<'a> Solved<'a> {
             Asked::Mean(r) => self.mean_row(r),
             Asked::Radiance { offset, from } => {
                 let mut row = Row::new(self.shells.count);
-                let direct = self.sight(offset * offset, from, 1.0, &mut row);
+                let direct = self.view(offset * offset, from, 1.0, &mut row);
                 (direct, row.weights(&self.shells, &self.rules))
             }
         }
@@ -213,6 +210,18 @@ impl Spread {
     }
 }
 
+/// The equation, solved three times; `None` where the ball is no medium.
+fn solved<'a>(
+    ball: &'a Ball<'a>,
+    albedo: f64,
+    lights: Lights,
+    resolution: Resolution,
+) -> Option<[Solved<'a>; 3]> {
+    let solve = |resolution| Solved::new(ball, albedo, lights, resolution);
+    let [fine, coarse, coarsest] = resolution.all().map(solve);
+    Some([fine?, coarse?, coarsest?])
+}
+
 /// Answers to several questions about one ball, with their errors; `None` where it is no medium.
 pub fn answers(
     ball: &Ball,
@@ -222,9 +231,7 @@ pub fn answers(
     asked: &[Asked],
 ) -> Option<Vec<Known>> {
     let resolution = resolution.about(ball.centre, ball.radius);
-    let solve = |resolution| Solved::new(ball, albedo, lights, resolution);
-    let [fine, coarse, coarsest] = resolution.all().map(solve);
-    let solved = [fine?, coarse?, coarsest?];
+    let solved = solved(ball, albedo, lights, resolution)?;
     let known = |&asked: &Asked| resolution.known(solved.each_ref().map(|s| s.answer(asked)));
     Some(asked.iter().map(known).collect())
 }

@@ -10,9 +10,9 @@
 
 use std::f64::consts::PI;
 
-use super::ball::{Ball, Passage, Stretch};
-use super::directions;
+use super::ball::{Ball, Chord};
 use super::shells::{Centre, Resolution, Row, Rules, Shells};
+use super::{product, views};
 use crate::numeric::Known;
 use crate::numeric::matrix::Matrix;
 
@@ -32,25 +32,23 @@ fn radiances(
     for r2 in &nodes {
         let r = r2.sqrt();
         let (mut row, mut direct) = (Row::new(shells.count), 0.0);
-        for sight in directions::from_point(r, ball.radius, Centre::Point, resolution, &rules) {
-            let passage = ball.passage(sight.offset2, sight.from);
-            ball.collect(&passage, &shells, &rules, sight.weight, &mut row);
-            direct += sight.weight * unscattered(ball, &passage, resolution, &rules);
+        for view in views::from_point(r, ball.radius, Centre::Point, resolution, &rules) {
+            let chord = ball.chord(view.offset2, view.from);
+            ball.collect(&chord, &shells, &rules, view.weight, &mut row);
+            direct += view.weight * unscattered(ball, &chord, resolution, &rules);
         }
         first.push(albedo * direct);
         rows.push(row.weights(&shells, &rules));
     }
     let matrix = Matrix::new(nodes.len(), nodes.len(), |i, j| albedo * rows[i][j]);
-    let single = Matrix::new(nodes.len(), 1, |i, _| first[i]);
-    let all = matrix.series_times(&single)?;
-    let all: Vec<f64> = (0..nodes.len()).map(|i| all.at(i, 0)).collect();
+    let all = matrix.series(&first)?;
     let of = |offset: &f64| {
-        let passage = ball.passage(offset * offset, f64::NEG_INFINITY);
+        let chord = ball.chord(offset * offset, f64::NEG_INFINITY);
         let mut row = Row::new(shells.count);
-        ball.collect(&passage, &shells, &rules, albedo, &mut row);
+        ball.collect(&chord, &shells, &rules, albedo, &mut row);
         let weights = row.weights(&shells, &rules);
-        let through = |j: &[f64]| -> f64 { weights.iter().zip(j).map(|(w, x)| w * x).sum() };
-        let single = albedo * unscattered(ball, &passage, resolution, &rules);
+        let through = |j: &[f64]| product(&weights, j);
+        let single = albedo * unscattered(ball, &chord, resolution, &rules);
         let mut found = vec![single];
         let mut intensity = first.clone();
         for _ in 1..orders {
@@ -64,8 +62,8 @@ fn radiances(
 }
 
 /// `∫ σ_t J₀ e^{−τ} dt` along a line of sight that does not meet the centre, for a source of power 1.
-fn unscattered(ball: &Ball, passage: &Passage, resolution: Resolution, rules: &Rules) -> f64 {
-    let offset = passage.offset2.sqrt();
+fn unscattered(ball: &Ball, chord: &Chord, resolution: Resolution, rules: &Rules) -> f64 {
+    let offset = chord.offset2.sqrt();
     // Panels follow the distance from the centre.
     let mut edges = vec![0.0];
     let mut edge = 0.5 * offset;
@@ -79,11 +77,11 @@ fn unscattered(ball: &Ball, passage: &Passage, resolution: Resolution, rules: &R
     let radial = rules.of(resolution.nodes);
     let (mut sum, mut depth) = (0.0, 0.0);
     for (from, to) in inwards.chain(outwards) {
-        let (from, to) = (from.max(passage.from), to.min(passage.to));
+        let (from, to) = (from.max(chord.from), to.min(chord.to));
         if from < to {
-            let stretch = Stretch { offset2: passage.offset2, from, to };
+            let part = Chord { from, to, ..*chord };
             let rule = rules.of(resolution.nodes + 4);
-            ball.panel(stretch, rule, &mut depth, |r2, share| {
+            ball.panel(&part, rule, &mut depth, |r2, share| {
                 let depth = radial.integrate(0.0, r2.sqrt(), |r| (ball.extinction)(r * r));
                 sum += share * (-depth).exp() / (16.0 * PI * PI * r2);
             });

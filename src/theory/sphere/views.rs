@@ -9,7 +9,7 @@ use super::shells::{Centre, Resolution, Rules, halved};
 
 /// A line of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Sight {
+pub struct View {
     /// The square of its distance from the centre, p².
     pub offset2: f64,
     /// Where it begins, from its foot: `rν`.
@@ -30,30 +30,30 @@ fn doubling(scale: f64, end: f64) -> Vec<f64> {
     edges
 }
 
-/// All sights from a point at the distance r from the centre, `0 ≤ r ≤ R`.
+/// All views from a point at the distance r from the centre, `0 ≤ r ≤ R`.
 pub fn from_point(
     r: f64,
     radius: f64,
     centre: Centre,
     resolution: Resolution,
     rules: &Rules,
-) -> Vec<Sight> {
+) -> Vec<View> {
     if r <= 0.0 {
-        return vec![Sight { offset2: 0.0, from: 0.0, weight: 1.0 }];
+        return vec![View { offset2: 0.0, from: 0.0, weight: 1.0 }];
     }
-    let mut sights = Vec::new();
+    let mut views = Vec::new();
     let rule = rules.of(resolution.directions);
-    let mut on = |edges: &[f64], sight: &dyn Fn(f64, f64) -> Sight| {
+    let mut on = |edges: &[f64], view: &dyn Fn(f64, f64) -> View| {
         for edge in edges.windows(2) {
             let length = edge[1] - edge[0];
             for (&x, &w) in rule.nodes.iter().zip(&rule.weights) {
-                sights.push(sight(edge[0] + length * x, w * length));
+                views.push(view(edge[0] + length * x, w * length));
             }
         }
     };
     let r2 = r * r;
     let of_t =
-        |t: f64, dt: f64| Sight { offset2: (r2 - t * t).max(0.0), from: t, weight: 0.5 * dt / r };
+        |t: f64, dt: f64| View { offset2: (r2 - t * t).max(0.0), from: t, weight: 0.5 * dt / r };
     let along = ((radius - r) * (radius + r)).max(0.0).sqrt().max(1e-9 * radius);
     // No panel is wider than a quarter of the range of ν.
     let surface = along.min(0.5 * r);
@@ -69,12 +69,12 @@ pub fn from_point(
             let finest = half * halved(resolution.core / 2);
             let from_edge = |x: f64, dx: f64| {
                 let offset2 = core * core + x * (2.0 * gap - x);
-                Sight { offset2, from: -(gap - x), weight: 0.5 * dx / r }
+                View { offset2, from: -(gap - x), weight: 0.5 * dx / r }
             };
             on(&doubling(finest, half), &from_edge);
             let onto = |q: f64, dq: f64| {
                 let from = (gap * gap + q * q).sqrt();
-                Sight {
+                View {
                     offset2: core * core - q * q,
                     from: -from,
                     weight: 0.5 * q * dq / (r * from),
@@ -88,12 +88,12 @@ pub fn from_point(
             on(&doubling(surface.min(half), half), &mirrored);
             let past = |p: f64, dp: f64| {
                 let from = ((r - p) * (r + p)).sqrt();
-                Sight { offset2: p * p, from: -from, weight: 0.5 * p * dp / (r * from) }
+                View { offset2: p * p, from: -from, weight: 0.5 * p * dp / (r * from) }
             };
             on(&doubling(half * halved(resolution.centre / 2), half), &past);
         }
     }
-    sights
+    views
 }
 
 #[cfg(test)]
@@ -105,13 +105,13 @@ mod tests {
         let rules = Rules::new(20);
         for centre in [Centre::Medium, Centre::Black(0.4), Centre::Point] {
             for r in [0.4 + 1e-9, 0.5, 0.9, 1.0 - 1e-9] {
-                let sights = from_point(r, 1.0, centre, Resolution::COARSE, &rules);
-                let total: f64 = sights.iter().map(|sight| sight.weight).sum();
+                let views = from_point(r, 1.0, centre, Resolution::COARSE, &rules);
+                let total: f64 = views.iter().map(|view| view.weight).sum();
                 // Half the solid angle of the black sphere is that of its cone.
                 assert!((total - 1.0).abs() < 1e-11, "{centre:?} at {r}: {total}");
                 if let Centre::Black(core) = centre {
-                    let hits = sights.iter().filter(|s| s.from < 0.0 && s.offset2 < core * core);
-                    let share: f64 = hits.map(|sight| sight.weight).sum();
+                    let hits = views.iter().filter(|s| s.from < 0.0 && s.offset2 < core * core);
+                    let share: f64 = hits.map(|view| view.weight).sum();
                     let exact = 0.5 * (1.0 - (1.0 - core * core / (r * r)).sqrt());
                     assert!((share - exact).abs() < 1e-9, "{share} instead of {exact} at {r}");
                 }

@@ -3,6 +3,7 @@
 use crate::media::Medium;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Span};
+use crate::theory::raw::{self, poisson};
 
 /// How the transmittance of a shadow ray is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +29,7 @@ pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
 
 /// The moments of an estimated transmittance X and of its lookups N.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passage {
+pub struct Segment {
     /// `E[X^k]` for k = 0 … 4.
     pub powers: [f64; 5],
     /// `E[X⁸]`.
@@ -68,7 +69,7 @@ pub fn rounding(size: f64) -> f64 {
     f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
-impl Passage {
+impl Segment {
     /// A transmittance that is known.
     pub fn exact(depth: Known) -> Self {
         let power = |k: f64| (-k * depth.value).exp();
@@ -102,8 +103,7 @@ impl Passage {
     /// ```
     pub fn decided(depth: Known, flown: f64, factorial: [f64; 4]) -> Self {
         let chance = (-depth.value).exp();
-        let [f1, f2, f3, f4] = factorial;
-        let lookups = [1.0, f1, f2 + f1, f3 + 3.0 * f2 + f1, f4 + 6.0 * f3 + 7.0 * f2 + f1];
+        let lookups = raw::of_factorial(factorial);
         // What does not end a walk is a Poisson number of null collisions.
         let through = poisson(flown - depth.value).map(|moment| chance * moment);
         let powers = [1.0, chance, chance, chance, chance];
@@ -145,23 +145,6 @@ impl Passage {
     }
 }
 
-/// `E[N^k]`, k = 0 … 4, of a Poisson number.
-pub fn poisson(m: f64) -> [f64; 5] {
-    [1.0, m, m * (1.0 + m), m * (1.0 + m * (3.0 + m)), m * (1.0 + m * (7.0 + m * (6.0 + m)))]
-}
-
-/// `E[(M + N)^k]`, k = 0 … 4, of independent numbers.
-pub fn added(a: [f64; 5], b: [f64; 5]) -> [f64; 5] {
-    const PASCAL: [[f64; 5]; 5] = [
-        [1.0, 0.0, 0.0, 0.0, 0.0],
-        [1.0, 1.0, 0.0, 0.0, 0.0],
-        [1.0, 2.0, 1.0, 0.0, 0.0],
-        [1.0, 3.0, 3.0, 1.0, 0.0],
-        [1.0, 4.0, 6.0, 4.0, 1.0],
-    ];
-    std::array::from_fn(|k| (0..=k).map(|j| PASCAL[k][j] * a[k - j] * b[j]).sum())
-}
-
 /// Halvings of the panels at most.
 const HALVINGS: u32 = 6;
 /// Two resolutions that agree to this are enough: halving a panel of 16 nodes divides the error by
@@ -176,18 +159,14 @@ fn along<const N: usize>(
     f: impl Fn(f64, f64) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
     let support = medium.support();
-    let mut ends = medium.breaks();
-    ends.retain(|&t| support.contains_inside(t));
-    ends.extend([support.from, support.to]);
-    ends.sort_by(f64::total_cmp);
-    ends.dedup();
+    let ends = support.cut(medium.breaks());
     let at = |parts: u32| {
         let mut sum = [0.0; N];
         let mut nodes = Vec::with_capacity(rule.nodes.len());
-        for pair in ends.windows(2) {
-            let step = (pair[1] - pair[0]) / f64::from(parts);
+        for Span { from, to } in Span::between(&ends) {
+            let step = (to - from) / f64::from(parts);
             for part in 0..parts {
-                let from = pair[0] + f64::from(part) * step;
+                let from = from + f64::from(part) * step;
                 nodes.clear();
                 nodes.extend(rule.nodes.iter().map(|x| from + x * step));
                 let sigma = medium.extinctions(&nodes);
@@ -217,14 +196,6 @@ mod tests {
     use super::*;
 
     #[test]
-    fn moments_of_a_poisson_number_add_like_means() {
-        let sum = added(poisson(0.7), poisson(1.9));
-        for (a, b) in sum.iter().zip(poisson(2.6)) {
-            assert!((a - b).abs() < 1e-13 * b);
-        }
-    }
-
-    #[test]
     fn losses_of_small_residuals_keep_their_digits() {
         // σ̂(1 − w⁴) = 4r − 6r²/σ̂ + …, r = 1e-3: the difference would be off by ε σ̂ = 1e-7.
         let (sampling, residual) = (1e9, 1e-3);
@@ -247,9 +218,9 @@ mod tests {
         // σ = σ̄ = 1: the first collision ends every walk, so N is 1 with chance 1 − e^{−τ}.
         let length: f64 = 1.5;
         let first = 1.0 - (-length).exp();
-        let passage = Passage::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);
-        assert_eq!(passage.lookups, [1.0, first, first, first, first]);
-        assert_eq!(passage.through[1..], [0.0; 4]);
-        assert_eq!(passage.through[0], passage.powers[1]);
+        let segment = Segment::decided(Known::exact(length), length, [first, 0.0, 0.0, 0.0]);
+        assert_eq!(segment.lookups, [1.0, first, first, first, first]);
+        assert_eq!(segment.through[1..], [0.0; 4]);
+        assert_eq!(segment.through[0], segment.powers[1]);
     }
 }
