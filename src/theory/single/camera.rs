@@ -1,7 +1,7 @@
 //! The transmittance from the ray's origin to any point of the ray, as it is estimated.
 
 use super::Along;
-use super::segment::{POWERS, Segment, loss, rounding, size};
+use super::segment::{POWERS, Segment, counts, loss, rounding, size};
 use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Span};
@@ -88,8 +88,7 @@ impl<'a> Camera<'a> {
             let from = self.mesh.support().from;
             let depth = self.depth(t).value;
             let nulls = self.flown(Span::new(from, t)) - depth;
-            let alive = sampling * (-depth).exp();
-            let [a, b, c, d] = [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1));
+            let [a, b, c, d] = counts(sampling, depth, nulls);
             return [a, b, c, d, 0.0, 0.0, 0.0, 0.0, sampling, depth];
         }
         if sampling <= 0.0 {

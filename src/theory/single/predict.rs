@@ -76,31 +76,20 @@ impl Points {
                 let camera = if walked { 1.0 } else { camera };
                 density * gain.powi(k) * camera * shadow
             };
-            let [_, c1, c2, c3, c4] = node.camera.powers;
-            let [_, s1, s2, s3, s4] = node.shadow.powers;
-            let powers = [power(1, c1, s1), power(2, c2, s2), power(3, c3, s3), power(4, c4, s4)];
             let factor = node.error[0] + (technique.blur)(node) + DENSITY;
             let exponents = if walked { 0.0 } else { node.camera.error } + node.shadow.error;
-            let rounding = |i: usize| powers[i].abs() * ((i + 1) as f64 * factor + exponents);
             let lookups = match &technique.found {
                 Some(found) => (found.at)(node),
                 None => node.lookups(),
             };
-            [
-                powers[0],
-                powers[1],
-                powers[2],
-                powers[3],
-                power(8, node.camera.eighth, node.shadow.eighth),
-                density * lookups[1],
-                density * lookups[2],
-                density * lookups[3],
-                density * lookups[4],
-                rounding(0),
-                rounding(1),
-                rounding(2),
-                rounding(3),
-            ]
+            let mut row = [0.0; 13];
+            row[4] = power(8, node.camera.eighth, node.shadow.eighth);
+            for (i, k) in (0..4).zip(1_i32..) {
+                row[i] = power(k, node.camera.powers[i + 1], node.shadow.powers[i + 1]);
+                row[5 + i] = density * lookups[i + 1];
+                row[9 + i] = row[i].abs() * (f64::from(k) * factor + exponents);
+            }
+            row
         });
         let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
         let none = technique.found.as_ref().map_or([0.0; 5], |found| found.none);

@@ -69,6 +69,12 @@ pub fn rounding(size: f64) -> f64 {
     f64::EPSILON * (1.0 + ROUNDINGS * size)
 }
 
+/// `k σ̄ e^{−τ} (∫σ̄ − τ)^{k−1}`, k = 1 … 4, what the factorial moments of a number of lookups are integrals of.
+pub fn counts(sampling: f64, depth: f64, nulls: f64) -> [f64; 4] {
+    let alive = sampling * (-depth).exp();
+    [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1))
+}
+
 impl Segment {
     /// A transmittance that is known.
     pub fn exact(depth: Known) -> Self {
@@ -136,8 +142,7 @@ impl Segment {
                 let (factorial, _) = along(medium, rule, |t, _| {
                     let depth = medium.optical_depth(Span::new(support.from, t)).value;
                     let nulls = sampling * (t - support.from) - depth;
-                    let alive = sampling * (-depth).exp();
-                    [1, 2, 3, 4].map(|k| f64::from(k) * alive * nulls.powi(k - 1))
+                    counts(sampling, depth, nulls)
                 });
                 Self::decided(depth, sampling * support.length(), factorial)
             }

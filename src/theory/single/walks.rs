@@ -52,12 +52,6 @@ fn blur(node: &Node) -> f64 {
     4.0 * (node.error[0] + DENSITY) + node.camera.error + node.shadow.error
 }
 
-/// The rounding of powers on average over where light is scattered, of the power for which that is largest.
-fn average<const N: usize>(powers: &[f64], rounded: [f64; N]) -> f64 {
-    let shares = rounded.iter().zip(powers).map(|(rounded, power)| rounded / power.abs());
-    shares.fold(0.0, f64::max)
-}
-
 /// `h` and what follows at a collision; nothing where σ̂ is zero, since the residual is zero there.
 fn gain(at: &At) -> [f64; 3] {
     let [sampling, weight] = at.collision;
@@ -67,81 +61,83 @@ fn gain(at: &At) -> [f64; 3] {
     [sampling, at.node.extinction * at.node.source / sampling, weight]
 }
 
-/// The panels that resolve `σ̂ E[(h T̂_shadow)^k] E[T̂^k]`.
-struct AtCollisions {
+/// The panels that resolve `p E[(h T̂_shadow)^k] E[T̂^k]`, k = 1 … 4, p the density of what is scattered.
+struct Scattered {
     panels: Vec<Span>,
-    /// The cumulants of the lookups, and a relative error bound of their mean.
-    cumulants: [f64; 4],
-    counted: f64,
-    /// See [`average`].
+    /// `∫ p E[N^k]`, k = 1 … 4, of the lookups, and the error of the first.
+    lookups: [f64; 4],
+    off: f64,
+    /// The rounding of powers, relative, of the power for which that is largest.
     rounding: f64,
 }
 
-/// These panels.
-fn panels_at_collisions(scene: &Scene) -> AtCollisions {
+/// Given the powers, the lookups and the relative rounding of a power at a node.
+fn scattered(scene: &Scene, at: &dyn Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
     parts[8..].fill(f64::INFINITY);
     let found = scene.integrate(parts, &|node| {
+        let (powers, lookups, blur) = at(node);
+        let rows = [powers, lookups, powers.map(|power| power.abs() * blur)];
+        std::array::from_fn(|i| rows[i / 4][i % 4])
+    });
+    let rows = |row: usize| -> [f64; 4] { std::array::from_fn(|i| found.value[4 * row + i]) };
+    let shares = rows(2).into_iter().zip(rows(0)).map(|(rounded, power)| rounded / power.abs());
+    let rounding = shares.fold(0.0, f64::max);
+    Scattered { lookups: rows(1), off: found.error[4], rounding, panels: found.panels }
+}
+
+/// The lookups of a shadow ray, if one is cast.
+fn of_shadow(node: &Node) -> [f64; 5] {
+    if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups }
+}
+
+/// Scattered at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments
+/// of what each collision costs.
+fn scattered_at_collisions(scene: &Scene) -> Scattered {
+    scattered(scene, &|node| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
         if sampling <= 0.0 {
-            return [0.0; 12];
+            return ([0.0; 4], [0.0; 4], 0.0);
         }
         let h = node.extinction * node.source / sampling;
-        let power = |k: usize| {
-            let k32 = i32::try_from(k).unwrap_or(i32::MAX);
-            sampling * h.powi(k32) * node.camera.powers[k] * node.shadow.powers[k]
-        };
-        // A compound Poisson number: its cumulants are moments of what each collision costs.
-        let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups };
-        let each = added([1.0; 5], shadow);
-        [
-            power(1),
-            power(2),
-            power(3),
-            power(4),
-            sampling * each[1],
-            sampling * each[2],
-            sampling * each[3],
-            sampling * each[4],
-            power(1).abs() * blur(node),
-            power(2).abs() * blur(node),
-            power(3).abs() * blur(node),
-            power(4).abs() * blur(node),
-        ]
-    });
-    let [p1, p2, p3, p4, k1, k2, k3, k4, rounded @ ..] = found.value;
-    AtCollisions {
-        panels: found.panels,
-        cumulants: [k1, k2, k3, k4],
-        counted: SUMS + found.error[4] / k1,
-        rounding: average(&[p1, p2, p3, p4], rounded),
+        let each = added([1.0; 5], of_shadow(node));
+        let of = |k: usize| sampling * power(h, k) * node.camera.powers[k] * node.shadow.powers[k];
+        let from_first = [1, 2, 3, 4];
+        (from_first.map(of), from_first.map(|k| sampling * each[k]), blur(node))
+    })
+}
+
+/// The powers 1 … most of `Σ wᵢ sᵢ` over the collisions of a walk, or of `Σ |wᵢ| sᵢ`; `scored` is `E[sᵢ^j]` given h.
+fn powers_of_sum(
+    chain: &Chain,
+    most: usize,
+    signed: bool,
+    scored: &dyn Fn(&At, f64, usize) -> f64,
+) -> Vec<Solved> {
+    let mut known: Vec<Solved> = Vec::new();
+    for k in 1..=most {
+        let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
+        let solved = chain.solve(&loss, &|at, p, i| {
+            let [sampling, h, weight] = gain(at);
+            let weight = if signed { weight } else { weight.abs() };
+            let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
+            let term =
+                |j: usize| BINOMIAL[k][j] * scored(at, h, j) * power(weight, k - j) * lower(k - j);
+            sampling * (1..=k).map(term).sum::<f64>()
+        });
+        known.push(solved);
     }
+    known
 }
 
 /// At every collision.
 pub fn at_collisions(scene: &Scene) -> Points {
-    let AtCollisions { panels, cumulants, counted, rounding } = panels_at_collisions(scene);
+    let Scattered { panels, lookups: cumulants, off, rounding } = scattered_at_collisions(scene);
     let of = |chain: &Chain, signed: bool| {
-        let mut known: Vec<Solved> = Vec::new();
-        let mut powers = [1.0; 5];
-        for k in 1..5 {
-            let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
-            let solved = chain.solve(&loss, &|at, p, i| {
-                let [sampling, h, weight] = gain(at);
-                let weight = if signed { weight } else { weight.abs() };
-                let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
-                let term = |j: usize| {
-                    let scored = power(h, j) * at.node.shadow.powers[j];
-                    BINOMIAL[k][j] * scored * power(weight, k - j) * lower(k - j)
-                };
-                sampling * (1..=k).map(term).sum::<f64>()
-            });
-            powers[k] = solved.begin;
-            known.push(solved);
-        }
-        powers
+        let scored = |at: &At, h: f64, j: usize| power(h, j) * at.node.shadow.powers[j];
+        let known = powers_of_sum(chain, 4, signed, &scored);
+        std::array::from_fn(|k| if k == 0 { 1.0 } else { known[k - 1].begin })
     };
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
@@ -150,6 +146,7 @@ pub fn at_collisions(scene: &Scene) -> Points {
     };
     let (powers, error) = both(&panels, rounding, powers);
     let (truth, lookups) = (scene.radiance(), Some(raw::of_cumulants(cumulants)));
+    let counted = SUMS + off / cumulants[0];
     Points { truth, powers, error, eighth: None, lookups, least: 0.0, counted }
 }
 
@@ -163,21 +160,10 @@ fn power(x: f64, k: usize) -> f64 {
 /// E[X^k] = E[F^{k−1} G_k],  F = Σ |wᵢ| hᵢ,  G_k = Σ hᵢ |wᵢ| sgn(wᵢ)^k E[T̂_shadow(tᵢ)^k]
 /// ```
 pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
-    let AtCollisions { panels, rounding, .. } = panels_at_collisions(scene);
+    let Scattered { panels, rounding, .. } = scattered_at_collisions(scene);
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
-        let mut f: Vec<Solved> = Vec::new();
-        for (j, binomial) in BINOMIAL.iter().enumerate().take(4).skip(1) {
-            let solved = chain.solve(&|losses| losses.sizes[j], &|at, p, i| {
-                let [sampling, h, weight] = gain(at);
-                let lower = |n: usize| if n == 0 { 1.0 } else { f[n - 1].at[p][i] };
-                let term = |n: usize| {
-                    binomial[n] * power(h, n) * power(weight.abs(), j - n) * lower(j - n)
-                };
-                sampling * (1..=j).map(term).sum::<f64>()
-            });
-            f.push(solved);
-        }
+        let f = powers_of_sum(&chain, 3, false, &|_, h, j| power(h, j));
         let last = |k: usize, odd: bool| {
             let mut g: Vec<Solved> = Vec::new();
             for j in 0..k {
@@ -223,33 +209,16 @@ pub fn resampled(scene: &Scene, shadow_is_free: bool) -> Points {
 
 /// At `count` points of a density, all with the transmittance of one walk over the whole ray.
 pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) -> Points {
-    let mut parts = [MOMENT; 12];
-    parts[4..8].fill(LOOKUPS);
-    parts[8..].fill(f64::INFINITY);
     let scored = |node: &Node, k: usize| {
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
     };
-    let found = scene.integrate(parts, &|node| {
-        let each = |k: usize| scored(node, k) * node.camera.powers[k];
-        let shadow =
-            if node.extinction > 0.0 { node.shadow.lookups } else { Segment::free().lookups };
-        let cost = |k: usize| density(node) * shadow[k];
-        let rounded = |k: usize| each(k).abs() * (blur(node) + 4.0 * DENSITY);
-        [
-            each(1),
-            each(2),
-            each(3),
-            each(4),
-            cost(1),
-            cost(2),
-            cost(3),
-            cost(4),
-            rounded(1),
-            rounded(2),
-            rounded(3),
-            rounded(4),
-        ]
+    let found = scattered(scene, &|node| {
+        let shadow = of_shadow(node);
+        let from_first = [1, 2, 3, 4];
+        let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k]);
+        let lookups = from_first.map(|k| density(node) * shadow[k]);
+        (powers, lookups, blur(node) + 4.0 * DENSITY)
     });
     let powers = |panels: &[Span]| {
         let chain = Chain::new(scene, panels);
@@ -283,13 +252,12 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         // All that is summed is positive.
         [[1.0, of[0], second / n.powi(2), third / n.powi(3), fourth / n.powi(4)], [0.0; 5]]
     };
-    let value = found.value;
-    let rounding = average(&value[..4], [value[8], value[9], value[10], value[11]]);
-    let (powers, error) = both(&found.panels, rounding, powers);
-    let each = [1.0, value[4], value[5], value[6], value[7]];
+    let (powers, error) = both(&found.panels, found.rounding, powers);
+    let [first, ..] = found.lookups;
+    let each = std::array::from_fn(|k| if k == 0 { 1.0 } else { found.lookups[k - 1] });
     let walk = poisson(scene.camera.collisions());
     let lookups = (0..count).fold(walk, |sum, _| added(sum, each));
-    let counted = SUMS + found.error[4] / (1.0 + value[4]);
+    let counted = SUMS + found.off / (1.0 + first);
     let (truth, least) = (scene.radiance(), count as f64);
     Points { truth, powers, error, eighth: None, lookups: Some(lookups), least, counted }
 }

@@ -82,9 +82,7 @@ impl Walk {
     /// What theory says, given the exact answer.
     pub fn predict(&self, truth: &Answer) -> Prediction {
         let lights = [self.incidence.light];
-        let raw = POWERS.map(|k| self.moments(k, &lights, std::slice::from_ref(truth)));
-        let lookups = self.lookups(&lights).into_iter().next().flatten();
-        predicted(truth, raw.map(|all| all.map(|all| all[0])), lookups)
+        self.predict_all(&lights, std::slice::from_ref(truth)).swap_remove(0)
     }
 
     /// The same for several lights, which share the work.

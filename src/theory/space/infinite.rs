@@ -74,36 +74,40 @@ fn share(x: f64) -> f64 {
     sum
 }
 
-/// The expected number of collisions within an optical distance of the source, for an albedo in `[0, 1)`.
-pub fn collisions_within(albedo: f64, distance: f64) -> Known {
-    let scattered = cut(albedo, |nu| share(distance / nu));
+/// `∫₀¹ g(ν) h(ν) dν` and what the pole adds: `discrete` answers the two factors beside `1/(c(c − 1 + κ²))`.
+fn both(albedo: f64, h: impl Fn(f64) -> f64, discrete: impl Fn(f64, f64) -> [f64; 2]) -> f64 {
+    let scattered = cut(albedo, h);
     let settled = if albedo < FAINT {
         0.0
     } else {
         let (kappa, rest) = pole(albedo);
-        2.0 * rest / (albedo * (albedo - rest)) * share(kappa * distance)
+        let [weight, decay] = discrete(kappa, rest);
+        weight / (albedo * (albedo - rest)) * decay
     };
-    let value = scattered + settled;
-    // Nearer still, the panels of ν are too wide for what comes to life where ν is the distance.
-    let error = if distance < NEAREST { 1.0 } else { ROUNDING / (1.0 - albedo) };
+    scattered + settled
+}
+
+/// With its relative error: nearer than [`NEAREST`] the panels of ν are too wide for what comes to life where ν is
+/// the distance.
+fn known(value: f64, rounding: f64, albedo: f64, distance: f64) -> Known {
+    let error = if distance < NEAREST { 1.0 } else { rounding / (1.0 - albedo) };
     Known::new(value, error * value)
+}
+
+/// The expected number of collisions within an optical distance of the source, for an albedo in `[0, 1)`.
+pub fn collisions_within(albedo: f64, distance: f64) -> Known {
+    let pole = |kappa: f64, rest: f64| [2.0 * rest, share(kappa * distance)];
+    known(both(albedo, |nu| share(distance / nu), pole), ROUNDING, albedo, distance)
 }
 
 /// The fluence at an optical distance from a source of power 1, in units of `σ_t²`; for an albedo in
 /// `[0, 1)`.
 pub fn fluence(albedo: f64, distance: f64) -> Known {
-    let scattered = cut(albedo, |nu| (-distance / nu).exp() / (nu * nu));
-    let settled = if albedo < FAINT {
-        0.0
-    } else {
-        let (kappa, rest) = pole(albedo);
-        2.0 * kappa * kappa * rest / (albedo * (albedo - rest)) * (-kappa * distance).exp()
-    };
-    let value = (scattered + settled) / (4.0 * PI * distance);
+    let decay = |nu: f64| (-distance / nu).exp() / (nu * nu);
+    let pole = |kappa: f64, rest: f64| [2.0 * kappa * kappa * rest, (-kappa * distance).exp()];
+    let value = both(albedo, decay, pole) / (4.0 * PI * distance);
     // Exponents are rounded, and with them all that is left of them far away.
-    let rounding = ROUNDING + 2.0 * f64::EPSILON * distance;
-    let error = if distance < NEAREST { 1.0 } else { rounding / (1.0 - albedo) };
-    Known::new(value, error * value)
+    known(value, ROUNDING + 2.0 * f64::EPSILON * distance, albedo, distance)
 }
 
 /// `E[r²]` at absorption, in units of `1/σ_t²`, for any phase function of mean cosine g.
