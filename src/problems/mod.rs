@@ -11,7 +11,7 @@ pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 
-use crate::catalogue::{Catalogue, Settings, Value};
+use crate::catalogue::{Catalogue, Domain, Settings, Value};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 
@@ -102,10 +102,31 @@ pub trait Problem: Send + Sync + Sized + 'static {
     }
 }
 
-/// Whether a case sweeps the albedo: then it need not give one.
-fn sweeps_albedo(settings: &Settings) -> bool {
-    match settings.entry("sweep").map(|entry| &entry.node.value) {
-        Some(Value::Table(sweep)) => sweep.iter().any(|entry| entry.key == "albedo"),
-        _ => false,
+/// The values of one draw, at most N.
+#[derive(Debug, Clone, Copy)]
+pub struct Values<const N: usize> {
+    /// The values; the first `count` are meant.
+    pub at: [f64; N],
+    /// How many.
+    pub count: usize,
+}
+
+impl<const N: usize> AsRef<[f64]> for Values<N> {
+    fn as_ref(&self) -> &[f64] {
+        &self.at[..self.count]
+    }
+}
+
+/// The albedo of a case that sweeps it, and need not give one.
+fn default_albedo(settings: &Settings) -> Option<f64> {
+    let Value::Table(sweep) = &settings.entry("sweep")?.node.value else { return None };
+    sweep.iter().any(|entry| entry.key == "albedo").then_some(0.5)
+}
+
+/// A number in `[0, 1]`, which must be given where it has no default.
+fn number(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<f64> {
+    match default {
+        Some(default) => settings.number_or(key, Domain::Unit, default),
+        None => settings.number(key, Domain::Unit),
     }
 }

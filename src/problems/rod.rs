@@ -32,8 +32,8 @@
 //! Source: the two-stream equations of a rod, as in R. Bellman, R. Kalaba, G. M. Wing, *Invariant
 //! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
 
-use super::{Problem, sweeps_albedo};
-use crate::catalogue::{Domain, Settings, Value};
+use super::{Problem, default_albedo, number};
+use crate::catalogue::{Settings, Value};
 use crate::media::piecewise_constant::read_steps;
 use crate::media::piecewise_linear::read_lines;
 use crate::media::{Body, Medium, Piecewise};
@@ -86,19 +86,7 @@ pub struct Rod {
 }
 
 /// The values of one draw, one per channel.
-#[derive(Debug, Clone, Copy)]
-pub struct Values {
-    /// The values; the first `count` are meant.
-    pub at: [f64; MOST],
-    /// How many.
-    pub count: usize,
-}
-
-impl AsRef<[f64]> for Values {
-    fn as_ref(&self) -> &[f64] {
-        &self.at[..self.count]
-    }
-}
+pub type Values = super::Values<MOST>;
 
 impl Rod {
     /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
@@ -173,7 +161,7 @@ impl Problem for Rod {
 
     #[allow(clippy::cast_possible_truncation)] // at most six and four
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = share(settings, "albedo", sweeps_albedo(settings).then_some(0.5));
+        let albedo = share(settings, "albedo", default_albedo(settings));
         let forward = share(settings, "forward", Some(0.5));
         let absorbed = settings.flag_or("absorbed", false);
         let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
@@ -218,11 +206,7 @@ impl Share {
 fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Share> {
     let value = settings.entry(key).map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
-        let number = match default {
-            Some(default) => settings.number_or(key, Domain::Unit, default),
-            None => settings.number(key, Domain::Unit),
-        };
-        return number.map(Share::Everywhere);
+        return number(settings, key, default).map(Share::Everywhere);
     }
     let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
     let (index, field) = settings.chosen(key, &names)?;

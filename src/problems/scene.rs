@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 
-use super::sweeps_albedo;
-use crate::catalogue::{Domain, Settings, Value};
+use super::{default_albedo, number};
+use crate::catalogue::{Settings, Value};
 use crate::geometry::Point;
 use crate::media::{Body, Volume, body};
 use crate::phase::Phase;
@@ -95,12 +95,7 @@ impl Scene {
 pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albedo> {
     let value = settings.entry("albedo").map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
-        let number = if sweeps_albedo(settings) {
-            settings.number_or("albedo", Domain::Unit, 0.5)
-        } else {
-            settings.number("albedo", Domain::Unit)
-        };
-        return number.map(Albedo::Even);
+        return number(settings, "albedo", default_albedo(settings)).map(Albedo::Even);
     }
     let (_, field) = body::read_field(settings, "albedo")?;
     let most = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));

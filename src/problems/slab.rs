@@ -26,7 +26,7 @@
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapter 1; H. C. van
 //! de Hulst, *Multiple Light Scattering* (Academic Press, 1980).
 
-use super::{Problem, sweeps_albedo};
+use super::{Problem, default_albedo, number};
 use crate::catalogue::{Domain, Settings};
 use crate::media::{Body, Medium};
 use crate::phase::Phase;
@@ -78,11 +78,7 @@ impl Problem for Slab {
     type Value = [f64; 2];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedo = if sweeps_albedo(settings) {
-            settings.number_or("albedo", Domain::Unit, 0.5)
-        } else {
-            settings.number("albedo", Domain::Unit)
-        };
+        let albedo = number(settings, "albedo", default_albedo(settings));
         let phase = Phase::read(settings);
         let light = read_light(settings);
         let incidence = Incidence { light: light?, phase: phase? };

@@ -27,19 +27,7 @@ pub struct TransmittanceCurve {
 }
 
 /// The values of one draw, one per distance.
-#[derive(Debug, Clone, Copy)]
-pub struct Values {
-    /// The values; the first `count` are meant.
-    pub at: [f64; MOST],
-    /// How many.
-    pub count: usize,
-}
-
-impl AsRef<[f64]> for Values {
-    fn as_ref(&self) -> &[f64] {
-        &self.at[..self.count]
-    }
-}
+pub type Values = super::Values<MOST>;
 
 impl TransmittanceCurve {
     /// The distances, ascending.
