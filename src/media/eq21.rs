@@ -133,11 +133,7 @@ impl OpticalDepth for Eq21Ray {
 
     fn breaks(&self, span: Span) -> Vec<f64> {
         // Half a unit of length turns the fastest term of σ_t², cos 10u, by 13 radians at most.
-        let panels = (2.0 * span.length()).ceil();
-        std::iter::successors(Some(1.0), |n| Some(n + 1.0))
-            .take_while(|&n| n < panels)
-            .map(|n| span.from + span.length() * (n / panels))
-            .collect()
+        span.even_cuts((2.0 * span.length()).ceil())
     }
 
     fn panel_nodes(&self) -> Option<usize> {

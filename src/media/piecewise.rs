@@ -71,20 +71,12 @@ impl Piecewise {
         if span.is_empty() {
             return Self::constant(self.value(span.from), span);
         }
-        let inner = self.knots.iter().copied().filter(|&k| span.contains_inside(k));
-        let knots: Vec<f64> =
-            std::iter::once(span.from).chain(inner).chain(std::iter::once(span.to)).collect();
-        let pieces: Vec<(f64, f64)> = knots
-            .windows(2)
-            .map(|ends| {
-                let (outside, piece) = self.piece_at(0.5 * (ends[0] + ends[1]));
-                match outside {
-                    Some(value) => (value, 0.0),
-                    None => (self.line(piece, ends[0]), self.slope[piece]),
-                }
-            })
-            .collect();
-        let (left, slope) = pieces.into_iter().unzip();
+        let knots = span.cut(self.knots.clone());
+        let piece = |ends: Span| match self.piece_at(ends.middle()) {
+            (Some(value), _) => (value, 0.0),
+            (None, piece) => (self.line(piece, ends.from), self.slope[piece]),
+        };
+        let (left, slope) = Span::between(&knots).map(piece).unzip();
         Self::pieces(&knots, left, slope)
     }
 
@@ -93,19 +85,16 @@ impl Piecewise {
     pub fn zero_on(&self, stretches: &[Span]) -> Self {
         let (first, last) = (self.knots[0], self.knots[self.left.len()]);
         let ends = stretches.iter().flat_map(|s| [s.from, s.to]);
-        let mut knots: Vec<f64> =
-            self.knots.iter().copied().chain(ends.filter(|&t| first < t && t < last)).collect();
-        knots.sort_by(f64::total_cmp);
-        knots.dedup();
-        let piece = |ends: &[f64]| {
-            let middle = 0.5 * (ends[0] + ends[1]);
+        let knots = Span::new(first, last).cut(self.knots.iter().copied().chain(ends).collect());
+        let piece = |ends: Span| {
+            let middle = ends.middle();
             if stretches.iter().any(|s| s.contains_inside(middle)) {
                 return (0.0, 0.0);
             }
             let (_, piece) = self.piece_at(middle);
-            (self.line(piece, ends[0]), self.slope[piece])
+            (self.line(piece, ends.from), self.slope[piece])
         };
-        let (left, slope) = knots.windows(2).map(piece).unzip();
+        let (left, slope) = Span::between(&knots).map(piece).unzip();
         Self::pieces(&knots, left, slope)
     }
 

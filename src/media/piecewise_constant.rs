@@ -16,14 +16,15 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::piecewise_linear::Layers;
-use super::{Field, Piecewise};
+use super::Piecewise;
+use super::piecewise_linear::{Layers, Points};
 use crate::catalogue::{Domain, Settings};
-use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::Span;
 
 /// A plane-parallel volume of homogeneous layers.
-pub struct PiecewiseConstant(Layers);
+pub type PiecewiseConstant = Layers<Steps>;
+
+/// One value between every two breaks.
+pub struct Steps;
 
 /// Reads `breaks` and `values`, one value between every two breaks.
 pub fn read_steps(settings: &Settings) -> Option<Piecewise> {
@@ -42,31 +43,8 @@ pub fn read_steps(settings: &Settings) -> Option<Piecewise> {
     Some(Piecewise::steps(&breaks, &values))
 }
 
-impl Field for PiecewiseConstant {
-    type Profile = Piecewise;
-
-    fn line(settings: &Settings) -> Option<Piecewise> {
+impl Points for Steps {
+    fn read(settings: &Settings) -> Option<Piecewise> {
         read_steps(settings)
-    }
-
-    fn volume(settings: &Settings) -> Option<Self> {
-        Layers::read(settings, read_steps).map(Self)
-    }
-
-    fn bounds(&self) -> Bounds {
-        self.0.bounds
-    }
-
-    #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
-        self.0.extinction_at(p)
-    }
-
-    fn majorant(&self, within: &Aabb) -> f64 {
-        self.0.majorant(within)
-    }
-
-    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
-        self.0.along(ray, inside)
     }
 }

@@ -16,13 +16,18 @@
 //!
 //! Optical depth and free flight are closed forms.
 
+use std::marker::PhantomData;
+
 use super::{Field, Piecewise, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
 
 /// A plane-parallel volume of linearly varying layers.
-pub struct PiecewiseLinear(Layers);
+pub type PiecewiseLinear = Layers<Lines>;
+
+/// One value at every knot.
+pub struct Lines;
 
 /// Reads `knots` and `values`, one value at every knot.
 pub fn read_lines(settings: &Settings) -> Option<Piecewise> {
@@ -41,76 +46,63 @@ pub fn read_lines(settings: &Settings) -> Option<Piecewise> {
     Some(Piecewise::lines(&knots, &values))
 }
 
-impl Field for PiecewiseLinear {
+impl Points for Lines {
+    fn read(settings: &Settings) -> Option<Piecewise> {
+        read_lines(settings)
+    }
+}
+
+/// How the pieces of a plane-parallel volume are read.
+pub trait Points: Send + Sync + 'static {
+    /// Reads straight pieces along the height.
+    fn read(settings: &Settings) -> Option<Piecewise>;
+}
+
+/// A plane-parallel volume: straight pieces along an axis.
+pub struct Layers<P> {
+    pieces: Piecewise,
+    axis: Point,
+    bounds: Bounds,
+    points: PhantomData<P>,
+}
+
+impl<P: Points> Field for Layers<P> {
     type Profile = Piecewise;
 
     fn line(settings: &Settings) -> Option<Piecewise> {
-        read_lines(settings)
+        P::read(settings)
     }
 
     fn volume(settings: &Settings) -> Option<Self> {
-        Layers::read(settings, read_lines).map(Self)
+        let pieces = P::read(settings);
+        let axis = body::read_axis(settings);
+        let bounds = body::read_bounds(settings);
+        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds?, points: PhantomData })
     }
 
     fn bounds(&self) -> Bounds {
-        self.0.bounds
+        self.bounds
     }
 
     #[inline(always)]
     fn extinction_at(&self, p: Point) -> f64 {
-        self.0.extinction_at(p)
-    }
-
-    fn majorant(&self, within: &Aabb) -> f64 {
-        self.0.majorant(within)
-    }
-
-    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
-        self.0.along(ray, inside)
-    }
-}
-
-/// A plane-parallel volume: straight pieces along an axis.
-pub struct Layers {
-    pieces: Piecewise,
-    axis: Point,
-    /// Where the volume may be non-zero.
-    pub bounds: Bounds,
-}
-
-impl Layers {
-    /// Reads the pieces by the given function, then `axis` and `bounds`.
-    pub fn read(settings: &Settings, pieces: fn(&Settings) -> Option<Piecewise>) -> Option<Self> {
-        let pieces = pieces(settings);
-        let axis = body::read_axis(settings);
-        let bounds = body::read_bounds(settings);
-        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds? })
-    }
-
-    /// `σ_t` at the height of `p`.
-    pub fn extinction_at(&self, p: Point) -> f64 {
         self.pieces.value(p.dot(self.axis))
     }
 
-    /// The largest value at any height that the box reaches.
-    pub fn majorant(&self, within: &Aabb) -> f64 {
+    fn majorant(&self, within: &Aabb) -> f64 {
         let span = within.reach(self.axis);
         self.pieces.on(span).corner_values().fold(0.0, f64::max)
     }
 
     /// The pieces as the ray crosses them: heights `p·axis` become distances.
-    pub fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
+    fn along(&self, ray: &Ray, inside: Span) -> Piecewise {
         let (height, climb) = (ray.origin.dot(self.axis), ray.direction.dot(self.axis));
         // A ray that climbs by less than rounding over its length stays in its layer.
         if (climb * ray.length).abs() <= f64::EPSILON * height.abs().max(f64::MIN_POSITIVE) {
             return Piecewise::constant(self.pieces.value(height), inside);
         }
-        let mut crossings: Vec<f64> =
-            self.pieces.knots().iter().map(|knot| (knot - height) / climb).collect();
-        crossings.retain(|&t| inside.contains_inside(t));
-        crossings.extend([inside.from, inside.to]);
-        crossings.sort_by(f64::total_cmp);
-        crossings.dedup();
+        let crossings = self.pieces.knots().iter().map(|knot| (knot - height) / climb);
+        let crossings = inside.cut(crossings.collect());
         if crossings.len() < 2 {
             return Piecewise::constant(self.pieces.value(height + climb * inside.from), inside);
         }
@@ -130,13 +122,18 @@ impl Layers {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn upright(pieces: Piecewise) -> Layers<Lines> {
+        let (axis, bounds) = (Point([0.0, 0.0, 1.0]), Bounds::Everywhere);
+        Layers { pieces, axis, bounds, points: PhantomData }
+    }
     use crate::media::OpticalDepth;
 
     #[test]
     fn an_oblique_ray_sees_the_layers_stretched() {
         let pieces = Piecewise::lines(&[0.0, 1.0, 2.5, 4.0], &[0.2, 1.5, 0.4, 0.9]);
         let depth = pieces.optical_depth(Span::new(0.3, 3.7)).value;
-        let layers = Layers { pieces, axis: Point([0.0, 0.0, 1.0]), bounds: Bounds::Everywhere };
+        let layers = upright(pieces);
         let (origin, direction) = (Point([5.0, 1.0, 3.7]), Point([0.6, 0.0, -0.8]));
         let ray = Ray::new(origin, direction, 3.4 / 0.8).expect("a direction");
         let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
@@ -146,7 +143,7 @@ mod tests {
     #[test]
     fn a_level_ray_stays_in_its_layer() {
         let pieces = Piecewise::steps(&[0.0, 1.0, 2.0], &[0.5, 3.0]);
-        let layers = Layers { pieces, axis: Point([0.0, 0.0, 1.0]), bounds: Bounds::Everywhere };
+        let layers = upright(pieces);
         let ray = Ray::new(Point([0.0, 0.0, 0.5]), Point([1.0, 0.0, 0.0]), 2.0).expect("direction");
         let seen = layers.along(&ray, ray.span()).optical_depth(ray.span()).value;
         assert!((seen - 1.0).abs() < 1e-15);

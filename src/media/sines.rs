@@ -110,12 +110,7 @@ impl OpticalDepth for Waves {
     }
 
     fn breaks(&self, span: Span) -> Vec<f64> {
-        let half_periods = self.pieces(span);
-        let at = |n: f64| span.from + span.length() * (n / half_periods);
-        std::iter::successors(Some(1.0), |n| Some(n + 1.0))
-            .take_while(|&n| n < half_periods)
-            .map(at)
-            .collect()
+        span.even_cuts(self.pieces(span))
     }
 
     fn panel_nodes(&self) -> Option<usize> {

@@ -84,6 +84,13 @@ impl Span {
         places
     }
 
+    /// The places that cut it into so many equal parts, a whole number, its ends left out.
+    pub fn even_cuts(self, parts: f64) -> Vec<f64> {
+        let numbers = std::iter::successors(Some(1.0), |n| Some(n + 1.0));
+        let at = |n: f64| self.from + self.length() * (n / parts);
+        numbers.take_while(|&n| n < parts).map(at).collect()
+    }
+
     /// The two stretches on either side of the midpoint.
     pub fn halves(self) -> [Self; 2] {
         [Self::new(self.from, self.middle()), Self::new(self.middle(), self.to)]
