@@ -7,6 +7,7 @@
 //! An integral over any stretch is the difference of two prefix sums and the two partial cells at
 //! its ends, so that it costs a binary search and two cells whatever the length of the ray.
 
+use super::lattice::Track;
 use crate::numeric::{Known, Span, roots, sum::Sum};
 
 /// The stretches of a ray between the planes of a lattice, with the integral up to each.
@@ -18,9 +19,9 @@ pub struct Cells {
 impl Cells {
     /// The cells of the integer lattice on `inside`; a stretch without length is one cell.
     #[allow(clippy::cast_possible_truncation)] // a lattice is addressed by 32-bit integers
-    pub fn cross(start: [f64; 3], slope: [f64; 3], inside: Span) -> Self {
+    pub fn cross(track: Track, inside: Span) -> Self {
         let mut planes = Vec::new();
-        for (a, b) in start.into_iter().zip(slope).filter(|&(_, b)| b != 0.0) {
+        for (a, b) in track.start.into_iter().zip(track.slope).filter(|&(_, b)| b != 0.0) {
             let (p, q) = (a + b * inside.from, a + b * inside.to);
             let crossed = p.min(q).ceil() as i64..=p.max(q).floor() as i64;
             planes.extend(crossed.map(|n| (n as f64 - a) / b));
@@ -120,7 +121,8 @@ mod tests {
 
     #[test]
     fn an_oblique_ray_crosses_two_sets_of_planes() {
-        let cells = Cells::cross([0.5, 0.25, 3.0], [1.0, -0.5, 0.0], Span::new(0.0, 2.0));
+        let track = Track { start: [0.5, 0.25, 3.0], slope: [1.0, -0.5, 0.0] };
+        let cells = Cells::cross(track, Span::new(0.0, 2.0));
         assert_eq!(cells.crossings(Span::new(0.0, 2.0)), [0.5, 1.5]);
         let cells = cells.summed(steps);
         let depth = cells.integrate(Span::new(0.25, 1.75), steps);
@@ -133,7 +135,8 @@ mod tests {
 
     #[test]
     fn a_stretch_without_length_is_one_cell() {
-        let cells = Cells::cross([0.0; 3], [1.0, 0.0, 0.0], Span::empty(2.0)).summed(steps);
+        let track = Track { start: [0.0; 3], slope: [1.0, 0.0, 0.0] };
+        let cells = Cells::cross(track, Span::empty(2.0)).summed(steps);
         assert_eq!(cells.count(), 1);
         assert_eq!(cells.integrate(Span::empty(2.0), steps).value, 0.0);
     }

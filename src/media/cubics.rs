@@ -13,6 +13,7 @@
 //! Products and sums are rounded apart on every machine. A field of non-negative samples is not
 //! negative, whatever the rounding of its cubic: 0 is the least value.
 
+use super::lattice::Track;
 use crate::numeric::{Lane, Row, Span};
 
 /// Cubics along a ray.
@@ -30,8 +31,7 @@ impl Cubics {
     /// The cubics that `cubic` gives for the cell about a distance, in powers of the distance from
     /// its beginning: it is asked with both.
     pub fn new(
-        start: [f64; 3],
-        slope: [f64; 3],
+        Track { start, slope }: Track,
         inside: Span,
         cubic: impl Fn(f64, f64) -> [f64; 4],
     ) -> Self {
@@ -88,7 +88,7 @@ mod tests {
 
     /// Each cell's cubic is its own beginning.
     fn beginnings(start: [f64; 3], slope: [f64; 3], inside: Span) -> Cubics {
-        Cubics::new(start, slope, inside, |_, from| [from, 0.0, 0.0, 0.0])
+        Cubics::new(Track { start, slope }, inside, |_, from| [from, 0.0, 0.0, 0.0])
     }
 
     #[test]

@@ -28,6 +28,7 @@ use std::sync::Arc;
 use super::cells::Cells;
 use super::cubics::Cubics;
 use super::grid_file::{self, MOST_SAMPLES, Samples};
+use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body, lattice};
 use crate::catalogue::{Domain, Settings};
@@ -40,8 +41,7 @@ pub struct Grid(Arc<Voxels>);
 /// A voxel grid along a ray.
 pub struct GridRay {
     voxels: Arc<Voxels>,
-    start: [f64; 3],
-    slope: [f64; 3],
+    track: Track,
     cells: Cells,
     cubics: Vec<[f64; 4]>,
     lookups: Cubics,
@@ -61,20 +61,20 @@ fn simpson(cubic: [f64; 4], cell: Span, part: Span) -> f64 {
 
 impl GridRay {
     fn new(voxels: Arc<Voxels>, ray: &Ray, inside: Span) -> Self {
-        let (start, slope) = (voxels.lattice(ray.origin), voxels.lattice_direction(ray.direction));
-        let cells = Cells::cross(start, slope, inside);
-        let at = |t: f64| std::array::from_fn(|j| start[j] + slope[j] * t);
+        let track = voxels.track(ray);
+        let cells = Cells::cross(track, inside);
         let cubics: Vec<[f64; 4]> = (0..cells.count())
             .map(|index| cells.cell(index))
             .map(|cell| {
-                voxels.cubic(at(cell.middle()), at(cell.from), slope.map(|b| b * cell.length()))
+                let step = track.slope.map(|b| b * cell.length());
+                voxels.cubic(track.at(cell.middle()), track.at(cell.from), step)
             })
             .collect();
         let cells = cells.summed(|index, cell, part| simpson(cubics[index], cell, part));
-        let lookups = Cubics::new(start, slope, inside, |middle, from| {
-            voxels.cubic(at(middle), at(from), slope)
+        let lookups = Cubics::new(track, inside, |middle, from| {
+            voxels.cubic(track.at(middle), track.at(from), track.slope)
         });
-        Self { voxels, start, slope, cells, cubics, lookups }
+        Self { voxels, track, cells, cubics, lookups }
     }
 
     fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
@@ -94,7 +94,8 @@ impl OpticalDepth for GridRay {
         let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
         // Places are off by their rounding, and the field changes by less than its highest sample
         // in a cell; where it jumps, each plane moves by the rounding of its distance.
-        let reach = |t: f64| (0..3).map(move |j| self.start[j].abs() + (self.slope[j] * t).abs());
+        let Track { start, slope } = self.track;
+        let reach = |t: f64| (0..3).map(move |j| start[j].abs() + (slope[j] * t).abs());
         let places = span.length() * reach(span.to.abs().max(span.from.abs())).sum::<f64>();
         let jumps =
             if self.voxels.jumps() { self.cells.count() as f64 * span.to.abs() } else { 0.0 };
@@ -165,9 +166,7 @@ impl Field for Grid {
     }
 
     fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
-        let start = self.0.lattice(ray.origin);
-        let slope = self.0.lattice_direction(ray.direction);
-        lattice::farthest(start, slope, inside)
+        self.0.track(ray).farthest(inside)
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> GridRay {
@@ -298,10 +297,11 @@ mod tests {
                 let seen = GridRay::new(field.clone(), &ray, inside);
                 for n in 0..=20_000 {
                     let t = inside.from + inside.length() * (f64::from(n) / 20_000.0);
-                    let at: [f64; 3] = std::array::from_fn(|j| seen.start[j] + seen.slope[j] * t);
+                    let Track { start, slope } = seen.track;
+                    let at: [f64; 3] = std::array::from_fn(|j| start[j] + slope[j] * t);
                     // The field changes by less than its largest sample in a cell.
                     let place: f64 =
-                        (0..3).map(|j| seen.start[j].abs() + 2.0 * (seen.slope[j] * t).abs()).sum();
+                        (0..3).map(|j| start[j].abs() + 2.0 * (slope[j] * t).abs()).sum();
                     let bound = f64::EPSILON * field.peak() * (32.0 + place);
                     let off = (seen.extinction(t) - field.value(at)).abs();
                     assert!(off <= bound, "{direction:?} at {t}: {off:e} above {bound:e}");

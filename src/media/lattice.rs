@@ -163,11 +163,35 @@ fn gradient(hashes: u64, end: u32) -> [f64; 3] {
     std::array::from_fn(|j| slope(hashes, end, along(j)))
 }
 
-/// The largest `|start| + |slope·t|` of any axis on a stretch; not a number where one is none.
-pub fn farthest(start: [f64; 3], slope: [f64; 3], inside: Span) -> f64 {
-    let t = inside.from.abs().max(inside.to.abs());
-    let reach = start.iter().zip(slope).map(|(a, b)| a.abs() + b.abs() * t);
-    reach.fold(0.0, |most, x| if x.is_nan() || x > most { x } else { most })
+/// A ray in the coordinates of a lattice, `start + slope·t`.
+#[derive(Debug, Clone, Copy)]
+pub struct Track {
+    /// Where it begins.
+    pub start: [f64; 3],
+    /// How far it goes per unit of length.
+    pub slope: [f64; 3],
+}
+
+impl Track {
+    /// The place at a distance.
+    #[inline(always)]
+    pub fn at<L: Lane>(&self, t: L) -> [L; 3] {
+        let (a, b) = (self.start, self.slope);
+        [t * b[0] + a[0], t * b[1] + a[1], t * b[2] + a[2]]
+    }
+
+    /// The same on a lattice twice as fine.
+    #[must_use]
+    pub fn doubled(self) -> Self {
+        Self { start: self.start.map(|x| 2.0 * x), slope: self.slope.map(|x| 2.0 * x) }
+    }
+
+    /// The largest `|start| + |slope·t|` of any axis on a stretch; not a number where one is none.
+    pub fn farthest(&self, inside: Span) -> f64 {
+        let t = inside.from.abs().max(inside.to.abs());
+        let reach = self.start.iter().zip(self.slope).map(|(a, b)| a.abs() + b.abs() * t);
+        reach.fold(0.0, |most, x| if x.is_nan() || x > most { x } else { most })
+    }
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@
 use std::sync::OnceLock;
 
 use super::cells::Cells;
-use super::lattice::{self, Cell, Fade};
+use super::lattice::{self, Cell, Fade, Track};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
@@ -109,25 +109,6 @@ pub struct NoiseRay {
     inside: Span,
 }
 
-/// A ray in the coordinates of a lattice.
-#[derive(Clone, Copy)]
-struct Track {
-    start: [f64; 3],
-    slope: [f64; 3],
-}
-
-impl Track {
-    #[inline(always)]
-    fn at<L: Lane>(&self, t: L) -> [L; 3] {
-        let (a, b) = (self.start, self.slope);
-        [t * b[0] + a[0], t * b[1] + a[1], t * b[2] + a[2]]
-    }
-
-    fn doubled(self) -> Self {
-        Self { start: self.start.map(|x| 2.0 * x), slope: self.slope.map(|x| 2.0 * x) }
-    }
-}
-
 /// One octave along a ray. Its cells are found when an integral is first asked for: who only looks σ_t
 /// up pays nothing for them.
 struct Octave {
@@ -140,8 +121,7 @@ impl Octave {
     fn cells(&self, rule: &GaussLegendre, inside: Span) -> &Cells {
         let line = &self.line;
         self.cells.get_or_init(|| {
-            Cells::cross(line.track.start, line.track.slope, inside)
-                .summed(|_, cell, part| line.part(rule, cell, part))
+            Cells::cross(line.track, inside).summed(|_, cell, part| line.part(rule, cell, part))
         })
     }
 }
@@ -204,6 +184,11 @@ impl OpticalDepth for NoiseRay {
 
 impl FreeFlight for NoiseRay {}
 
+/// A ray on the lattice of a frequency.
+fn track(ray: &Ray, frequency: f64) -> Track {
+    Track { start: (ray.origin * frequency).0, slope: (ray.direction * frequency).0 }
+}
+
 impl Noise {
     fn new(spectrum: Spectrum, bounds: Bounds) -> Self {
         Self { unit: spectrum.unit(), spectrum, bounds }
@@ -247,8 +232,7 @@ impl Field for Noise {
 
     fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
         let finest = self.spectrum.frequency * f64::from(1u32 << (self.spectrum.octaves - 1));
-        let [start, slope] = [ray.origin, ray.direction].map(|p| (p * finest).0);
-        lattice::farthest(start, slope, inside)
+        track(ray, finest).farthest(inside)
     }
 
     #[inline(always)]
@@ -263,10 +247,7 @@ impl Field for Noise {
     fn along(&self, ray: &Ray, inside: Span) -> NoiseRay {
         let spectrum = self.spectrum;
         let rule = GaussLegendre::new(9);
-        let track = Track {
-            start: (ray.origin * spectrum.frequency).0,
-            slope: (ray.direction * spectrum.frequency).0,
-        };
+        let track = track(ray, spectrum.frequency);
         let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
         let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| {
             let line = OctaveLine { track, seed, fade: spectrum.fade };

@@ -9,7 +9,8 @@
 //! interpolated get a layer of them on every side.
 
 use super::grid_file::Samples;
-use crate::geometry::{Aabb, Point};
+use super::lattice::Track;
+use crate::geometry::{Aabb, Point, Ray};
 
 /// How a value between samples is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -100,9 +101,10 @@ impl Voxels {
         std::array::from_fn(|j| from.0[j] * self.scale[j] + self.shift)
     }
 
-    /// A direction in lattice coordinates.
-    pub fn lattice_direction(&self, d: Point) -> [f64; 3] {
-        std::array::from_fn(|j| d.0[j] * self.scale[j])
+    /// A ray in lattice coordinates.
+    pub fn track(&self, ray: &Ray) -> Track {
+        let slope = std::array::from_fn(|j| ray.direction.0[j] * self.scale[j]);
+        Track { start: self.lattice(ray.origin), slope }
     }
 
     /// The cell that holds a place and how far the place is into it; a place that rounding left
