@@ -8,7 +8,6 @@ use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Plan, run, verdict};
-use trueflight::media::Volume;
 use trueflight::media::eq21::Eq21;
 use trueflight::rng::{Address, Streams};
 use trueflight::theory::space::content::content;
@@ -60,7 +59,7 @@ fn references(prefix: &str) -> Vec<Reference> {
 
 #[test]
 fn the_sphere_of_equation_21_has_the_content_of_the_reference() {
-    let known = content(&Volume::Eq21(Eq21)).expect("bounded");
+    let known = content(&Eq21).expect("bounded");
     let held = references("eq21/int_sigma_dV")[0].one();
     assert!((known.value / held - 1.0).abs() < 1e-13, "{known:?}");
     let surface = 400.0 * std::f64::consts::PI;

@@ -29,7 +29,7 @@
 use fearless_simd::{Level, Simd, SimdBase, u64x8};
 
 use super::walkers::{Streams, Walkers};
-use crate::media::{Extinction, FreeFlight, Medium, Placement, Visitor};
+use crate::media::{Lookups, Placement};
 use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
@@ -64,7 +64,7 @@ impl Sites {
 /// several whose σ̂ is constant. Each makes the draws that it would make alone.
 pub fn draw(
     level: Level,
-    medium: &Medium,
+    medium: &Lookups,
     placement: &Placement,
     places: &Lanes,
     requests: &mut [&mut dyn Walkers],
@@ -93,7 +93,10 @@ pub fn draw(
             for first in (0..most).step_by(BATCH) {
                 sites.length = BATCH.min((most - first).next_multiple_of(PAIR));
                 let (chance, sites) = (&mut chance, &mut **sites);
-                medium.profile().visit(Visit { level, placement, chance, sites });
+                pack::on(level, Place { placement, chance, sites: &mut *sites });
+                let length = sites.length;
+                sites.extinction[..length].copy_from_slice(&sites.t[..length]);
+                medium.replace(&mut sites.extinction[..length]);
                 if decides {
                     pack::on(level, Decide { fate: &mut fate, sites });
                 }
@@ -108,44 +111,28 @@ pub fn draw(
     }
 }
 
-/// Places of collisions, and what the medium is there.
-struct Visit<'a> {
-    level: Level,
+/// Finds places of collisions, and σ̂ there.
+struct Place<'a> {
     placement: &'a Placement<'a>,
     chance: &'a mut Lanes,
     sites: &'a mut Sites,
 }
 
-impl Visitor for Visit<'_> {
-    type Output = ();
-
-    fn visit<F: FreeFlight>(self, medium: &F) {
-        pack::on(self.level, LookUp { visit: self, medium });
-    }
-}
-
-struct LookUp<'a, M> {
-    visit: Visit<'a>,
-    medium: &'a M,
-}
-
-impl<M: Extinction> Task for LookUp<'_, M> {
+impl Task for Place<'_> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Visit { placement, chance, sites, .. } = self.visit;
+        let Self { placement, chance, sites } = self;
         let mut stream: Xoshiro<u64x8<S>> = chance.awake(simd);
         let varies = placement.single_value().is_none();
-        let [all_t, all_sampling, all_extinction] =
-            [&mut sites.t, &mut sites.sampling, &mut sites.extinction].map(pairs);
+        let [all_t, all_sampling] = [&mut sites.t, &mut sites.sampling].map(pairs);
         for number in 0..sites.length / PAIR {
             let (t, sampling) = placement.at(Twin(stream.uniform(), stream.uniform()));
             t.store_slice(&mut all_t[number]);
             if varies {
                 sampling.store_slice(&mut all_sampling[number]);
             }
-            self.medium.extinction(t).store_slice(&mut all_extinction[number]);
         }
         *chance = stream.at_rest();
     }

@@ -34,7 +34,7 @@ pub mod walkers;
 use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::{Problem, each_problem};
 use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
@@ -147,8 +147,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     }
 
     /// Makes one draw.
-    fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
-    -> Draw<P::Value>;
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
 
     /// So many draws to be made in any order of their collisions; `None` where that cannot be.
     fn walkers<'a>(
@@ -163,11 +162,11 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// Makes the draws of a request as [`Estimator::draw`] makes them from the request's streams in
     /// turn, bit for bit, on the hardware of a level. What the hardware has no kernel for is handed
     /// back.
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<P>,
-        medium: &M,
+        medium: &Lookups,
         request: packet::Request<'a>,
     ) -> Option<packet::Request<'a>> {
         let _ = (level, setup, medium);
@@ -231,10 +230,10 @@ macro_rules! product_draws {
         const ORDER_FREE: bool = true;
 
         #[inline(always)]
-        fn draw<M: $crate::media::Extinction>(
+        fn draw(
             &$this,
             setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<[f64; 1]> {
             $crate::estimators::walk::product(setup, &$rule, medium, rng)
@@ -248,11 +247,11 @@ macro_rules! product_draws {
             $crate::estimators::walkers::product(setup, $rule, request)
         }
 
-        fn draw_packets<'a, M: $crate::media::Extinction>(
+        fn draw_packets<'a>(
             &$this,
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
             $crate::estimators::packet::product(level, setup, &$rule, medium, request)
@@ -268,20 +267,20 @@ macro_rules! scored_draws {
         const IN_PACKETS: bool = true;
 
         #[inline(always)]
-        fn draw<M: $crate::media::Extinction>(
+        fn draw(
             &self,
             setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<[f64; 1]> {
             $crate::estimators::scoring::walk(setup, self, medium, rng)
         }
 
-        fn draw_packets<'a, M: $crate::media::Extinction>(
+        fn draw_packets<'a>(
             &self,
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
             $crate::estimators::packet::score(level, setup, self, medium, request)

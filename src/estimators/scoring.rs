@@ -9,7 +9,7 @@
 //! A step takes one random number, that of the flight.
 
 use super::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::rng::Stream;
 
@@ -61,10 +61,10 @@ impl<L: Lane> Score<L> {
 
 /// Walks to the end of the support through a constant σ̂.
 #[inline(always)]
-pub fn walk<P, M: Extinction, S: Share>(
+pub fn walk<P, S: Share>(
     setup: &Setup<P>,
     share: &S,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 1]> {
     let end = setup.mesh.support().to;

@@ -7,7 +7,7 @@ use super::packet::Request;
 use super::walkers::{self, Walkers};
 use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
 use crate::media::even::Even;
-use crate::media::{FreeFlight, Placement, Visitor};
+use crate::media::{Lookups, Placement};
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::{Address, Lanes, Streams};
@@ -274,7 +274,20 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
             return;
         }
         let request = Request { streams, count, buffer };
-        self.setup.problem.medium().profile().visit(Fill { trial: self, kernel, request });
+        let left = match kernel {
+            Kernel::Packets(level) if E::IN_PACKETS => {
+                let medium = self.setup.problem.medium().lookups(level);
+                self.estimator.draw_packets(level, &self.setup, &medium, request)
+            }
+            _ => Some(request),
+        };
+        if let Some(mut request) = left {
+            let medium = self.setup.problem.medium().lookups(Level::new());
+            in_fused_code(
+                #[inline(always)]
+                || self.one_by_one(&medium, &mut request),
+            );
+        }
     }
 
     fn keeps_books(&self) -> bool {
@@ -302,48 +315,18 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
 
     fn draw_layers(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn Walkers]) {
         let placement = Placement::new(&self.setup.sampling);
-        layers::draw(level, self.setup.problem.medium(), &placement, places, requests);
+        let medium = self.setup.problem.medium().lookups(level);
+        layers::draw(level, &medium, &placement, places, requests);
     }
 }
 
-/// The loop over draws, compiled once per estimator and field type, and for packets once per level
-/// of hardware.
-struct Fill<'a, P, E> {
-    trial: &'a Trial<P, E>,
-    kernel: Kernel,
-    request: Request<'a>,
-}
-
-impl<P: Problem, E: Estimator<P>> Visitor for Fill<'_, P, E> {
-    type Output = ();
-
-    fn visit<F: FreeFlight>(self, field: &F) {
-        let Self { trial, kernel, request } = self;
-        let left = match kernel {
-            Kernel::Packets(level) if E::IN_PACKETS => {
-                trial.estimator.draw_packets(level, &trial.setup, field, request)
-            }
-            _ => Some(request),
-        };
-        if let Some(mut request) = left {
-            in_fused_code(
-                #[inline(always)]
-                || one_by_one(trial, field, &mut request),
-            );
+impl<P: Problem, E: Estimator<P>> Trial<P, E> {
+    #[inline(always)]
+    fn one_by_one(&self, medium: &Lookups, request: &mut Request) {
+        request.buffer.clear();
+        for _ in 0..request.count {
+            let stream = request.streams.of_next_draw();
+            request.buffer.push(&self.estimator.draw(&self.setup, medium, stream));
         }
-    }
-}
-
-#[inline(always)]
-fn one_by_one<P: Problem, E: Estimator<P>, F: FreeFlight>(
-    trial: &Trial<P, E>,
-    field: &F,
-    request: &mut Request,
-) {
-    request.buffer.clear();
-    for _ in 0..request.count {
-        let stream = request.streams.of_next_draw();
-        let draw = trial.estimator.draw(&trial.setup, field, stream);
-        request.buffer.push(&draw);
     }
 }

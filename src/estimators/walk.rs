@@ -19,16 +19,16 @@
 
 use super::rules::{Collision, Met};
 use super::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::rng::Stream;
 
 /// Walks to the end of the support or of the particle.
 #[inline(always)]
-pub fn product<P, M: Extinction, R: Collision>(
+pub fn product<P, R: Collision>(
     setup: &Setup<P>,
     rule: &R,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 1]> {
     let mut cursor = setup.sampling.begin();

@@ -7,7 +7,7 @@ use super::fates::{Collisions, Flock};
 use super::layers::{BATCH, Sites};
 use super::rules::{Collision, Met};
 use super::{DrawBuffer, Setup};
-use crate::media::{Control, Extinction, FreeFlight, Medium, Placement, Visitor};
+use crate::media::{Control, Lookups, Placement};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
@@ -35,7 +35,7 @@ pub trait Walkers {
     fn collide_alone(
         &mut self,
         level: Level,
-        medium: &Medium,
+        medium: &Lookups,
         placement: &Placement,
         streams: Streams,
     ) -> bool;
@@ -180,7 +180,7 @@ impl<R: Collision> Walkers for Walks<'_, R> {
     fn collide_alone(
         &mut self,
         level: Level,
-        medium: &Medium,
+        medium: &Lookups,
         placement: &Placement,
         streams: Streams,
     ) -> bool {
@@ -195,8 +195,8 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         }
         let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
         let (rule, places) = (&self.rule, [from, unit]);
-        let layer = Layer { rule, level, places, sampling, subtracted, streams, flock };
-        let Some((survivors, is_unknown)) = medium.profile().visit(layer) else { return false };
+        let layer = Layer { rule, medium, places, sampling, subtracted, streams, flock };
+        let Ok((survivors, is_unknown)) = pack::on_wide(level, layer) else { return false };
         self.survivors = survivors;
         self.is_unknown |= is_unknown;
         true
@@ -259,10 +259,13 @@ impl<R: Collision> Task for Batch<'_, R> {
     }
 }
 
+/// Collisions of one request that are looked up by one call.
+const ALONE: usize = 256;
+
 /// All walks, each at one more collision that is looked up for it alone; σ̂ and control have one value.
 struct Layer<'a, R> {
     rule: &'a R,
-    level: Level,
+    medium: &'a Lookups<'a>,
     /// Where they may be: from here on, in steps of so much.
     places: [f64; 2],
     sampling: f64,
@@ -271,51 +274,41 @@ struct Layer<'a, R> {
     flock: Flock<'a>,
 }
 
-impl<R: Collision> Visitor for Layer<'_, R> {
-    type Output = Option<(usize, bool)>;
-
-    fn visit<F: FreeFlight>(self, medium: &F) -> Option<(usize, bool)> {
-        pack::on_wide(self.level, Through { layer: self, medium }).ok()
-    }
-}
-
-struct Through<'a, R, M> {
-    layer: Layer<'a, R>,
-    medium: &'a M,
-}
-
-impl<R: Collision, M: Extinction> Task for Through<'_, R, M> {
+impl<R: Collision> Task for Layer<'_, R> {
     type Output = (usize, bool);
 
     /// Answers how many have survived, and whether some residual was no number.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> (usize, bool) {
-        let Layer { rule, places: [from, unit], sampling, subtracted, streams, mut flock, .. } =
-            self.layer;
+        let Self { rule, medium, places: [from, unit], sampling, subtracted, streams, mut flock } =
+            self;
         let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
         let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
         let [from, unit, sampling, mean_free_path, subtracted] =
             [from, unit, sampling, 1.0 / sampling, subtracted].map(|x| Twin::splat(simd, x));
         let count = flock.weights.len();
-        // Found while the lookups before are made: a shorter chain, of which more are under way at once.
-        let mut next =
-            (integers(&mut places).times_plus(unit, from), integers(&mut decisions) * SCALE);
-        let is_unknown = flock.meet(
-            simd,
-            rule,
-            0,
-            count,
-            #[inline(always)]
-            |_| {
-                let (t, decision) = next;
-                next.0 = integers(&mut places).times_plus(unit, from);
-                if R::DECIDES {
-                    next.1 = integers(&mut decisions) * SCALE;
-                }
-                let residual = self.medium.extinction(t) - subtracted;
-                Collisions { met: Met { residual, sampling, mean_free_path }, decision }
-            },
-        );
+        let mut is_unknown = false;
+        let mut looked_up = [[0.0; PAIR]; ALONE / PAIR];
+        for first in (0..count).step_by(ALONE) {
+            let many = ALONE.min(count - first);
+            let batch = &mut looked_up[..many.div_ceil(PAIR)];
+            for pair in &mut *batch {
+                integers(&mut places).times_plus(unit, from).store_slice(pair);
+            }
+            medium.replace(batch.as_flattened_mut());
+            is_unknown |= flock.meet(
+                simd,
+                rule,
+                first,
+                many,
+                #[inline(always)]
+                |from| {
+                    let decision = if R::DECIDES { integers(&mut decisions) * SCALE } else { unit };
+                    let residual = Twin::from_slice(simd, &batch[from / PAIR]) - subtracted;
+                    Collisions { met: Met { residual, sampling, mean_free_path }, decision }
+                },
+            );
+        }
         (flock.survivors, is_unknown)
     }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::{CATALOGUE, FreeFlight, Medium, Profile, Visitor, Volume};
+use super::{CATALOGUE, Medium, Profile, READERS, Volume};
 use crate::catalogue::{Domain, Settings, number};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
@@ -54,9 +54,9 @@ impl Body {
                 let field = read_line(settings);
                 let span = read_span(settings);
                 let ((name, profile), span) = (field?, span?);
-                let pieces = profile.visit(Pieces(span));
+                let pieces = profile.pieces(span);
                 not_too_many(settings, "medium", pieces)?;
-                Some(Self::Line { name, profile: Arc::new(profile), span })
+                Some(Self::Line { name, profile, span })
             }
             (false, true) => {
                 let field = read_volume(settings);
@@ -71,8 +71,8 @@ impl Body {
                     let ((name, volume), ray) = (field?, ray?);
                     (name, volume, ray)
                 };
-                fits(settings, &volume, &ray)?;
-                Some(Self::Volume { name, volume: Arc::new(volume), ray })
+                fits(settings, &*volume, &ray)?;
+                Some(Self::Volume { name, volume, ray })
             }
             (both, _) => {
                 let found = if both { "both `medium` and `volume`" } else { "no field is given" };
@@ -89,13 +89,13 @@ impl Body {
         match self {
             Self::Line { span, .. } => {
                 let (name, profile) = read_line(settings)?;
-                not_too_many(settings, "medium", profile.visit(Pieces(*span)))?;
-                Some(Self::Line { name, profile: Arc::new(profile), span: *span })
+                not_too_many(settings, "medium", profile.pieces(*span))?;
+                Some(Self::Line { name, profile, span: *span })
             }
             Self::Volume { ray, .. } => {
                 let (name, volume) = read_volume(settings)?;
-                fits(settings, &volume, ray)?;
-                Some(Self::Volume { name, volume: Arc::new(volume), ray: *ray })
+                fits(settings, &*volume, ray)?;
+                Some(Self::Volume { name, volume, ray: *ray })
             }
         }
     }
@@ -125,7 +125,7 @@ impl Body {
             Self::Volume { volume, ray, .. } => {
                 let ends = volume.bounds().ends(ray);
                 let support = Span::new(ends[0].value, ends[1].value);
-                let profile = Arc::new(volume.along(ray, support));
+                let profile = volume.along(ray, support);
                 Medium::clipped(profile, ray.span(), ends)
             }
         }
@@ -151,14 +151,6 @@ fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
     None
 }
 
-struct Pieces(Span);
-impl Visitor for Pieces {
-    type Output = f64;
-    fn visit<F: FreeFlight>(self, field: &F) -> f64 {
-        field.pieces(self.0)
-    }
-}
-
 fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<()> {
     if pieces <= MOST_PIECES {
         return Some(());
@@ -172,25 +164,25 @@ fn names() -> Vec<String> {
     CATALOGUE.pages.iter().map(crate::catalogue::Page::name).collect()
 }
 
-fn read_line(settings: &Settings) -> Option<(String, Profile)> {
+fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
     let names = names();
-    let offered = names.iter().zip(Profile::IN_LINE).filter(|(_, in_line)| **in_line);
+    let offered = names.iter().zip(READERS).filter(|(_, reader)| reader.in_line);
     let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
     let (index, field) = settings.chosen_among("medium", &names, &offered)?;
-    let profile = Profile::read(index, &field);
+    let profile = (READERS[index].line)(&field);
     field.close();
     Some((names[index].clone(), profile?))
 }
 
 /// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
-pub fn read_volume(settings: &Settings) -> Option<(String, Volume)> {
+pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
     read_field(settings, "volume")
 }
 
 /// Reads a field in space, `KEY.NAME = { … }`.
-pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Volume)> {
+pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc<Volume>)> {
     let (index, field) = settings.chosen(key, &names())?;
-    let volume = Volume::read(index, &field);
+    let volume = (READERS[index].volume)(&field);
     field.close();
     Some((names().swap_remove(index), volume?))
 }

@@ -40,6 +40,10 @@ impl Extinction for Homogeneous {
     fn extinction<L: Lane>(&self, t: L) -> L {
         t.each(self.extinction)
     }
+
+    fn single_value(&self) -> Option<f64> {
+        Some(self.extinction)
+    }
 }
 
 impl OpticalDepth for Homogeneous {
@@ -49,7 +53,9 @@ impl OpticalDepth for Homogeneous {
 }
 
 impl FreeFlight for Homogeneous {
-    const IS_DIRECT: bool = true;
+    fn is_direct(&self) -> bool {
+        true
+    }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         let s = span.from + depth / self.extinction;
@@ -82,6 +88,10 @@ impl Field for Constant {
 
     fn majorant(&self, _: &Aabb) -> f64 {
         self.extinction
+    }
+
+    fn single_value(&self) -> Option<f64> {
+        Some(self.extinction)
     }
 
     fn along(&self, _: &Ray, _: Span) -> Homogeneous {

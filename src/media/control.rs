@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::{Extinction, Medium, Piecewise};
+use super::{Extinction, LookUp, Medium, Piecewise};
 use crate::numeric::{Known, Lane, Span};
 
 /// A control variate `σ_c(t)`: any field with a closed-form optical depth, or none.
@@ -34,13 +34,17 @@ impl Control {
         }
     }
 
-    /// `σ_c` at many distances, see [`super::look_up`].
+    /// `σ_c` at many distances, eight at a time on the hardware of a level.
     pub fn look_up(&self, level: Level, at: &[f64], extinction: &mut [f64]) {
         match self {
             Self::None => extinction.fill(0.0),
-            Self::Pieces(pieces) => super::look_up(level, pieces, at, extinction),
+            Self::Pieces(pieces) => {
+                extinction.copy_from_slice(at);
+                pieces.lookups(level).replace(extinction);
+            }
             Self::Field(field) => {
-                field.look_up(level, at, extinction);
+                extinction.copy_from_slice(at);
+                field.lookups(level).replace(extinction);
                 let support = field.support();
                 for (extinction, &t) in extinction.iter_mut().zip(at) {
                     if t < support.from || t > support.to {

@@ -96,7 +96,9 @@ impl OpticalDepth for Decay {
 }
 
 impl FreeFlight for Decay {
-    const IS_DIRECT: bool = true;
+    fn is_direct(&self) -> bool {
+        true
+    }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         let first = self.value(span.from);

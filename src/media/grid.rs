@@ -30,7 +30,7 @@ use super::cubics::Cubics;
 use super::grid_file::{self, MOST_SAMPLES, Samples};
 use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
-use super::{Extinction, Field, FreeFlight, OpticalDepth, body, lattice};
+use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body, lattice};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::{Known, Lane, Span};
@@ -114,7 +114,9 @@ impl OpticalDepth for GridRay {
 }
 
 impl FreeFlight for GridRay {
-    const IS_DIRECT: bool = true;
+    fn is_direct(&self) -> bool {
+        true
+    }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         self.cells.invert(span, depth, |index, cell, part| self.part(index, cell, part))
@@ -149,6 +151,10 @@ impl Field for Grid {
             return None;
         }
         Some(Self(Arc::new(Voxels::new(&samples, factor, bounds, interpolation, placement))))
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::Cells
     }
 
     fn bounds(&self) -> Bounds {

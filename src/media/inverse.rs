@@ -12,8 +12,7 @@
 //! without one at most. Fields whose inverse is a closed form need none.
 
 use super::search::Search;
-use super::{FreeFlight, Medium, Visitor};
-use crate::numeric::pack::in_fused_code;
+use super::{Medium, Profile};
 use crate::numeric::{Lane, Row, Span, roots};
 
 /// Stretches of a table.
@@ -35,7 +34,7 @@ impl Inverse {
     /// See [`Medium::free_flight`].
     pub fn free_flight(&self, depth: f64) -> Option<f64> {
         let Some(table) = &self.table else { return self.medium.free_flight(depth) };
-        self.medium.profile().visit(Flight { table, depth })
+        table.invert(self.medium.profile(), depth)
     }
 }
 
@@ -53,7 +52,7 @@ pub(super) struct Table {
 
 impl Table {
     /// The table of a field on a span that is not empty.
-    pub(super) fn of<F: FreeFlight>(field: &F, span: Span) -> Self {
+    pub(super) fn of(field: &Profile, span: Span) -> Self {
         let share = |j: u32| f64::from(j) / f64::from(STRETCHES);
         let at: Vec<f64> = (0..=STRETCHES).map(|j| span.from + span.length() * share(j)).collect();
         let mut highest = 0.0;
@@ -65,7 +64,7 @@ impl Table {
         let depths: Vec<f64> = at.iter().map(rising).collect();
         let stretch = |(at, depths): (&[f64], &[f64])| {
             let (length, depth) = (at[1] - at[0], depths[1] - depths[0]);
-            let steeper = |s: f64| depth / (length * field.extinction(s)) - 1.0;
+            let steeper = |s: f64| depth / (length * field.at(s)) - 1.0;
             let (first, last) = (steeper(at[0]), steeper(at[1]));
             Row([depths[0], 1.0 / depth, at[0], length, first, last, 0.0, 0.0])
         };
@@ -73,9 +72,8 @@ impl Table {
         Self { span, whole: highest, search: Search::new(&depths), stretches }
     }
 
-    #[inline(always)]
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the number of a stretch
-    fn invert<F: FreeFlight>(&self, field: &F, depth: f64) -> Option<f64> {
+    fn invert(&self, field: &Profile, depth: f64) -> Option<f64> {
         if self.whole <= depth {
             return None;
         }
@@ -89,22 +87,7 @@ impl Table {
         let is_last = |step: f64, sigma: f64| sigma * step * step <= GRAIN * depth * length;
         Some(roots::rising_from(from + length * share, ends, is_last, |s| {
             let reached = field.optical_depth(Span::new(self.span.from, s)).value;
-            (reached - depth, field.extinction(s))
+            (reached - depth, field.at(s))
         }))
-    }
-}
-
-struct Flight<'a> {
-    table: &'a Table,
-    depth: f64,
-}
-
-impl Visitor for Flight<'_> {
-    type Output = Option<f64>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Option<f64> {
-        in_fused_code(
-            #[inline(always)]
-            || self.table.invert(field, self.depth),
-        )
     }
 }

@@ -296,8 +296,8 @@ mod tests {
 
     #[test]
     fn cells_bound_the_field_along_any_ray_and_a_constant_grid_is_a_constant() {
-        let volume = Volume::Eq21(Eq21);
-        let cells = Majorants::grid([7, 5, 9], 1.0, &volume).expect("bounded");
+        let volume: &Volume = &Eq21;
+        let cells = Majorants::grid([7, 5, 9], 1.0, volume).expect("bounded");
         let direction = Point([0.3, -0.5, 0.7]).normalised().expect("a direction");
         let mut flight = cells.enter(Point([1.0, 2.0, 3.0]), direction);
         let mut seen = 0;
@@ -311,7 +311,7 @@ mod tests {
         );
         // A sphere is left at its own boundary, not at that of its box.
         assert!((flight.place() - Point([0.0, 0.0, 10.0])).norm() - 10.0 < 1e-9);
-        let one = Majorants::constant(0.8, &volume);
+        let one = Majorants::constant(0.8, volume);
         assert_eq!((one.single_value(), one.largest_ratio()), (Some(0.8), 1.25));
         assert_eq!(cells.scaled(0.5).largest_ratio(), 2.0);
     }

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use fearless_simd::Level;
 
 use super::inverse::Table;
-use super::{Extinction, FreeFlight, Inverse, Profile, Visitor};
-use crate::numeric::pack::in_fused_code;
+use super::{Extinction, Inverse, Lookups, Profile};
+use crate::numeric::pack::WIDTH;
 use crate::numeric::{Known, Lane, Span};
 
 /// A field along one ray, zero outside its support.
@@ -55,10 +55,10 @@ impl Medium {
         self.support
     }
 
-    /// The profile, for kernels that are compiled once per type.
+    /// The field on the whole line.
     #[must_use]
     pub fn profile(&self) -> &Profile {
-        &self.profile
+        &*self.profile
     }
 
     /// `σ_t(t)`, zero outside the support. Not for loops: it finds the type anew each time.
@@ -67,19 +67,25 @@ impl Medium {
         if t < self.support.from || t > self.support.to {
             return 0.0;
         }
-        self.profile.visit(Lookup(t))
+        self.profile.at(t)
     }
 
     /// `σ_t` at many distances inside the support.
     #[must_use]
     pub fn extinctions(&self, at: &[f64]) -> Vec<f64> {
-        self.profile.visit(Lookups(at))
+        {
+            let mut found = at.to_vec();
+            found.resize(at.len().next_multiple_of(WIDTH), at.last().copied().unwrap_or_default());
+            self.lookups(Level::new()).replace(&mut found);
+            found.truncate(at.len());
+            found
+        }
     }
 
-    /// `σ_t` at many distances inside the support, eight at a time on the hardware of a level; what
-    /// is beyond the last eight is left out.
-    pub fn look_up(&self, level: Level, at: &[f64], extinction: &mut [f64]) {
-        self.profile.visit(LookUp { level, at, extinction });
+    /// `σ_t` inside the support, for kernels on the hardware of a level.
+    #[must_use]
+    pub fn lookups(&self, level: Level) -> Lookups<'_> {
+        self.profile.lookups(level)
     }
 
     /// `τ` over the part of `span` inside the support.
@@ -92,7 +98,7 @@ impl Medium {
         if inside.is_empty() {
             return Known::new(0.0, 0.0);
         }
-        let depth = self.profile.visit(Depth(inside));
+        let depth = self.profile.optical_depth(inside);
         Known::new(depth.value, depth.error + (begins + ends))
     }
 
@@ -100,113 +106,33 @@ impl Medium {
     /// `None` where the ray leaves first.
     #[must_use]
     pub fn free_flight(&self, depth: f64) -> Option<f64> {
-        self.profile.visit(Flight(self.support, depth))
+        if self.support.is_empty() { None } else { self.profile.free_flight(self.support, depth) }
     }
 
     /// The same for many depths.
     #[must_use]
     pub fn inverse(&self) -> Inverse {
-        let table =
-            if self.support.is_empty() { None } else { self.profile.visit(Tabulate(self.support)) };
+        let needs_table = !self.support.is_empty() && !self.profile.is_direct();
+        let table = needs_table.then(|| Table::of(self.profile(), self.support));
         Inverse::new(self.clone(), table)
     }
 
     /// The kinks of the field inside the support, in any order.
     #[must_use]
     pub fn breaks(&self) -> Vec<f64> {
-        self.profile.visit(Breaks(self.support))
+        self.profile.breaks(self.support)
     }
 
     /// See [`super::OpticalDepth::panel_nodes`].
     #[must_use]
     pub fn panel_nodes(&self) -> Option<usize> {
-        self.profile.visit(PanelNodes)
+        self.profile.panel_nodes()
     }
 }
 
-/// For loops that need not be fast: compiled once for all fields, it finds the type anew each time.
+/// For loops that need not be fast.
 impl Extinction for Medium {
     fn extinction<L: Lane>(&self, t: L) -> L {
-        t.map(|t| self.profile.visit(Lookup(t)))
-    }
-}
-
-struct Lookup(f64);
-impl Visitor for Lookup {
-    type Output = f64;
-    fn visit<F: FreeFlight>(self, field: &F) -> f64 {
-        in_fused_code(
-            #[inline(always)]
-            || field.extinction(self.0),
-        )
-    }
-}
-
-struct Lookups<'a>(&'a [f64]);
-impl Visitor for Lookups<'_> {
-    type Output = Vec<f64>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Vec<f64> {
-        let mut found = vec![0.0; self.0.len()];
-        in_fused_code(
-            #[inline(always)]
-            || {
-                for (sigma, &t) in found.iter_mut().zip(self.0) {
-                    *sigma = field.extinction(t);
-                }
-            },
-        );
-        found
-    }
-}
-
-struct LookUp<'a> {
-    level: Level,
-    at: &'a [f64],
-    extinction: &'a mut [f64],
-}
-impl Visitor for LookUp<'_> {
-    type Output = ();
-    fn visit<F: FreeFlight>(self, field: &F) {
-        super::look_up(self.level, field, self.at, self.extinction);
-    }
-}
-
-struct Depth(Span);
-impl Visitor for Depth {
-    type Output = Known;
-    fn visit<F: FreeFlight>(self, field: &F) -> Known {
-        field.optical_depth(self.0)
-    }
-}
-
-struct Flight(Span, f64);
-impl Visitor for Flight {
-    type Output = Option<f64>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Option<f64> {
-        if self.0.is_empty() { None } else { field.free_flight(self.0, self.1) }
-    }
-}
-
-struct Tabulate(Span);
-impl Visitor for Tabulate {
-    type Output = Option<Table>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Option<Table> {
-        if F::IS_DIRECT { None } else { Some(Table::of(field, self.0)) }
-    }
-}
-
-struct Breaks(Span);
-impl Visitor for Breaks {
-    type Output = Vec<f64>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Vec<f64> {
-        field.breaks(self.0)
-    }
-}
-
-struct PanelNodes;
-impl Visitor for PanelNodes {
-    type Output = Option<usize>;
-    fn visit<F: FreeFlight>(self, field: &F) -> Option<usize> {
-        field.panel_nodes()
+        t.map(|t| self.profile.at(t))
     }
 }

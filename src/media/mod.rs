@@ -22,6 +22,7 @@ pub mod grid;
 pub mod grid_file;
 pub mod inverse;
 pub mod lattice;
+pub mod lookup;
 pub mod majorants;
 pub mod medium;
 pub mod noise;
@@ -34,11 +35,13 @@ pub mod search;
 pub mod sines;
 pub mod voxels;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use std::sync::Arc;
+
+use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Known, Lane, Span, roots};
 
 pub use body::Body;
@@ -46,6 +49,7 @@ pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
 pub use inverse::Inverse;
+pub use lookup::{Lookups, Points};
 pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
@@ -53,40 +57,44 @@ pub use placement::Placement;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
 pub trait Extinction: Send + Sync {
-    /// Whether a lookup costs so much that all else in a walk hardly counts.
-    const IS_COSTLY: bool = false;
-
     /// The extinction at `t`, written once for every lane type.
     fn extinction<L: Lane>(&self, t: L) -> L;
+
+    /// The value, where there is only one.
+    fn single_value(&self) -> Option<f64> {
+        None
+    }
+
+    /// Whether a lookup costs so much that all else in a walk hardly counts.
+    fn is_costly(&self) -> bool {
+        false
+    }
 }
 
-/// Looks a field up at many distances, eight at a time on the hardware of a level; what is beyond the
-/// last eight is left out.
-pub fn look_up<F: Extinction>(level: Level, field: &F, at: &[f64], extinction: &mut [f64]) {
-    pack::on(level, Packs { field, at, extinction });
+/// A field that is looked up whatever its type.
+pub trait LookUp: Send + Sync {
+    /// `σ_t(t)`. Not for loops of kernels, which take [`LookUp::lookups`].
+    fn at(&self, t: f64) -> f64;
+
+    /// `σ_t` for the kernels of a level of hardware.
+    fn lookups(&self, level: Level) -> Lookups<'_>;
 }
 
-struct Packs<'a, F> {
-    field: &'a F,
-    at: &'a [f64],
-    extinction: &'a mut [f64],
-}
+impl<F: Extinction> LookUp for F {
+    fn at(&self, t: f64) -> f64 {
+        in_fused_code(
+            #[inline(always)]
+            || self.extinction(t),
+        )
+    }
 
-impl<F: Extinction> Task for Packs<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let (at, _) = self.at.as_chunks::<WIDTH>();
-        let (extinction, _) = self.extinction.as_chunks_mut::<WIDTH>();
-        for (at, extinction) in at.iter().zip(extinction) {
-            self.field.extinction(f64x8::from_slice(simd, at)).store_slice(extinction);
-        }
+    fn lookups(&self, level: Level) -> Lookups<'_> {
+        Lookups::new(self, level)
     }
 }
 
 /// A field whose integral is known.
-pub trait OpticalDepth: Extinction {
+pub trait OpticalDepth: LookUp {
     /// `τ(a, b) = ∫ₐᵇ σ_t(t) dt` with a bound on its own error.
     fn optical_depth(&self, span: Span) -> Known;
 
@@ -113,7 +121,9 @@ pub trait OpticalDepth: Extinction {
 /// A field whose integral can be inverted.
 pub trait FreeFlight: OpticalDepth {
     /// Whether the inverse is found at once, without a search for a root of the optical depth.
-    const IS_DIRECT: bool = false;
+    fn is_direct(&self) -> bool {
+        false
+    }
 
     /// The distance `s` with `τ(span.from, s) = depth`; `None` where the ray leaves the span first.
     ///
@@ -124,8 +134,21 @@ pub trait FreeFlight: OpticalDepth {
         if depth_to(span.to) <= depth {
             return None;
         }
-        Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, self.extinction(s))))
+        Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, self.at(s))))
     }
+}
+
+/// How smooth σ_t is in space.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Smoothness {
+    /// Without jumps or kinks, but for the bounds.
+    Smooth,
+    /// A polynomial in cells along the axes, which join smoothly.
+    SmoothCells,
+    /// A polynomial in cells along the axes, with kinks between them.
+    Cells,
+    /// In layers, with jumps or kinks between them.
+    Layers,
 }
 
 /// A page of the catalogue: how a field is read from a case file, in 1-D and in 3-D.
@@ -157,6 +180,16 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// A number that `σ_t` exceeds nowhere in the box.
     fn majorant(&self, within: &Aabb) -> f64;
 
+    /// The value within the bounds, where there is only one.
+    fn single_value(&self) -> Option<f64> {
+        None
+    }
+
+    /// How smooth it is.
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::Smooth
+    }
+
     /// About how many pieces a ray sees in a length at most, known without finding them.
     fn pieces(&self, length: f64) -> f64 {
         let _ = length;
@@ -185,132 +218,111 @@ pub trait Field: Sized + Send + Sync + 'static {
     }
 }
 
-/// A computation that is compiled once for each profile type.
-pub trait Visitor {
-    /// What it answers.
-    type Output;
+/// What one ray sees of some field.
+pub type Profile = dyn FreeFlight;
 
-    /// The computation.
-    fn visit<F: FreeFlight>(self, field: &F) -> Self::Output;
+/// Some field in space.
+pub type Volume = dyn InSpace;
+
+/// A field in space, whatever its type.
+pub trait InSpace: Send + Sync {
+    /// Where it may be non-zero.
+    fn bounds(&self) -> Bounds;
+    /// `σ_t(p)`, zero outside the bounds.
+    fn extinction_at(&self, p: Point) -> f64;
+    /// The same for kernels, at points within the bounds.
+    fn points(&self) -> Points<'_>;
+    /// See [`Field::majorant`].
+    fn majorant(&self, within: &Aabb) -> f64;
+    /// See [`Field::single_value`].
+    fn single_value(&self) -> Option<f64>;
+    /// See [`Field::smoothness`].
+    fn smoothness(&self) -> Smoothness;
+    /// See [`Field::pieces`].
+    fn pieces(&self, length: f64) -> f64;
+    /// See [`Field::farthest`].
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64;
+    /// See [`Field::is_radial`].
+    fn is_radial(&self) -> bool;
+    /// What the ray sees on the stretch `inside`.
+    fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile>;
+    /// See [`Field::coarsened`].
+    fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>>;
 }
 
-/// A computation that is compiled once for each type of volume.
-pub trait VolumeVisitor {
-    /// What it answers.
-    type Output;
+impl<F: Field> InSpace for F {
+    fn bounds(&self) -> Bounds {
+        Field::bounds(self)
+    }
 
-    /// The computation.
-    fn visit<F: Field>(self, field: &F) -> Self::Output;
+    fn extinction_at(&self, p: Point) -> f64 {
+        if Field::bounds(self).contains(p) { Field::extinction_at(self, p) } else { 0.0 }
+    }
+
+    fn points(&self) -> Points<'_> {
+        Points::new(self)
+    }
+
+    fn majorant(&self, within: &Aabb) -> f64 {
+        Field::majorant(self, within)
+    }
+
+    fn single_value(&self) -> Option<f64> {
+        Field::single_value(self)
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Field::smoothness(self)
+    }
+
+    fn pieces(&self, length: f64) -> f64 {
+        Field::pieces(self, length)
+    }
+
+    fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
+        Field::farthest(self, ray, inside)
+    }
+
+    fn is_radial(&self) -> bool {
+        Field::is_radial(self)
+    }
+
+    fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {
+        Arc::new(Field::along(self, ray, inside))
+    }
+
+    fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>> {
+        Field::coarsened(self, octaves).map(|field| Arc::new(field) as Arc<Volume>)
+    }
 }
 
-/// Lists the pages: from one line each come the module, the variants of [`Profile`] and
-/// [`Volume`], the name in case files and the row in `trueflight list`.
+/// How the fields of a page are read.
+struct Reader {
+    /// See [`Field::IN_LINE`].
+    in_line: bool,
+    line: fn(&Settings) -> Option<Arc<Profile>>,
+    volume: fn(&Settings) -> Option<Arc<Volume>>,
+}
+
+impl Reader {
+    const fn of<F: Field>() -> Self {
+        Self {
+            in_line: F::IN_LINE,
+            line: |settings| F::line(settings).map(|field| Arc::new(field) as Arc<Profile>),
+            volume: |settings| F::volume(settings).map(|field| Arc::new(field) as Arc<Volume>),
+        }
+    }
+}
+
+/// Lists the pages: from one line each come the name in case files, the reader and the row in
+/// `trueflight list`.
 macro_rules! media {
     ($($module:ident :: $Field:ident,)*) => {
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "media", pages: &[$($crate::page!($module)),*] };
 
-        /// What one ray sees of some field of the catalogue.
-        #[allow(clippy::large_enum_variant)] // one per experiment
-        #[allow(missing_docs)] // each variant is its page
-        pub enum Profile { $($Field(<$module::$Field as Field>::Profile)),* }
-
-        impl Profile {
-            /// Runs a computation on the concrete type: names become types here, once.
-            pub fn visit<V: Visitor>(&self, visitor: V) -> V::Output {
-                match self { $(Self::$Field(field) => visitor.visit(field)),* }
-            }
-
-            /// `τ` over a span.
-            #[must_use]
-            pub fn optical_depth(&self, span: Span) -> Known {
-                match self { $(Self::$Field(field) => field.optical_depth(span)),* }
-            }
-
-            /// Whether the fields, page by page, have a 1-D form.
-            const IN_LINE: &[bool] = &[$(<$module::$Field as Field>::IN_LINE),*];
-
-            /// Reads `NAME = { … }` in its 1-D form.
-            fn read(index: usize, settings: &Settings) -> Option<Self> {
-                let readers = [$(|s: &Settings| {
-                    <$module::$Field as Field>::line(s).map(Self::$Field)
-                }),*];
-                readers[index](settings)
-            }
-        }
-
-        /// Some field of the catalogue in its 3-D form.
-        #[allow(missing_docs)] // each variant is its page
-        pub enum Volume { $($Field($module::$Field)),* }
-
-        impl Volume {
-            /// Runs a computation on the concrete type: names become types here, once.
-            pub fn visit<V: VolumeVisitor>(&self, visitor: V) -> V::Output {
-                match self { $(Self::$Field(field) => visitor.visit(field)),* }
-            }
-
-            /// Where the volume may be non-zero.
-            #[must_use]
-            pub fn bounds(&self) -> Bounds {
-                match self { $(Self::$Field(field) => field.bounds()),* }
-            }
-
-            /// `σ_t(p)`, zero outside the bounds.
-            #[must_use]
-            pub fn extinction_at(&self, p: Point) -> f64 {
-                if !self.bounds().contains(p) {
-                    return 0.0;
-                }
-                match self { $(Self::$Field(field) => field.extinction_at(p)),* }
-            }
-
-            /// A number that `σ_t` exceeds nowhere in the box.
-            #[must_use]
-            pub fn majorant(&self, within: &Aabb) -> f64 {
-                match self { $(Self::$Field(field) => field.majorant(within)),* }
-            }
-
-            /// About how many pieces a ray sees in a length at most.
-            #[must_use]
-            pub fn pieces(&self, length: f64) -> f64 {
-                match self { $(Self::$Field(field) => field.pieces(length)),* }
-            }
-
-            /// The largest coordinate that a stretch of a ray reaches on the field's own lattice.
-            #[must_use]
-            pub fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
-                match self { $(Self::$Field(field) => field.farthest(ray, inside)),* }
-            }
-
-            /// Whether the volume is a ball in which σ_t depends on the distance from its centre only.
-            #[must_use]
-            pub fn is_radial(&self) -> bool {
-                match self { $(Self::$Field(field) => field.is_radial()),* }
-            }
-
-            /// What the ray sees on the stretch `inside`.
-            #[must_use]
-            pub fn along(&self, ray: &Ray, inside: Span) -> Profile {
-                match self {
-                    $(Self::$Field(field) => Profile::$Field(field.along(ray, inside))),*
-                }
-            }
-
-            /// The same field with only its first few octaves; `None` if it has no octaves.
-            #[must_use]
-            pub fn coarsened(&self, octaves: usize) -> Option<Self> {
-                match self { $(Self::$Field(field) => field.coarsened(octaves).map(Self::$Field)),* }
-            }
-
-            /// Reads `NAME = { … }` in its 3-D form.
-            fn read(index: usize, settings: &Settings) -> Option<Self> {
-                let readers = [$(|s: &Settings| {
-                    <$module::$Field as Field>::volume(s).map(Self::$Field)
-                }),*];
-                readers[index](settings)
-            }
-        }
+        const READERS: &[Reader] = &[$(Reader::of::<$module::$Field>()),*];
     };
 }
 

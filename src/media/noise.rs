@@ -36,7 +36,7 @@ use std::sync::OnceLock;
 
 use super::cells::Cells;
 use super::lattice::{self, Cell, Fade, Track};
-use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
+use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::{Known, Lane, Span, quadrature::GaussLegendre};
@@ -141,7 +141,9 @@ impl OctaveLine {
 }
 
 impl Extinction for NoiseRay {
-    const IS_COSTLY: bool = true;
+    fn is_costly(&self) -> bool {
+        true
+    }
 
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
@@ -218,6 +220,10 @@ impl Field for Noise {
             fade: if fade? == "quintic" { Fade::Quintic } else { Fade::Cubic },
         };
         Some(Self::new(spectrum, bounds?))
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::SmoothCells
     }
 
     fn bounds(&self) -> Bounds {

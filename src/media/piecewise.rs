@@ -217,7 +217,9 @@ impl OpticalDepth for Piecewise {
 }
 
 impl FreeFlight for Piecewise {
-    const IS_DIRECT: bool = true;
+    fn is_direct(&self) -> bool {
+        true
+    }
 
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
         if span.from < self.knots[0] || span.to > self.knots[self.left.len()] {

@@ -18,7 +18,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Field, Piecewise, body};
+use super::{Field, Piecewise, Smoothness, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
@@ -78,6 +78,10 @@ impl<P: Points> Field for Layers<P> {
         let axis = body::read_axis(settings);
         let bounds = body::read_bounds(settings);
         Some(Self { pieces: pieces?, axis: axis?, bounds: bounds?, points: PhantomData })
+    }
+
+    fn smoothness(&self) -> Smoothness {
+        Smoothness::Layers
     }
 
     fn bounds(&self) -> Bounds {

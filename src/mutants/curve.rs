@@ -12,7 +12,7 @@ use super::target::{CURVE, CURVE_CONTROL};
 use super::{About, Draws, Mutant, Target};
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::{Lane, Span};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
@@ -67,10 +67,10 @@ struct Curve {
 }
 
 impl Draws<TransmittanceCurve> for Curve {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<TransmittanceCurve>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<Values> {
         let slip = self.slip;
@@ -130,10 +130,10 @@ impl Draws<TransmittanceCurve> for Curve {
 struct FreshWalks;
 
 impl Draws<TransmittanceCurve> for FreshWalks {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<TransmittanceCurve>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<Values> {
         let walk = Curve { slip: Slip::None };

@@ -1,7 +1,7 @@
 //! The steps of a walk, one method each: a fault overrides one of them.
 
 use crate::estimators::Setup;
-use crate::media::{Control, Cursor, Extinction, Piecewise};
+use crate::media::{Control, Cursor, Extinction, Lookups, Piecewise};
 use crate::numeric::Span;
 use crate::problems::Problem;
 use crate::rng::{Stream, exponential, unit};
@@ -67,7 +67,7 @@ pub trait Fault: Copy + Send + Sync + 'static {
 
     /// `σ_t` at the collision.
     #[inline(always)]
-    fn look<M: Extinction>(&self, memory: &Memory, medium: &M, t: f64) -> f64 {
+    fn look(&self, memory: &Memory, medium: &Lookups, t: f64) -> f64 {
         let _ = memory;
         medium.extinction(t)
     }

@@ -11,7 +11,7 @@ use super::{About, Draws, Mutant};
 use crate::estimators::furnace::draw_with;
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::Furnace;
 use crate::rng::Stream;
 use crate::theory::{Odds, ParticleRule};
@@ -50,12 +50,7 @@ fn furnace(
 struct Walk<S>(S);
 
 impl<S: Steps + Clone + Send + Sync + 'static> Draws<Furnace> for Walk<S> {
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Furnace>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Furnace>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
         draw_with(&self.0, setup, rng)
     }
 }

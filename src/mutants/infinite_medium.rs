@@ -10,7 +10,7 @@ use crate::estimators::infinite_medium::draw_with;
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
 use crate::geometry::{Point, frame};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::phase::Phase;
 use crate::problems::InfiniteMedium;
 use crate::problems::infinite_medium::Values;
@@ -48,12 +48,7 @@ fn infinite(
 struct Walk<S>(S);
 
 impl<S: Steps + Clone + Send + Sync + 'static> Draws<InfiniteMedium> for Walk<S> {
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<InfiniteMedium>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
+    fn draw(&self, setup: &Setup<InfiniteMedium>, _: &Lookups, rng: &mut Stream) -> Draw<Values> {
         draw_with(&self.0, setup, rng)
     }
 }

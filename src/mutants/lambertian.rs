@@ -5,7 +5,7 @@ use super::{About, Draws, Mutant};
 use crate::estimators::lambertian::{draw_with, lambertian};
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::media::Majorants;
 use crate::media::majorants::Flight;
 use crate::problems::Lambertian;
@@ -42,12 +42,7 @@ fn under<S: Steps + Clone + Send + Sync + 'static>(
 struct Walk<S>(S, fn(f64) -> f64, Particle);
 
 impl<S: Steps + Clone + Send + Sync + 'static> Draws<Lambertian> for Walk<S> {
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Lambertian>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
+    fn draw(&self, setup: &Setup<Lambertian>, _: &Lookups, rng: &mut Stream) -> Draw<Values> {
         draw_with((&self.0, self.1), &self.2, setup, rng)
     }
 }

@@ -13,7 +13,7 @@ use super::fault::{Fault, Memory};
 use super::target::{BELOW, DENSE, TERMINATING, WOODCOCK};
 use super::walk::product;
 use crate::estimators::rules::{Null, Single, Weight};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::problems::Transmittance;
 
 /// The family.
@@ -69,7 +69,7 @@ pub struct AtPrevious;
 
 impl Fault for AtPrevious {
     #[inline(always)]
-    fn look<M: Extinction>(&self, memory: &Memory, medium: &M, _: f64) -> f64 {
+    fn look(&self, memory: &Memory, medium: &Lookups, _: f64) -> f64 {
         medium.extinction(memory.from)
     }
 }
@@ -80,7 +80,7 @@ pub struct AtMidpoint;
 
 impl Fault for AtMidpoint {
     #[inline(always)]
-    fn look<M: Extinction>(&self, memory: &Memory, medium: &M, t: f64) -> f64 {
+    fn look(&self, memory: &Memory, medium: &Lookups, t: f64) -> f64 {
         medium.extinction(0.5 * (memory.from + t))
     }
 }
@@ -91,7 +91,7 @@ struct Reversed;
 
 impl Fault for Reversed {
     #[inline(always)]
-    fn look<M: Extinction>(&self, memory: &Memory, medium: &M, t: f64) -> f64 {
+    fn look(&self, memory: &Memory, medium: &Lookups, t: f64) -> f64 {
         medium.extinction(memory.support.from + (memory.support.to - t))
     }
 }
@@ -102,7 +102,7 @@ struct OnRaster;
 
 impl Fault for OnRaster {
     #[inline(always)]
-    fn look<M: Extinction>(&self, memory: &Memory, medium: &M, t: f64) -> f64 {
+    fn look(&self, memory: &Memory, medium: &Lookups, t: f64) -> f64 {
         let cell = memory.support.length() / 16.0;
         let from = memory.support.from;
         medium.extinction(from + ((t - from) / cell).floor() * cell)
@@ -115,7 +115,7 @@ pub struct OfAnotherChannel;
 
 impl Fault for OfAnotherChannel {
     #[inline(always)]
-    fn look<M: Extinction>(&self, _: &Memory, medium: &M, t: f64) -> f64 {
+    fn look(&self, _: &Memory, medium: &Lookups, t: f64) -> f64 {
         0.8 * medium.extinction(t)
     }
 }

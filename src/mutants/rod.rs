@@ -13,7 +13,7 @@ use super::{About, Draws, Mutant};
 use crate::estimators::rod::roulette::Roulette;
 use crate::estimators::rod::walk::{self, Steps};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::Rod;
 use crate::problems::rod::Values;
 use crate::rng::Stream;
@@ -55,12 +55,7 @@ struct Walk<S>(S);
 
 impl<S: Steps + Copy + Send + Sync + 'static> Draws<Rod> for Walk<S> {
     #[inline]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Rod>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
+    fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
         walk::draw(&self.0, setup, medium, rng)
     }
 }

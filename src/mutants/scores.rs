@@ -13,7 +13,7 @@ use super::walk::Product;
 use super::{About, Draws, Honest, Mutant};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
@@ -65,10 +65,10 @@ enum NextFlight {
 }
 
 impl Draws<Transmittance> for NextFlight {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let end = setup.mesh.support().to;
@@ -98,10 +98,10 @@ enum Mis {
 }
 
 impl Draws<Transmittance> for Mis {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let end = setup.mesh.support().to;
@@ -130,10 +130,10 @@ impl Draws<Transmittance> for Mis {
 struct RayMarching;
 
 impl Draws<Transmittance> for RayMarching {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let support = setup.mesh.support();
@@ -150,10 +150,10 @@ impl Draws<Transmittance> for RayMarching {
 struct Averaged;
 
 impl Draws<Transmittance> for Averaged {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let one = RATIO.draw(setup, medium, rng);

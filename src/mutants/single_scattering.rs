@@ -8,7 +8,7 @@ use super::target::{SINGLE_EXACT, SINGLE_RATIO, SINGLE_SHADOW};
 use super::{About, Draws, Mutant, Target};
 use crate::estimators::single_scattering::connection::{camera, shadow};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
@@ -98,10 +98,10 @@ struct SourceDriven {
 }
 
 impl Draws<SingleScattering> for SourceDriven {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let problem = &setup.problem;

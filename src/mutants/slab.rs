@@ -11,7 +11,7 @@ use super::target::{
 use super::{About, Draws, Mutant};
 use crate::estimators::slab::walk::{self, Steps};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::phase::Phase;
 use crate::problems::Slab;
 use crate::rng::Stream;
@@ -51,12 +51,7 @@ struct Walk<S>(S);
 
 impl<S: Steps + Copy + Send + Sync + 'static> Draws<Slab> for Walk<S> {
     #[inline]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Slab>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 2]> {
+    fn draw(&self, setup: &Setup<Slab>, medium: &Lookups, rng: &mut Stream) -> Draw<[f64; 2]> {
         walk::draw(&self.0, setup, medium, rng)
     }
 }

@@ -9,7 +9,7 @@ use super::{About, Draws, Mutant};
 use crate::estimators::space::{Particle, Scattering};
 use crate::estimators::sphere::{Connect, Honest, draw_by};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::numeric::Span;
 use crate::problems::Sphere;
 use crate::rng::Stream;
@@ -49,12 +49,7 @@ struct Walk<C> {
 
 impl<C: Connect + Copy + Send + 'static> Draws<Sphere> for Walk<C> {
     #[inline]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Sphere>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
         let particle = Particle::of(ParticleRule::Weighted);
         draw_by(&particle, Some((&self.connect, self.shadow)), setup, rng)
     }

@@ -8,7 +8,7 @@
 use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
 use super::{About, Draws, Mutant};
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
@@ -53,10 +53,10 @@ struct Decomposition {
 }
 
 impl Draws<Transmittance> for Decomposition {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let support = setup.mesh.support();
@@ -90,10 +90,10 @@ struct LocalMajorant {
 }
 
 impl Draws<Transmittance> for LocalMajorant {
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut lookups = 0;

@@ -1,7 +1,9 @@
 //! The loop over a mutant's draws; the estimators' own is in `estimators/trial.rs`.
 
+use fearless_simd::Level;
+
 use crate::estimators::{Draw, DrawBuffer, Experiment, Kernel, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::{Stream, Streams};
@@ -21,8 +23,7 @@ pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
     }
 
     /// Makes one draw.
-    fn draw<M: Extinction>(&self, setup: &Setup<P>, medium: &M, rng: &mut Stream)
-    -> Draw<P::Value>;
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
 }
 
 /// Joins a way to draw and a setup.
@@ -41,7 +42,7 @@ impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
         let begin = streams.clone();
-        let medium = self.setup.problem.medium();
+        let medium = &self.setup.problem.medium().lookups(Level::new());
         in_fused_code(
             #[inline(always)]
             || {

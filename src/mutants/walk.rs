@@ -14,7 +14,7 @@ use super::{About, Draws, Mutant, Target};
 use crate::estimators::rules::Collision;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem, Transmittance};
 use crate::rng::Stream;
 
@@ -35,10 +35,10 @@ impl<R: Collision, F: Fault> Draws<Transmittance> for Product<R, F> {
     }
 
     #[inline]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let Self { rule, fault } = self;
@@ -90,10 +90,10 @@ impl<F: Fault> Draws<FreeFlight> for Flight<F> {
     }
 
     #[inline]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<FreeFlight>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let fault = &self.fault;

@@ -50,9 +50,20 @@ pub trait Lane:
     #[must_use]
     fn each(self, value: f64) -> Self;
 
-    /// Applies a scalar function to each element, for what has no formula of its own.
+    /// The elements in order, replaced by a function: for what is looked up by one call, or has no formula
+    /// for lanes.
     #[must_use]
-    fn map(self, f: impl FnMut(f64) -> f64) -> Self;
+    fn replaced(self, replace: impl FnMut(&mut [f64])) -> Self;
+
+    /// Applies a scalar function to each element.
+    #[inline(always)]
+    #[must_use]
+    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+        self.replaced(
+            #[inline(always)]
+            |elements| elements.iter_mut().for_each(|element| *element = f(*element)),
+        )
+    }
 
     /// `self · factor + term`, rounded once where the machine can.
     #[must_use]
@@ -192,8 +203,10 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
-        f(self)
+    fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
+        let mut element = [self];
+        replace(&mut element);
+        element[0]
     }
 
     #[inline(always)]

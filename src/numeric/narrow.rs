@@ -71,8 +71,10 @@ impl Lane for Narrow {
     }
 
     #[inline(always)]
-    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
-        Self::of(f(self.wide()))
+    fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
+        let mut element = [self.wide()];
+        replace(&mut element);
+        Self::of(element[0])
     }
 
     /// Rounded once, as such hardware does; a product of two such numbers is exact in a double, and

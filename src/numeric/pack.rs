@@ -169,12 +169,10 @@ impl<S: Simd> Lane for f64x8<S> {
     }
 
     #[inline(always)]
-    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
+    fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
         let mut elements = [0.0; WIDTH];
         self.store_slice(&mut elements);
-        for element in &mut elements {
-            *element = f(*element);
-        }
+        replace(&mut elements);
         Self::from_slice(self.token(), &elements)
     }
 

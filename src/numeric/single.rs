@@ -54,8 +54,10 @@ macro_rules! single {
             }
 
             #[inline(always)]
-            fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
-                Self(f(self.0))
+            fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
+                let mut element = [self.0];
+                replace(&mut element);
+                Self(element[0])
             }
 
             #[inline(always)]

@@ -147,8 +147,8 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
-    fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
-        Self(self.0.map(&mut f), self.1.map(&mut f))
+    fn replaced(self, mut replace: impl FnMut(&mut [f64])) -> Self {
+        Self(self.0.replaced(&mut replace), self.1.replaced(&mut replace))
     }
 
     #[inline(always)]

@@ -79,7 +79,7 @@ impl Problem for Furnace {
     }
 
     fn volume(&self) -> Option<&Volume> {
-        Some(&self.scene.volume)
+        Some(&*self.scene.volume)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

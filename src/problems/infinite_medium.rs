@@ -77,8 +77,8 @@ impl Problem for InfiniteMedium {
             Some(Vec::new())
         };
         let (scene, radii) = (scene?, radii?);
-        let is_homogeneous = matches!(&*scene.volume, Volume::Constant(_))
-            && scene.volume.bounds() == Bounds::Everywhere;
+        let is_homogeneous =
+            scene.volume.single_value().is_some() && scene.volume.bounds() == Bounds::Everywhere;
         let extinction = scene.volume.extinction_at(Point([0.0; 3]));
         if !is_homogeneous || extinction <= 0.0 {
             let help = "it takes `volume.constant = { extinction }` above 0, without bounds";
@@ -111,7 +111,7 @@ impl Problem for InfiniteMedium {
     }
 
     fn volume(&self) -> Option<&Volume> {
-        Some(&self.scene.volume)
+        Some(&*self.scene.volume)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

@@ -126,7 +126,7 @@ impl Problem for Lambertian {
     }
 
     fn volume(&self) -> Option<&Volume> {
-        Some(&self.scene.volume)
+        Some(&*self.scene.volume)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
@@ -144,8 +144,7 @@ mod tests {
     use crate::phase::{Phase, isotropic::Isotropic};
     use std::sync::Arc;
 
-    fn under_light(volume: Volume) -> Lambertian {
-        let volume = Arc::new(volume);
+    fn under_light(volume: Arc<Volume>) -> Lambertian {
         let ray =
             crate::geometry::Ray::new(Point([0.5; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("");
         let body = Body::Volume { name: String::new(), volume: volume.clone(), ray };
@@ -159,7 +158,7 @@ mod tests {
 
     #[test]
     fn places_lie_on_the_sphere_and_look_inward() {
-        let sphere = under_light(Volume::Eq21(Eq21));
+        let sphere = under_light(Arc::new(Eq21));
         for (u, v) in [(0.0, 0.3), (0.4, 0.9), (0.999, 0.0)] {
             let (place, inward) = sphere.place(u, v);
             assert!(((place - Point([0.0, 0.0, 10.0])).norm() - 10.0).abs() < 1e-13);
@@ -173,10 +172,8 @@ mod tests {
     #[test]
     fn each_face_of_a_box_gets_its_share() {
         let within = Aabb { low: Point([0.0; 3]), high: Point([1.0, 2.0, 3.0]) };
-        let cuboid = under_light(Volume::Constant(crate::media::constant::Constant::new(
-            1.0,
-            Bounds::Box(within),
-        )));
+        let cuboid =
+            under_light(Arc::new(crate::media::constant::Constant::new(1.0, Bounds::Box(within))));
         // Areas 6, 3, 2 twice: of 11 parts u takes six for x, three for y, two for z.
         let (place, inward) = cuboid.place(1.0 / 11.0, 0.5);
         assert_eq!((inward, place.0[0]), (Point([1.0, 0.0, 0.0]), 0.0));

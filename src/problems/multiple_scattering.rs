@@ -12,8 +12,6 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 1, section 4.1.
 
-use std::sync::Arc;
-
 use super::{Problem, Scene, Sky};
 use crate::catalogue::Settings;
 use crate::geometry::{Point, Ray};
@@ -31,7 +29,7 @@ impl MultipleScattering {
     /// Along a ray.
     pub fn new(scene: Scene, sky: Sky, ray: Ray) -> Self {
         let support = scene.volume.bounds().clip(&ray);
-        let profile = Arc::new(scene.volume.along(&ray, support));
+        let profile = scene.volume.along(&ray, support);
         let medium = Medium::new(profile, ray.span(), support);
         Self { scene, sky, ray, medium }
     }
@@ -72,6 +70,6 @@ impl Problem for MultipleScattering {
     }
 
     fn volume(&self) -> Option<&Volume> {
-        Some(&self.scene.volume)
+        Some(&*self.scene.volume)
     }
 }

@@ -105,5 +105,5 @@ pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albed
         settings.fault("albedo", "the field may exceed 1 in the volume", help);
         return None;
     };
-    Some(Albedo::Field(Arc::new(field), most.min(1.0)))
+    Some(Albedo::Field(field, most.min(1.0)))
 }

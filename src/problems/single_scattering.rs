@@ -91,7 +91,7 @@ impl SingleScattering {
         phase: Phase,
     ) -> Result<Self, OnTheLine> {
         let support = volume.bounds().clip(&ray);
-        let profile = Arc::new(volume.along(&ray, support));
+        let profile = volume.along(&ray, support);
         let medium = Medium::new(profile, ray.span(), support);
         let Lamp { position, power } = lamp;
         let [foot, distance] = lamp.seen_from(&ray)?;
@@ -112,7 +112,7 @@ impl SingleScattering {
 
     /// The volume.
     pub fn volume(&self) -> &Volume {
-        &self.volume
+        &*self.volume
     }
 
     /// L, found when it is first asked for.
@@ -225,7 +225,7 @@ impl SingleScattering {
     /// The field along the ray from `p(s)` to the light; `None` where that is outside the bounds.
     pub fn shadow_medium(&self, s: f64) -> Option<Medium> {
         let (ray, inside) = self.shadow(s)?;
-        Some(Medium::new(Arc::new(self.volume.along(&ray, inside)), ray.span(), inside))
+        Some(Medium::new(self.volume.along(&ray, inside), ray.span(), inside))
     }
 
     /// A number that σ_t exceeds on no shadow ray: the volume's majorant over the box about the
@@ -308,7 +308,7 @@ mod tests {
     use crate::phase::{henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
 
     fn lit(phase: Phase, [distance, foot]: [f64; 2]) -> SingleScattering {
-        let field = Volume::Constant(Constant::new(1.0, Bounds::Everywhere));
+        let field = Constant::new(1.0, Bounds::Everywhere);
         let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 1.0).expect("a direction");
         let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
         SingleScattering::new(Arc::new(field), ray, lamp, 1.0, phase).expect("off the line")

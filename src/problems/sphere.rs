@@ -234,7 +234,7 @@ impl Problem for Sphere {
     }
 
     fn volume(&self) -> Option<&Volume> {
-        Some(&self.scene.volume)
+        Some(&*self.scene.volume)
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {

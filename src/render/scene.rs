@@ -206,7 +206,7 @@ impl<P: Subject> Scene<P> {
                 Address { seed: request.seed, experiment, block: 0, lane: 0 }
             };
             let recipe = self.sampling_of(written).filter(|_| !P::ALONG_RAY);
-            let space = recipe.and_then(|recipe| recipe.in_space(&self.view.volume)).map(Arc::new);
+            let space = recipe.and_then(|recipe| recipe.in_space(&*self.view.volume)).map(Arc::new);
             let addresses = ["pilot", "draws"].map(address);
             listed.push(Listed { written, called, lookups, space, addresses });
         }

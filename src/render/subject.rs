@@ -79,7 +79,7 @@ impl Subject for Transmittance {
 
     fn at((): &(), volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
         let support = volume.bounds().clip(ray);
-        let profile = Arc::new(volume.along(ray, support));
+        let profile = volume.along(ray, support);
         Some(Self::new(Medium::new(profile, ray.span(), support)))
     }
 

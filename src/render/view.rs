@@ -117,7 +117,7 @@ impl View {
         };
         let camera = camera?;
         let length = furthest(&about, camera.position);
-        let (volume, sky, size) = (Arc::new(volume), sky?, size?);
+        let (sky, size) = (sky?, size?);
         let shared_control = usize::try_from(shared?).ok()?;
         Some(Self { medium, volume, sky, size, shared_control, shows_sky, camera, length })
     }

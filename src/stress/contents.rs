@@ -145,7 +145,7 @@ type Field = fn(&mut Dice) -> (String, Wide);
 fn see(row: &mut Row, field: &str, exact: Wide, chords: f64) {
     let place = || field.to_owned();
     let volume = text::volume(field);
-    let found = volume.and_then(|volume| content::by_chords(&volume, chords));
+    let found = volume.and_then(|volume| content::by_chords(&*volume, chords));
     let Some(found) = found.filter(|_| exact.high > 1e-290) else { return row.skip(place) };
     let off = (Wide::from(found.value) - exact).abs().value();
     row.see(beyond(off, 0.5 * f64::EPSILON * exact.high) / found.error, place);
@@ -210,7 +210,7 @@ fn cells(dice: &mut Dice, trials: u32) -> Row {
             row.skip(|| field);
             continue;
         };
-        see(&mut row, &field, by_cells(&volume, &planes), FEW_CHORDS);
+        see(&mut row, &field, by_cells(&*volume, &planes), FEW_CHORDS);
     }
     row
 }

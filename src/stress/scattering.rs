@@ -8,7 +8,6 @@
 //! where theory halves panels of x.
 
 use std::f64::consts::TAU;
-use std::sync::Arc;
 
 use super::chains::arsinh;
 use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
@@ -58,7 +57,7 @@ pub(super) fn lit(
     let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), length)?;
     let lamp = Lamp { position: Point([distance, 0.0, foot]), power: 1.0 };
     let phase = Phase::Isotropic(Isotropic);
-    SingleScattering::new(Arc::new(field), ray, lamp, albedo, phase).ok()
+    SingleScattering::new(field, ray, lamp, albedo, phase).ok()
 }
 
 fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
@@ -131,7 +130,7 @@ pub(super) fn field(dice: &mut Dice) -> (String, Option<SingleScattering>) {
         let aside = side * turn.cos() + up * turn.sin();
         let position = ray.at(26.0 * along) + aside * away;
         let lamp = Lamp { position, power: 1.0 };
-        SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).ok()
+        SingleScattering::new(field, ray, lamp, 0.7, phase).ok()
     });
     (what, problem)
 }
@@ -204,7 +203,7 @@ mod tests {
         let ray = Ray::new(Point([0.0; 3]), Point([0.0, 0.0, 1.0]), 3.0).expect("a direction");
         let lamp = Lamp { position: Point([0.01, 0.0, 1.0]), power: 1.0 };
         let phase = Phase::Isotropic(Isotropic);
-        let problem = SingleScattering::new(Arc::new(field), ray, lamp, 0.7, phase).expect("off");
+        let problem = SingleScattering::new(field, ray, lamp, 0.7, phase).expect("off");
         let (found, other) = (radiance(&problem), graded(&problem));
         assert!((found.value - other).abs() <= found.error);
         assert!((found.value * (1.0 + 1e-11) - other).abs() > found.error, "{found:?}");

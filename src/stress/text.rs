@@ -26,7 +26,7 @@ pub(super) fn case(text: &str) -> Option<Case> {
 }
 
 /// A field in space; `None` where the text is refused.
-pub(super) fn volume(text: &str) -> Option<Volume> {
+pub(super) fn volume(text: &str) -> Option<std::sync::Arc<Volume>> {
     let faults = RefCell::default();
     let root = source(text).parse(&faults);
     let volume = read_volume(&Settings::new(&root, Path::new("."), &faults));

@@ -1,7 +1,5 @@
 //! A ray cut into panels on which everything is smooth.
 
-use fearless_simd::Level;
-
 use crate::media::Medium;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
@@ -120,8 +118,7 @@ impl Mesh {
             depth: None,
         };
         mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
-        mesh.extinction = vec![0.0; mesh.t.len()];
-        mesh.medium.look_up(Level::new(), &mesh.t, &mut mesh.extinction);
+        mesh.extinction = mesh.medium.extinctions(&mesh.t);
         mesh.depth = Some(Known::new(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
         mesh
     }

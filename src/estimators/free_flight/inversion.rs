@@ -15,7 +15,7 @@
 
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem};
 use crate::rng::{Stream, exponential};
 use crate::theory::{CountLaw, Prediction, flight};
@@ -40,12 +40,7 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<FreeFlight>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<FreeFlight>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
         let ray = setup.problem.medium().span();
         let end = setup.problem.inverse().free_flight(exponential(rng)).unwrap_or(ray.to);
         Draw::free([end - ray.from], 0)

@@ -16,7 +16,7 @@ use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::problems::{FreeFlight, Problem};
 use crate::rng::Stream;
 use crate::theory::{Prediction, flight};
@@ -47,10 +47,10 @@ impl Estimator<FreeFlight> for Woodcock {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<FreeFlight>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let ray = setup.problem.medium().span();
@@ -67,11 +67,11 @@ impl Estimator<FreeFlight> for Woodcock {
         Draw::free([ray.length()], lookups)
     }
 
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<FreeFlight>,
-        medium: &M,
+        medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         packet::flight(level, setup, medium, request)

@@ -92,7 +92,7 @@ impl Stay {
 
 /// `∫σ_t dV`, sharp enough to be drawn against.
 fn held(setup: &Setup<Lambertian>) -> Option<Known> {
-    let held = setup.problem.content(|| content::content(&setup.problem.scene().volume));
+    let held = setup.problem.content(|| content::content(&*setup.problem.scene().volume));
     held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
 }
 

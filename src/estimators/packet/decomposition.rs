@@ -9,21 +9,22 @@ use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Control, Extinction, Piecewise};
+use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 
 /// The draws of decomposition tracking beside a constant control, on the hardware of a level; a request
 /// is handed back where the hardware is too narrow or one draw after the other is faster.
-pub fn decomposition<'a, P: Problem, M: Extinction>(
+#[must_use]
+pub fn decomposition<'a, P: Problem>(
     level: Level,
     setup: &Setup<P>,
     control: f64,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays::<M>(&setup.sampling, &Control::None) {
+    if !pays(medium, &setup.sampling, &Control::None) {
         return Some(request);
     }
     let (support, sampling) = (setup.mesh.support(), &setup.sampling);
@@ -32,16 +33,16 @@ pub fn decomposition<'a, P: Problem, M: Extinction>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Decomposition<'a, 'r, M> {
+struct Decomposition<'a, 'r> {
     sampling: &'a Piecewise,
     support: Span,
     control: f64,
     survivor: f64,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Decomposition<'_, '_, M> {
+impl Task for Decomposition<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -55,7 +56,7 @@ impl<M: Extinction> Task for Decomposition<'_, '_, M> {
     }
 }
 
-impl<M: Extinction> Decomposition<'_, '_, M> {
+impl Decomposition<'_, '_> {
     #[inline(always)]
     fn along<S: Simd, C: Course<S> + Copy>(self, simd: S, course: C) {
         let Self { support, control, survivor, medium, request, .. } = self;
@@ -67,19 +68,31 @@ impl<M: Extinction> Decomposition<'_, '_, M> {
         run(
             simd,
             #[inline(always)]
-            || Residuals { medium, control, path, from, course, begins, flown, reader },
+            || Residuals {
+                control,
+                path,
+                from,
+                course,
+                inside: begins,
+                t: from,
+                begins,
+                flown,
+                reader,
+            },
+            medium,
             request,
         );
     }
 }
 
 /// The walks through the residual.
-struct Residuals<'a, S: Simd, M, C> {
-    medium: &'a M,
+struct Residuals<S: Simd, C> {
     control: f64x8<S>,
     path: f64x8<S>,
     from: f64x8<S>,
     course: C,
+    inside: mask64x8<S>,
+    t: f64x8<S>,
     /// Whose next step is the control's flight.
     begins: mask64x8<S>,
     /// Where the control's flights ended.
@@ -87,7 +100,7 @@ struct Residuals<'a, S: Simd, M, C> {
     reader: Survivors,
 }
 
-impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Residuals<'_, S, M, C> {
+impl<S: Simd, C: Course<S>> Walks<S> for Residuals<S, C> {
     type Reader = Survivors;
 
     #[inline(always)]
@@ -96,11 +109,16 @@ impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Residuals<'_, S, M, C> {
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(numbers.depth);
-        let t = Lane::select(inside, self.course.reached(), self.from);
-        let collides = inside & !self.flown.at_most(t) & !self.begins;
-        let ratio = (self.medium.extinction(t) - self.control) * self.course.mean_free_path();
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(numbers.depth);
+        self.t = Lane::select(self.inside, self.course.reached(), self.from);
+        self.t
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
+        let collides = self.inside & !self.flown.at_most(self.t) & !self.begins;
+        let ratio = (extinction - self.control) * self.course.mean_free_path();
         let killed = numbers.decision.below(ratio);
         self.flown.store_slice(&mut row.0[0]);
         let control_flight = numbers.depth.times_plus(self.path, self.from);

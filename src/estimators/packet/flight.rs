@@ -3,26 +3,27 @@
 //! Specification: draw j is, bit for bit, the draw that the page `free_flight/woodcock` makes from
 //! stream j mod 16.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Control, Extinction, Piecewise};
+use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
 
 /// Free flights by Woodcock tracking, on the hardware of a level, or handed back where one draw after the
 /// other is faster.
-pub fn flight<'a, P: Problem, M: Extinction>(
+#[must_use]
+pub fn flight<'a, P: Problem>(
     level: Level,
     setup: &Setup<P>,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays::<M>(&setup.sampling, &Control::None) {
+    if !pays(medium, &setup.sampling, &Control::None) {
         return Some(request);
     }
     let ray = setup.problem.medium().span();
@@ -30,14 +31,14 @@ pub fn flight<'a, P: Problem, M: Extinction>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Flight<'a, 'r, M> {
+struct Flight<'a, 'r> {
     sampling: &'a Piecewise,
     ray: Span,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Flight<'_, '_, M> {
+impl Task for Flight<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -51,7 +52,7 @@ impl<M: Extinction> Task for Flight<'_, '_, M> {
     }
 }
 
-impl<M: Extinction> Flight<'_, '_, M> {
+impl Flight<'_, '_> {
     #[inline(always)]
     fn along<S: Simd, C: Course<S> + Copy>(self, simd: S, course: C) {
         let Self { sampling, ray, medium, request } = self;
@@ -59,21 +60,23 @@ impl<M: Extinction> Flight<'_, '_, M> {
         run(
             simd,
             #[inline(always)]
-            || Flights { medium, ray, from, course },
+            || Flights { ray, course, inside: mask64x8::splat(simd, true), t: from, from },
+            medium,
             request,
         );
     }
 }
 
 /// The walks of free flights.
-struct Flights<'a, S: Simd, M, C> {
-    medium: &'a M,
+struct Flights<S: Simd, C> {
     ray: Span,
     from: f64x8<S>,
     course: C,
+    inside: mask64x8<S>,
+    t: f64x8<S>,
 }
 
-impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
+impl<S: Simd, C: Course<S>> Walks<S> for Flights<S, C> {
     type Reader = Distances;
 
     #[inline(always)]
@@ -82,14 +85,19 @@ impl<S: Simd, M: Extinction, C: Course<S>> Walks<S> for Flights<'_, S, M, C> {
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(numbers.depth);
-        let t = Lane::select(inside, self.course.reached(), self.from);
-        let ratio = self.medium.extinction(t) * self.course.mean_free_path();
-        let goes_on = inside & !numbers.decision.below(ratio);
-        t.store_slice(&mut row.0[0]);
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(numbers.depth);
+        self.t = Lane::select(self.inside, self.course.reached(), self.from);
+        self.t
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
+        let ratio = extinction * self.course.mean_free_path();
+        let goes_on = self.inside & !numbers.decision.below(ratio);
+        self.t.store_slice(&mut row.0[0]);
         self.course.restart(!goes_on);
-        ends(inside, goes_on)
+        ends(self.inside, goes_on)
     }
 }
 

@@ -3,21 +3,22 @@
 //! Specification: draw j is, bit for bit, the draw that the page `transmittance/local_majorant` makes from
 //! stream j mod 16. A step is a flight within a segment: no lane waits for those that cross several.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{self, Lane};
 
 /// The draws of local-majorant tracking, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or no segment has an extinction.
-pub fn majorants<'a, P, M: Extinction>(
+#[must_use]
+pub fn majorants<'a, P>(
     level: Level,
     setup: &Setup<P>,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
     let row = |(ends, path): ([f64; 2], f64)| {
@@ -32,14 +33,14 @@ pub fn majorants<'a, P, M: Extinction>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Local<'a, 'r, M> {
+struct Local<'a, 'r> {
     segments: Vec<numeric::Row>,
     survivor: f64,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Local<'_, '_, M> {
+impl Task for Local<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -49,32 +50,34 @@ impl<M: Extinction> Task for Local<'_, '_, M> {
         let [t, end, path, ..] = first.columns(&segments);
         let last = f64x8::splat(simd, (segments.len() - 1) as f64);
         let segments = &segments[..];
-        let (segment, looked) = (first, first);
+        let (segment, looked, within) = (first, first, mask64x8::splat(simd, true));
         run(
             simd,
             #[inline(always)]
-            || Hops { segments, last, survivor, medium, segment, t, end, path, looked },
+            || Hops { segments, last, survivor, segment, t, end, path, looked, within },
+            medium,
             request,
         );
     }
 }
 
 /// The walks.
-struct Hops<'a, S: Simd, M> {
+struct Hops<'a, S: Simd> {
     /// Beginning, end and mean free path of each.
     segments: &'a [numeric::Row],
     last: f64x8<S>,
     survivor: f64,
-    medium: &'a M,
     segment: f64x8<S>,
     t: f64x8<S>,
     end: f64x8<S>,
     path: f64x8<S>,
     /// How many lookups each has made.
     looked: f64x8<S>,
+    /// Which of them have come to a collision, not to the end of their segment.
+    within: mask64x8<S>,
 }
 
-impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
+impl<S: Simd> Walks<S> for Hops<'_, S> {
     type Reader = Survivors;
 
     #[inline(always)]
@@ -83,14 +86,19 @@ impl<S: Simd, M: Extinction> Walks<S> for Hops<'_, S, M> {
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        let flown = numbers.depth.times_plus(self.path, self.t);
+        self.within = flown.below(self.end);
+        self.t = Lane::select(self.within, flown, self.t);
+        self.t
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
         let simd = self.t.token();
         let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
-        let flown = numbers.depth.times_plus(self.path, self.t);
-        let within = flown.below(self.end);
-        let t = Lane::select(within, flown, self.t);
-        let ratio = self.medium.extinction(t) * self.path;
-        let killed = within & numbers.decision.below(ratio);
+        let (t, within) = (self.t, self.within);
+        let killed = within & numbers.decision.below(extinction * self.path);
         let inside = within | self.segment.below(self.last);
         let goes_on = inside & !killed;
         self.looked.store_slice(&mut row.0[0]);

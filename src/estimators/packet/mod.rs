@@ -23,9 +23,11 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::DrawBuffer;
 use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
-use crate::media::{Control, Extinction, Piecewise};
-use crate::numeric::pack::{self, WIDTH};
-use crate::rng::{LANES, Lanes, PACKS, Stream, Streams, Xoshiro};
+use crate::media::{Control, Lookups, Piecewise};
+use crate::numeric::Twin;
+use crate::numeric::pack::WIDTH;
+use crate::numeric::twin::PAIR;
+use crate::rng::{LANES, Stream, Streams, Xoshiro};
 
 pub use decomposition::decomposition;
 pub use flight::flight;
@@ -40,10 +42,10 @@ const MOST_PIECES: usize = 12;
 const MOST_CONTROL_PIECES: usize = 8;
 
 /// Whether packets are faster than one draw after the other.
-pub(super) fn pays<M: Extinction>(sampling: &Piecewise, control: &Control) -> bool {
+pub(super) fn pays(medium: &Lookups, sampling: &Piecewise, control: &Control) -> bool {
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
     let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
-    M::IS_COSTLY || sampling.even().is_some() || few
+    medium.is_costly() || sampling.even().is_some() || few
 }
 
 /// What is to be drawn.
@@ -110,7 +112,7 @@ impl<S: Simd> Ahead<S> {
     }
 }
 
-/// Eight walks.
+/// Eight walks. A step flies all of them, has σ_t looked up where they come to, and lets them collide.
 trait Walks<S: Simd> {
     /// What reads their rows.
     type Reader: Reader;
@@ -118,8 +120,11 @@ trait Walks<S: Simd> {
     /// What reads their rows.
     fn reader(&self) -> Self::Reader;
 
-    /// One step of each; walks that end begin anew.
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends;
+    /// Each flies on; answers where σ_t is asked for: inside the support.
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S>;
+
+    /// What becomes of each, given σ_t there; walks that end begin anew.
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends;
 
     /// Whether all that happened so far is what these walks are made for.
     #[inline(always)]
@@ -152,19 +157,28 @@ impl<S: Simd> Window<S> {
         Self { ahead, rows: [Row::default(); STEPS], notes: Notes::empty(), before }
     }
 
+    /// The random numbers of a step.
     #[inline(always)]
-    #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
-    fn step<W: Walks<S>>(&mut self, step: usize, walks: &mut W, streams: &mut Xoshiro<u64x8<S>>) {
-        let now = if W::Reader::DECIDES {
+    fn numbers(
+        &mut self,
+        step: usize,
+        streams: &mut Xoshiro<u64x8<S>>,
+        decides: bool,
+    ) -> Numbers<S> {
+        if decides {
             // A step waits for the one before: logarithms, which wait for nothing, fill the time.
             self.ahead.exchange(step, streams)
         } else {
             let logarithm = self.ahead.logarithms[step];
             Numbers { depth: -logarithm, decision: logarithm }
-        };
-        let ends = walks.step(now, &mut self.rows[step]);
+        }
+    }
+
+    #[inline(always)]
+    #[allow(clippy::cast_possible_truncation)] // eight bits of a mask
+    fn note(&mut self, step: usize, ends: &Ends, decides: bool) {
         self.notes.ended[step] = ends.ended as u8;
-        if W::Reader::DECIDES {
+        if decides {
             self.notes.escaped[step] = ends.escaped as u8;
         }
     }
@@ -211,64 +225,41 @@ struct Draws<'a, R> {
 }
 
 /// Walks until every lane has made its draws; answers whether they are of use, see [`Walks::are_sound`].
+///
+/// Both packs of streams take each step together: one call looks σ_t up for sixteen lanes.
 #[inline(always)]
-fn run<S: Simd, W: Walks<S>>(simd: S, begin: impl Fn() -> W, request: Request) -> bool {
-    let Request { streams, count, buffer } = request;
-    let Some(ledger) = Ledger::open(count, streams.turn, buffer) else { return true };
-    let packs = streams.packs();
-    streams.turn = (streams.turn + count) % LANES;
-    let draws = Draws { ledger, reader: begin().reader(), lanes: &mut streams.lanes };
-    if pack::is_widest(simd) {
-        in_turn(simd, begin, &packs, draws)
-    } else {
-        one_after_the_other(simd, begin, &packs, draws)
-    }
-}
-
-/// The steps of the packs alternate.
-#[inline(always)]
-fn in_turn<S: Simd, W: Walks<S>>(
+fn run<S: Simd, W: Walks<S>>(
     simd: S,
     begin: impl Fn() -> W,
-    [first, second]: &[Lanes; PACKS],
-    mut draws: Draws<W::Reader>,
+    medium: &Lookups,
+    request: Request,
 ) -> bool {
+    let decides = W::Reader::DECIDES;
+    let Request { streams, count, buffer } = request;
+    let Some(ledger) = Ledger::open(count, streams.turn, buffer) else { return true };
+    let [first, second] = streams.packs();
+    streams.turn = (streams.turn + count) % LANES;
     let (mut walks, mut others) = (begin(), begin());
+    let mut draws = Draws { ledger, reader: walks.reader(), lanes: &mut streams.lanes };
     let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
-    let mut window = Window::open(simd, &mut streams, W::Reader::DECIDES);
-    let mut other_window = Window::open(simd, &mut other_streams, W::Reader::DECIDES);
+    let mut window = Window::open(simd, &mut streams, decides);
+    let mut other_window = Window::open(simd, &mut other_streams, decides);
     while draws.ledger.is_open(0) || draws.ledger.is_open(1) {
         let (next, other_next) = (streams, other_streams);
         for step in 0..STEPS {
-            window.step(step, &mut walks, &mut streams);
-            other_window.step(step, &mut others, &mut other_streams);
+            let numbers = window.numbers(step, &mut streams, decides);
+            let other_numbers = other_window.numbers(step, &mut other_streams, decides);
+            let mut places = [0.0; PAIR];
+            Twin(walks.fly(&numbers), others.fly(&other_numbers)).store_slice(&mut places);
+            medium.replace(&mut places);
+            let Twin(here, there) = Twin::from_slice(simd, &places);
+            let ends = walks.collide(here, &numbers, &mut window.rows[step]);
+            window.note(step, &ends, decides);
+            let ends = others.collide(there, &other_numbers, &mut other_window.rows[step]);
+            other_window.note(step, &ends, decides);
         }
         window.turn(simd, 0, next, &mut streams, &mut draws);
         other_window.turn(simd, 1, other_next, &mut other_streams, &mut draws);
     }
     walks.are_sound() && others.are_sound()
-}
-
-/// A pack makes all its draws before the next one begins.
-#[inline(always)]
-fn one_after_the_other<S: Simd, W: Walks<S>>(
-    simd: S,
-    begin: impl Fn() -> W,
-    packs: &[Lanes; PACKS],
-    mut draws: Draws<W::Reader>,
-) -> bool {
-    let mut are_sound = true;
-    for (pack, lanes) in packs.iter().enumerate() {
-        let (mut walks, mut streams) = (begin(), lanes.awake(simd));
-        let mut window = Window::open(simd, &mut streams, W::Reader::DECIDES);
-        while draws.ledger.is_open(pack) {
-            let next = streams;
-            for step in 0..STEPS {
-                window.step(step, &mut walks, &mut streams);
-            }
-            window.turn(simd, pack, next, &mut streams, &mut draws);
-        }
-        are_sound &= walks.are_sound();
-    }
-    are_sound
 }

@@ -5,7 +5,7 @@
 
 use std::marker::PhantomData;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::survival::Survivals;
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
@@ -14,21 +14,21 @@ use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::rules::{Collision, Met};
 use crate::estimators::walk::Books;
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Control, Extinction, Piecewise};
+use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or one draw after the other is faster.
-pub fn product<'a, P, M: Extinction, R: Collision>(
+pub fn product<'a, P, R: Collision>(
     level: Level,
     setup: &Setup<P>,
     rule: &R,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
     let (sampling, control) = (&setup.sampling, &setup.control);
-    if !pays::<M>(sampling, control) {
+    if !pays(medium, sampling, control) {
         return Some(request);
     }
     let begin = setup.control_transmittance;
@@ -36,49 +36,48 @@ pub fn product<'a, P, M: Extinction, R: Collision>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Product<'a, 'r, M, R> {
+struct Product<'a, 'r, R> {
     sampling: &'a Piecewise,
     control: &'a Control,
     begin: f64,
     rule: &'a R,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction, R: Collision> Task for Product<'_, '_, M, R> {
+impl<R: Collision> Task for Product<'_, '_, R> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, control, begin, rule, medium, request } = self;
-        let from = f64x8::splat(simd, sampling.begin().t);
-        let site = Site { rule, medium, control: Any::new(simd, control), begin, from };
-        match (sampling.even(), site.control.constant) {
-            (Some(even), Some(value)) => {
-                walk(simd, site.less(Constant(value)), Even::new(simd, even), request);
-            }
-            (Some(even), None) => walk(simd, site, Even::new(simd, even), request),
-            (None, _) => walk(simd, site, Pieces::new(simd, sampling), request),
+        let site = Site { rule, control: Subtracted::new(simd, control), begin };
+        match sampling.even() {
+            Some(even) => walk(simd, site, Even::new(simd, even), medium, request),
+            None => walk(simd, site, Pieces::new(simd, sampling), medium, request),
         }
     }
 }
 
 /// Walks without books where that is enough, else with them.
 #[inline(always)]
-fn walk<S: Simd, M: Extinction, R: Collision, K: Subtracted<S>, C: Course<S> + Copy>(
+fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
     simd: S,
-    site: Site<S, M, R, K>,
+    site: Site<S, R>,
     course: C,
+    medium: &Lookups,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
+    let all = mask64x8::splat(simd, true);
     if R::DECIDES && !R::WEIGHS {
         let before = streams.clone();
         let request = Request { streams: &mut *streams, count, buffer: &mut *buffer };
         let is_done = run(
             simd,
             #[inline(always)]
-            || Survivals::new(site, course),
+            || Survivals::new(site, course, all),
+            medium,
             request,
         );
         if is_done {
@@ -91,48 +90,31 @@ fn walk<S: Simd, M: Extinction, R: Collision, K: Subtracted<S>, C: Course<S> + C
     run(
         simd,
         #[inline(always)]
-        || Products { site, course, weight, books },
+        || Products { site, course, inside: all, weight, books },
+        medium,
         Request { streams, count, buffer },
     );
 }
 
 /// σ_c as the walks ask for it.
-pub(in crate::estimators) trait Subtracted<S: Simd>: Copy {
-    /// At the places reached.
-    fn at(&self, t: f64x8<S>) -> f64x8<S>;
-}
-
-/// One value: a branch in every step, even if it always goes one way, would keep the walks out of registers.
 #[derive(Clone, Copy)]
-struct Constant<S: Simd>(f64x8<S>);
-
-impl<S: Simd> Subtracted<S> for Constant<S> {
-    #[inline(always)]
-    fn at(&self, _: f64x8<S>) -> f64x8<S> {
-        self.0
-    }
-}
-
-/// Any.
-#[derive(Clone, Copy)]
-pub(in crate::estimators) struct Any<'a, S: Simd> {
+pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
     control: &'a Control,
     /// Its value, where there is only one.
     constant: Option<f64x8<S>>,
 }
 
-impl<'a, S: Simd> Any<'a, S> {
+impl<'a, S: Simd> Subtracted<'a, S> {
     /// What does not change is found here, not in every step.
     #[inline(always)]
     pub(in crate::estimators) fn new(simd: S, control: &'a Control) -> Self {
         let constant = control.single_value().map(|value| f64x8::splat(simd, value));
         Self { control, constant }
     }
-}
 
-impl<S: Simd> Subtracted<S> for Any<'_, S> {
+    /// At the places reached.
     #[inline(always)]
-    fn at(&self, t: f64x8<S>) -> f64x8<S> {
+    pub(in crate::estimators) fn at(&self, t: f64x8<S>) -> f64x8<S> {
         match self.constant {
             Some(constant) => constant,
             None => self.control.extinction(t),
@@ -141,63 +123,40 @@ impl<S: Simd> Subtracted<S> for Any<'_, S> {
 }
 
 /// What the walks of a product estimator meet.
-pub(super) struct Site<'a, S: Simd, M, R, K> {
+pub(super) struct Site<'a, S: Simd, R> {
     pub rule: &'a R,
-    medium: &'a M,
-    control: K,
+    control: Subtracted<'a, S>,
     pub begin: f64,
-    from: f64x8<S>,
 }
 
-impl<S: Simd, M, R, K: Copy> Clone for Site<'_, S, M, R, K> {
+impl<S: Simd, R> Clone for Site<'_, S, R> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Simd, M, R, K: Copy> Copy for Site<'_, S, M, R, K> {}
+impl<S: Simd, R> Copy for Site<'_, S, R> {}
 
-impl<'a, S: Simd, M, R, K> Site<'a, S, M, R, K> {
+impl<S: Simd, R> Site<'_, S, R> {
+    /// What is met at the places reached, given σ_t. Beyond the end it means nothing, and nobody asks for it.
     #[inline(always)]
-    pub(super) fn zero(&self) -> f64x8<S> {
-        self.from.each(0.0)
-    }
-
-    /// The same with another σ_c.
-    #[inline(always)]
-    fn less<L>(&self, control: L) -> Site<'a, S, M, R, L> {
-        let Self { rule, medium, begin, from, .. } = *self;
-        Site { rule, medium, control, begin, from }
-    }
-}
-
-impl<S: Simd, M: Extinction, R, K: Subtracted<S>> Site<'_, S, M, R, K> {
-    /// What is met at the places reached. Beyond the end it means nothing, and nobody asks for it.
-    #[inline(always)]
-    pub(super) fn met<C: Course<S>>(&self, course: &C) -> Met<f64x8<S>> {
-        let t = course.reached();
-        let residual = self.medium.extinction(t) - self.control.at(t);
+    pub(super) fn met<C: Course<S>>(&self, course: &C, extinction: f64x8<S>) -> Met<f64x8<S>> {
+        let residual = extinction - self.control.at(course.reached());
         Met { residual, sampling: course.sampling(), mean_free_path: course.mean_free_path() }
     }
 }
 
 /// The walks of a product estimator.
-struct Products<'a, S: Simd, M, R, K, C> {
-    site: Site<'a, S, M, R, K>,
+struct Products<'a, S: Simd, R, C> {
+    site: Site<'a, S, R>,
     course: C,
+    inside: mask64x8<S>,
     weight: f64x8<S>,
     books: Books<f64x8<S>>,
 }
 
-impl<S, M, R, K, C> Walks<S> for Products<'_, S, M, R, K, C>
-where
-    S: Simd,
-    M: Extinction,
-    R: Collision,
-    K: Subtracted<S>,
-    C: Course<S>,
-{
+impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, R, C> {
     type Reader = Weights<R>;
 
     #[inline(always)]
@@ -206,9 +165,15 @@ where
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(numbers.depth);
-        let met = self.site.met(&self.course);
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(numbers.depth);
+        self.course.reached()
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
+        let inside = self.inside;
+        let met = self.site.met(&self.course, extinction);
         let (ratio, outcome) = (met.ratio(), self.site.rule.at(met.ratio()));
         let goes_on = if R::DECIDES {
             inside & !self.site.rule.kills(&met, numbers.decision)

@@ -3,24 +3,24 @@
 //! Specification: draw j is, bit for bit, the draw that [`crate::estimators::scoring::walk`] makes from
 //! stream j mod 16.
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
 use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::scoring::{Score, Share};
 use crate::media::course::{Course, Even};
-use crate::media::{Extinction, even};
+use crate::media::{Lookups, even};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
 
 /// The draws of a next-flight estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or σ̂ is not constant.
-pub fn score<'a, P, M: Extinction, H: Share>(
+pub fn score<'a, P, H: Share>(
     level: Level,
     setup: &Setup<P>,
     share: &H,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
     let (even, value) = (setup.sampling.even(), setup.sampling.single_value());
@@ -30,15 +30,15 @@ pub fn score<'a, P, M: Extinction, H: Share>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Scored<'a, 'r, M, H> {
+struct Scored<'a, 'r, H> {
     sampling: &'a even::Even,
     unit: f64,
     share: &'a H,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction, H: Share> Task for Scored<'_, '_, M, H> {
+impl<H: Share> Task for Scored<'_, '_, H> {
     type Output = ();
 
     #[inline(always)]
@@ -48,30 +48,43 @@ impl<M: Extinction, H: Share> Task for Scored<'_, '_, M, H> {
         let end = f64x8::splat(simd, sampling.to);
         let rate = f64x8::splat(simd, sampling.value);
         let fresh = Score::open(share.of((end - from) * rate));
-        let course = Even::new(simd, sampling);
+        let (course, inside) = (Even::new(simd, sampling), mask64x8::splat(simd, true));
         run(
             simd,
             #[inline(always)]
-            || Scores { share, medium, unit, from, end, rate, course, fresh, score: fresh },
+            || Scores {
+                share,
+                unit,
+                from,
+                end,
+                rate,
+                course,
+                inside,
+                t: from,
+                fresh,
+                score: fresh,
+            },
+            medium,
             request,
         );
     }
 }
 
 /// The walks of a next-flight estimator.
-struct Scores<'a, S: Simd, M, H> {
+struct Scores<'a, S: Simd, H> {
     share: &'a H,
-    medium: &'a M,
     unit: f64,
     from: f64x8<S>,
     end: f64x8<S>,
     rate: f64x8<S>,
     course: Even<'a, S>,
+    inside: mask64x8<S>,
+    t: f64x8<S>,
     fresh: Score<f64x8<S>>,
     score: Score<f64x8<S>>,
 }
 
-impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
+impl<S: Simd, H: Share> Walks<S> for Scores<'_, S, H> {
     type Reader = Totals;
 
     #[inline(always)]
@@ -80,10 +93,16 @@ impl<S: Simd, M: Extinction, H: Share> Walks<S> for Scores<'_, S, M, H> {
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, row: &mut Row) -> Ends {
-        let inside = self.course.fly(numbers.depth);
-        let t = Lane::select(inside, self.course.reached(), self.from);
-        let ratio = self.medium.extinction(t) * self.course.mean_free_path();
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(numbers.depth);
+        self.t = Lane::select(self.inside, self.course.reached(), self.from);
+        self.t
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, _: &Numbers<S>, row: &mut Row) -> Ends {
+        let (inside, t) = (self.inside, self.t);
+        let ratio = extinction * self.course.mean_free_path();
         let score = self.score;
         score.total::<H>().store_slice(&mut row.0[0]);
         let next = score.collided(ratio, self.share.of((self.end - t) * self.rate));

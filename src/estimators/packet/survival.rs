@@ -7,40 +7,33 @@
 //! it hands nothing over, and its books show what they showed at the beginning. So none are kept, and a
 //! step notes nothing but who ended.
 
-use fearless_simd::{Simd, SimdMask, mask64x8};
+use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 
-use super::product::{Site, Subtracted};
+use super::product::Site;
 use super::{Ends, Numbers, Walks, ends};
 use crate::estimators::ledger::{Reader, Row};
 use crate::estimators::rules::Collision;
 use crate::estimators::walk::Books;
-use crate::media::{Course, Extinction};
+use crate::media::Course;
 use crate::numeric::Lane;
 
 /// The walks.
-pub(super) struct Survivals<'a, S: Simd, M, R, K, C> {
-    site: Site<'a, S, M, R, K>,
+pub(super) struct Survivals<'a, S: Simd, R, C> {
+    site: Site<'a, S, R>,
     course: C,
+    inside: mask64x8<S>,
     /// Where every ratio so far was in `[0, 1]`.
     balanced: mask64x8<S>,
 }
 
-impl<'a, S: Simd, M, R, K, C> Survivals<'a, S, M, R, K, C> {
+impl<'a, S: Simd, R, C> Survivals<'a, S, R, C> {
     #[inline(always)]
-    pub(super) fn new(site: Site<'a, S, M, R, K>, course: C) -> Self {
-        let zero = site.zero();
-        Self { site, course, balanced: zero.at_most(zero) }
+    pub(super) fn new(site: Site<'a, S, R>, course: C, all: mask64x8<S>) -> Self {
+        Self { site, course, inside: all, balanced: all }
     }
 }
 
-impl<S, M, R, K, C> Walks<S> for Survivals<'_, S, M, R, K, C>
-where
-    S: Simd,
-    M: Extinction,
-    R: Collision,
-    K: Subtracted<S>,
-    C: Course<S>,
-{
+impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Survivals<'_, S, R, C> {
     type Reader = Survivors;
 
     #[inline(always)]
@@ -50,9 +43,15 @@ where
     }
 
     #[inline(always)]
-    fn step(&mut self, numbers: Numbers<S>, _: &mut Row) -> Ends {
-        let inside = self.course.fly(numbers.depth);
-        let met = self.site.met(&self.course);
+    fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(numbers.depth);
+        self.course.reached()
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, _: &mut Row) -> Ends {
+        let inside = self.inside;
+        let met = self.site.met(&self.course, extinction);
         let (zero, residual) = (met.residual.each(0.0), met.residual);
         self.balanced &= !inside | (zero.at_most(residual) & residual.at_most(met.sampling));
         let goes_on = inside & !self.site.rule.kills(&met, numbers.decision);

@@ -77,20 +77,20 @@ macro_rules! walks {
         }
 
         #[inline(always)]
-        fn draw<M: $crate::media::Extinction>(
+        fn draw(
             &self,
             setup: &$crate::estimators::Setup<$crate::problems::Rod>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<$crate::problems::rod::Values> {
             $crate::estimators::rod::walk::draw(&$rule, setup, medium, rng)
         }
 
-        fn draw_packets<'a, M: $crate::media::Extinction>(
+        fn draw_packets<'a>(
             &self,
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<$crate::problems::Rod>,
-            medium: &M,
+            medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
             $crate::estimators::rod::packet::walks(level, setup, $rule, medium, request)

@@ -13,8 +13,8 @@ use super::walk::Fate;
 use crate::estimators::packet::Request;
 use crate::estimators::places::{self, Place, Places};
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::Extinction;
 use crate::media::even::Even;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Rod;
@@ -24,11 +24,12 @@ use crate::theory::ParticleRule;
 
 /// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or σ̂ has several values.
-pub fn walks<'a, M: Extinction>(
+#[must_use]
+pub fn walks<'a>(
     level: Level,
     setup: &Setup<Rod>,
     rule: ParticleRule,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
     let Some(sampling) = setup.sampling.even() else { return Some(request) };
@@ -36,15 +37,15 @@ pub fn walks<'a, M: Extinction>(
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
-struct Walks<'a, 'r, M> {
+struct Walks<'a, 'r> {
     setup: &'a Setup<Rod>,
     sampling: &'a Even,
     rule: ParticleRule,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Walks<'_, '_, M> {
+impl Task for Walks<'_, '_> {
     type Output = ();
 
     #[inline(always)]

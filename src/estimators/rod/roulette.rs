@@ -26,7 +26,7 @@
 use super::walk::{self, Steps};
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::Rod;
 use crate::problems::rod::{Seen, Values};
 use crate::rng::Stream;
@@ -89,12 +89,7 @@ impl Estimator<Rod> for Roulette {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Rod>,
-        medium: &M,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
+    fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
         walk::draw(self, setup, medium, rng)
     }
 }

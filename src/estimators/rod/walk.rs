@@ -10,7 +10,7 @@
 //! roulette where it is played. Eight at a time: [`super::packet`].
 
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::problems::Rod;
 use crate::problems::rod::{MOST, MOST_PARTS, Seen, Values};
 use crate::rng::Stream;
@@ -94,10 +94,10 @@ impl Fate {
 
 /// Makes one draw.
 #[inline(always)]
-pub fn draw<M: Extinction>(
+pub fn draw(
     steps: &impl Steps,
     setup: &Setup<Rod>,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
     let rod = &*setup.problem;

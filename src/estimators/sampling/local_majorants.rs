@@ -88,7 +88,7 @@ impl Recipe for LocalMajorants {
         match (self, site.body) {
             (Self::Segments(n), _) => Ok(on_segments(site, control, *n)),
             (Self::Grid(cells), Body::Volume { volume, ray, .. }) => {
-                in_cells(volume, ray, support, *cells)
+                in_cells(&**volume, ray, support, *cells)
             }
             (Self::Grid(_), Body::Line { .. }) => {
                 Err(Refusal::mismatch("a volume for its grid", "a field in 1-D"))

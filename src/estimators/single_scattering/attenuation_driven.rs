@@ -22,7 +22,7 @@ use super::Connection;
 use super::connection::{self, require_shadow};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::{Control, Extinction};
+use crate::media::{Control, Extinction, Lookups};
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
@@ -54,9 +54,9 @@ pub(super) fn scene(setup: &Setup<SingleScattering>, shadow: Tracking) -> Scene<
 /// Walks to the end and tells of every interaction point: where it is, `T̂ σ_t S/σ̂` and σ_t there.
 /// Answers the lookups.
 #[inline(always)]
-pub(super) fn interactions<M: Extinction>(
+pub(super) fn interactions(
     setup: &Setup<SingleScattering>,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
     mut tell: impl FnMut(f64, f64, &mut Stream),
 ) -> u32 {
@@ -100,10 +100,10 @@ impl Estimator<SingleScattering> for AttenuationDriven {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut draw = Draw::free([0.0], 0);

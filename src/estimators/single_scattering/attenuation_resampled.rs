@@ -17,7 +17,7 @@ use super::attenuation_driven::{interactions, require, scene};
 use super::connection;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -50,10 +50,10 @@ impl Estimator<SingleScattering> for AttenuationResampled {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let (mut sum, mut chosen) = (0.0, (0.0, 0.0));

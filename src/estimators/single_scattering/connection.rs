@@ -15,7 +15,7 @@
 use crate::catalogue::{Domain, Settings, number, rounded};
 use crate::estimators::{Inputs, Refusal, Setup};
 use crate::geometry::Ray;
-use crate::media::{Extinction, Volume};
+use crate::media::{Extinction, Lookups, Volume};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
@@ -147,10 +147,10 @@ impl Connection {
 
     /// `T̂ σ_t S T̂_shadow` at a point, and what it cost.
     #[inline(always)]
-    pub fn scatter<M: Extinction>(
+    pub fn scatter(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         s: f64,
         rng: &mut Stream,
     ) -> (f64, u32) {
@@ -170,9 +170,9 @@ impl Connection {
 
 /// The transmittance from the ray's origin, and its lookups.
 #[inline(always)]
-pub fn camera<M: Extinction>(
+pub fn camera(
     setup: &Setup<SingleScattering>,
-    medium: &M,
+    medium: &Lookups,
     along: Along,
     to: f64,
     rng: &mut Stream,

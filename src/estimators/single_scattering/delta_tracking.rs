@@ -19,7 +19,7 @@ use super::Connection;
 use super::connection::{self, require_shadow};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::{Extinction, OpticalDepth};
+use crate::media::{Extinction, Lookups, OpticalDepth};
 use crate::numeric::Span;
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
@@ -36,9 +36,9 @@ pub struct DeltaTracking {
 
 /// The first real collision, if there is one, and the lookups of the walk.
 #[inline(always)]
-pub(super) fn collide<M: Extinction>(
+pub(super) fn collide(
     setup: &Setup<SingleScattering>,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
 ) -> (Option<f64>, u32) {
     let mut cursor = setup.sampling.begin();
@@ -103,10 +103,10 @@ impl Estimator<SingleScattering> for DeltaTracking {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let (collision, walked) = collide(setup, medium, rng);

@@ -23,7 +23,7 @@ use super::connection::{self, require_shadow};
 use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::{Control, Extinction};
+use crate::media::{Control, Extinction, Lookups};
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
@@ -66,10 +66,10 @@ impl Estimator<SingleScattering> for SharedWalk {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let problem = &setup.problem;

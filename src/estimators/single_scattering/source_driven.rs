@@ -21,7 +21,7 @@
 use super::Connection;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -75,10 +75,10 @@ impl Estimator<SingleScattering> for SourceDriven {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let s = point(&setup.problem, rng.uniform());

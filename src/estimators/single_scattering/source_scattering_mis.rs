@@ -19,7 +19,7 @@ use super::main_part::{self, MainPart};
 use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -66,10 +66,10 @@ impl Estimator<SingleScattering> for SourceScatteringMis {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<SingleScattering>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let Some(main) = MainPart::of(setup) else { return Draw::free([0.0], 0) };

@@ -12,7 +12,7 @@
 //! time: [`super::packet`].
 
 use crate::estimators::{Draw, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
@@ -65,10 +65,10 @@ pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
 
 /// Makes one draw: reflectance and transmittance.
 #[inline(always)]
-pub fn draw<M: Extinction>(
+pub fn draw(
     steps: &impl Steps,
     setup: &Setup<Slab>,
-    medium: &M,
+    medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 2]> {
     let slab = &*setup.problem;

@@ -133,10 +133,10 @@ macro_rules! walker {
             }
 
             #[inline]
-            fn draw<M: $crate::media::Extinction>(
+            fn draw(
                 &self,
                 setup: &$crate::estimators::Setup<$Problem>,
-                _: &M,
+                _: &$crate::media::Lookups,
                 rng: &mut $crate::rng::Stream,
             ) -> $crate::estimators::Draw<<$Problem as $crate::problems::Problem>::Value> {
                 super::draw(&self.0, setup, rng)

@@ -18,7 +18,7 @@
 use super::particle::Particle;
 use crate::geometry::{Point, frame};
 use crate::media::majorants::Flight;
-use crate::media::{Field, Majorants, VolumeVisitor};
+use crate::media::{Majorants, Points};
 use crate::numeric::pack::in_fused_code;
 use crate::phase::Phase;
 use crate::problems::Scene;
@@ -156,7 +156,11 @@ pub fn walk(
     sink: &mut dyn Sink,
     rng: &mut Stream,
 ) -> u32 {
-    scene.volume.visit(Walk { steps: particle, scene, majorants, start, sink, rng })
+    let field = scene.volume.points();
+    in_fused_code(
+        #[inline(always)]
+        || Walk { steps: particle, scene, field, majorants, start, sink, rng }.follow(),
+    )
 }
 
 /// The same by any steps.
@@ -169,27 +173,21 @@ pub fn walk_by(
     sink: &mut dyn Sink,
     rng: &mut Stream,
 ) -> u32 {
-    scene.volume.visit(Walk { steps, scene, majorants, start, sink, rng })
+    let field = scene.volume.points();
+    in_fused_code(
+        #[inline(always)]
+        || Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
+    )
 }
 
 struct Walk<'a, S: ?Sized> {
     steps: &'a S,
     scene: &'a Scene,
+    field: Points<'a>,
     majorants: &'a Majorants,
     start: Start,
     sink: &'a mut dyn Sink,
     rng: &'a mut Stream,
-}
-
-impl<S: Steps + ?Sized> VolumeVisitor for Walk<'_, S> {
-    type Output = u32;
-
-    fn visit<F: Field>(mut self, field: &F) -> u32 {
-        in_fused_code(
-            #[inline(always)]
-            || self.follow(field),
-        )
-    }
 }
 
 /// A particle between two flights.
@@ -204,21 +202,20 @@ struct Traveller {
 
 impl<S: Steps + ?Sized> Walk<'_, S> {
     #[inline(always)]
-    fn follow<F: Field>(&mut self, field: &F) -> u32 {
+    fn follow(mut self) -> u32 {
         let (mut lookups, mut splits) = (0, 0);
         let mut waiting: Vec<Traveller> = Vec::new();
         let mut next = Some(Traveller { start: self.start, order: 0, depth: 0 });
         while let Some(traveller) = next.take().or_else(|| waiting.pop()) {
-            next = self.one_flight(field, traveller, (&mut lookups, &mut splits), &mut waiting);
+            next = self.one_flight(traveller, (&mut lookups, &mut splits), &mut waiting);
         }
         lookups
     }
 
     /// Flies until a particle leaves, is scattered or ends; what is scattered goes on.
     #[inline(always)]
-    fn one_flight<F: Field>(
+    fn one_flight(
         &mut self,
-        field: &F,
         mut traveller: Traveller,
         (lookups, splits): (&mut u32, &mut u32),
         waiting: &mut Vec<Traveller>,
@@ -236,7 +233,7 @@ impl<S: Steps + ?Sized> Walk<'_, S> {
                 return None;
             };
             *lookups += 1;
-            let ratio = field.extinction_at(place) / sampling;
+            let ratio = self.field.extinction(place) / sampling;
             let albedo = self.scene.albedo.at(place);
             self.sink.collided(&Collision { place, direction, weight, ratio, albedo });
             if self.steps.splits(traveller.depth, *splits) {

@@ -134,7 +134,7 @@ impl<'a> Seeker<'a> {
             return 0;
         }
         let volume = &self.sphere.scene().volume;
-        let (through, lookups) = connection::transmittance(volume, &ray, inside, shadow, rng);
+        let (through, lookups) = connection::transmittance(&**volume, &ray, inside, shadow, rng);
         self.found += weight * share * through;
         lookups
     }

@@ -28,7 +28,7 @@ use crate::catalogue::Settings;
 use crate::estimators::single_scattering::connection;
 use crate::estimators::space::Particle;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::Sphere;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -63,12 +63,7 @@ impl Estimator<Sphere> for NextEvent {
     }
 
     #[inline]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Sphere>,
-        _: &M,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
         super::draw_by(&self.particle, Some((&Honest, self.shadow)), setup, rng)
     }
 }

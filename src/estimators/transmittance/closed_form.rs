@@ -12,7 +12,7 @@
 
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::Lookups;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
 use crate::theory::prediction::transmittance;
@@ -54,12 +54,7 @@ impl Estimator<Transmittance> for ClosedForm {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
-        &self,
-        setup: &Setup<Transmittance>,
-        _: &M,
-        _: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, _: &Lookups, _: &mut Stream) -> Draw<[f64; 1]> {
         Draw::free([setup.transmittance], 0)
     }
 }

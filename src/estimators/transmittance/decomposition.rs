@@ -23,7 +23,7 @@ use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
-use crate::media::{Control, Extinction};
+use crate::media::{Control, Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
@@ -74,10 +74,10 @@ impl Estimator<Transmittance> for Decomposition {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let support = setup.mesh.support();
@@ -103,11 +103,11 @@ impl Estimator<Transmittance> for Decomposition {
         Draw::free([if stopped { 0.0 } else { Lane::exp(setup.log_unit) }], lookups)
     }
 
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let control = setup.control.extinction(setup.mesh.support().from);

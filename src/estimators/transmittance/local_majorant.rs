@@ -23,7 +23,7 @@ use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
@@ -57,10 +57,10 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut lookups = 0;
@@ -82,11 +82,11 @@ impl Estimator<Transmittance> for LocalMajorant {
         Draw::free([setup.control_transmittance], lookups)
     }
 
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         packet::majorants(level, setup, medium, request)

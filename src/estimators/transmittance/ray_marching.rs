@@ -25,7 +25,7 @@ use crate::catalogue::Settings;
 use crate::estimators::packet::Request;
 use crate::estimators::places;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Lane};
@@ -117,21 +117,21 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let u = if self.jitter { rng.uniform() } else { 0.5 };
         Draw::free([self.value(setup, medium, u)], self.steps)
     }
 
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let task = Marches { estimator: self, setup, medium, request };
@@ -140,14 +140,14 @@ impl Estimator<Transmittance> for RayMarching {
 }
 
 /// Eight marches side by side: each lane makes the draws of its stream.
-struct Marches<'a, 'r, M> {
+struct Marches<'a, 'r> {
     estimator: &'a RayMarching,
     setup: &'a Setup<Transmittance>,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Marches<'_, '_, M> {
+impl Task for Marches<'_, '_> {
     type Output = ();
 
     #[inline(always)]

@@ -14,7 +14,7 @@
 use super::closed_form::exact;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Extinction;
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
@@ -51,10 +51,10 @@ impl Estimator<Transmittance> for Regular {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<Transmittance>,
-        medium: &M,
+        medium: &Lookups,
         _: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let mut weight = 1.0;

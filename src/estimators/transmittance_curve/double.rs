@@ -26,7 +26,7 @@ use crate::estimators::packet::Request;
 use crate::estimators::rules::Weight;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::{Extinction, Medium};
+use crate::media::{Extinction, Lookups, Medium};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Address, Stream, exponential};
@@ -74,10 +74,10 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
     }
 
     #[inline(always)]
-    fn draw<M: Extinction>(
+    fn draw(
         &self,
         setup: &Setup<TransmittanceCurve>,
-        medium: &M,
+        medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<Values> {
         let distances = setup.problem.ascending();
@@ -105,11 +105,11 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         Draw { value: values, lookups, defect: books.defect(weight) }
     }
 
-    fn draw_packets<'a, M: Extinction>(
+    fn draw_packets<'a>(
         &self,
         level: Level,
         setup: &Setup<TransmittanceCurve>,
-        medium: &M,
+        medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         packet::curve(level, setup, medium, request)

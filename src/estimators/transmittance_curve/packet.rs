@@ -14,13 +14,13 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
-use crate::estimators::packet::product::{Any, Subtracted};
+use crate::estimators::packet::product::Subtracted;
 use crate::estimators::packet::{Request, pays};
 use crate::estimators::places::{self, Place, Places};
 use crate::estimators::walk::Books;
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::Extinction;
 use crate::media::course::{Course, Even, Pieces};
+use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::TransmittanceCurve;
@@ -29,25 +29,26 @@ use crate::rng::LANES;
 
 /// The draws of a curve, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or one draw after the other is faster.
-pub fn curve<'a, M: Extinction>(
+#[must_use]
+pub fn curve<'a>(
     level: Level,
     setup: &Setup<TransmittanceCurve>,
-    medium: &M,
+    medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays::<M>(&setup.sampling, &setup.control) {
+    if !pays(medium, &setup.sampling, &setup.control) {
         return Some(request);
     }
     pack::on_wide(level, Curves { setup, medium, request }).err().map(|task| task.request)
 }
 
-struct Curves<'a, 'r, M> {
+struct Curves<'a, 'r> {
     setup: &'a Setup<TransmittanceCurve>,
-    medium: &'a M,
+    medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<M: Extinction> Task for Curves<'_, '_, M> {
+impl Task for Curves<'_, '_> {
     type Output = ();
 
     #[inline(always)]
@@ -63,15 +64,15 @@ impl<M: Extinction> Task for Curves<'_, '_, M> {
 
 /// Walks until every lane has made its draws.
 #[inline(always)]
-fn walk<S: Simd, M: Extinction, C: Course<S> + Copy>(
+fn walk<S: Simd, C: Course<S> + Copy>(
     simd: S,
     setup: &Setup<TransmittanceCurve>,
-    medium: &M,
+    medium: &Lookups,
     course: C,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
-    let control = Any::new(simd, &setup.control);
+    let control = Subtracted::new(simd, &setup.control);
     let distances = setup.problem.ascending();
     let from = f64x8::splat(simd, setup.sampling.begin().t);
     let nowhere = f64x8::splat(simd, f64::NEG_INFINITY);

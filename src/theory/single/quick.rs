@@ -46,7 +46,7 @@ mod tests {
     use std::sync::Arc;
 
     use crate::geometry::{Point, Ray};
-    use crate::media::{Volume, eq21::Eq21};
+    use crate::media::eq21::Eq21;
     use crate::phase::{Phase, rayleigh::Rayleigh};
     use crate::problems::single_scattering::Lamp;
 
@@ -54,7 +54,7 @@ mod tests {
         let (origin, direction) = (Point([0.0, 0.0, -5.0]), Point([0.0, 0.0, 1.0]));
         let ray = Ray::new(origin, direction, 30.0).expect("a direction");
         let lamp = Lamp { position: Point([1.2, -0.8, 9.3]), power: 1.0 };
-        let (volume, phase) = (Arc::new(Volume::Eq21(Eq21)), Phase::Rayleigh(Rayleigh));
+        let (volume, phase) = (Arc::new(Eq21), Phase::Rayleigh(Rayleigh));
         SingleScattering::new(volume, ray, lamp, 0.7, phase).expect("off the line")
     }
 
@@ -75,7 +75,7 @@ mod tests {
         let (origin, direction) = (Point([0.0, 30.0, -5.0]), Point([0.0, 0.0, 1.0]));
         let ray = Ray::new(origin, direction, 30.0).expect("a direction");
         let lamp = Lamp { position: Point([1.2, -0.8, 9.3]), power: 1.0 };
-        let (volume, phase) = (Arc::new(Volume::Eq21(Eq21)), Phase::Rayleigh(Rayleigh));
+        let (volume, phase) = (Arc::new(Eq21), Phase::Rayleigh(Rayleigh));
         let problem = SingleScattering::new(volume, ray, lamp, 0.7, phase).expect("off the line");
         assert_eq!(radiance(&problem, 4).value, 0.0);
     }

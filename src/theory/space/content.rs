@@ -14,7 +14,7 @@
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::media::{Medium, Volume};
+use crate::media::{Medium, Smoothness, Volume};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
 use crate::numeric::{Known, Span};
@@ -67,7 +67,7 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
                 steps[steps.len() - 1]
             } else {
                 // Noise bends so little that caps of it do not count.
-                let is_even = is_smooth || matches!(volume, Volume::Noise(_));
+                let is_even = is_smooth || volume.smoothness() == Smoothness::SmoothCells;
                 let most = if is_even { 0.0 } else { volume.majorant(&within) };
                 settled(&steps, is_smooth) + most * chords.unseen(n)
             };
@@ -80,12 +80,12 @@ pub fn by_chords(volume: &Volume, most: f64) -> Option<Known> {
 
 /// Whether σ_t is a polynomial in cells along the axes.
 fn has_cells(volume: &Volume) -> bool {
-    matches!(volume, Volume::Grid(_) | Volume::Noise(_))
+    matches!(volume.smoothness(), Smoothness::SmoothCells | Smoothness::Cells)
 }
 
 /// Whether σ_t jumps or bends.
 fn has_kinks(volume: &Volume) -> bool {
-    has_cells(volume) || matches!(volume, Volume::PiecewiseConstant(_) | Volume::PiecewiseLinear(_))
+    volume.smoothness() != Smoothness::Smooth
 }
 
 /// What a sequence of resolutions is still off, by its last steps. Where the field is smooth, the last one
@@ -218,7 +218,7 @@ fn cuts(volume: &Volume, within: &Aabb, axis: usize) -> Vec<f64> {
             }
         }
         let ray = Ray { origin: Point(origin), direction, length: high[axis] - low[axis] };
-        let profile = std::sync::Arc::new(volume.along(&ray, ray.span()));
+        let profile = volume.along(&ray, ray.span());
         let breaks = Medium::new(profile, ray.span(), ray.span()).breaks();
         ends.extend(breaks.into_iter().map(|t| low[axis] + t));
     }
@@ -249,7 +249,7 @@ fn depth(volume: &Volume, within: &Aabb, x: f64, y: f64) -> Known {
     if inside.is_empty() {
         return Known::new(0.0, 0.0);
     }
-    let profile = std::sync::Arc::new(volume.along(&ray, inside));
+    let profile = volume.along(&ray, inside);
     Medium::new(profile, ray.span(), inside).optical_depth(inside)
 }
 
@@ -281,7 +281,7 @@ mod tests {
     #[test]
     fn the_sphere_of_equation_21_holds_what_it_holds() {
         // By 30-digit arithmetic over its Fourier sum.
-        let known = content(&Volume::Eq21(Eq21)).expect("bounded");
+        let known = content(&Eq21).expect("bounded");
         let off = (known.value - 709.156_283_921_427).abs();
         assert!(off < 1e-10 && off <= known.error + 1e-12, "{known:?}");
     }

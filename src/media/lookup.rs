@@ -1,0 +1,152 @@
+//! Lookups of σ_t through one indirect call for a batch of distances or points.
+//!
+//! What happens at a collision is compiled once per estimator and level of hardware, what σ_t is at a
+//! place once per field and level. A kernel writes the places of a batch, one call answers `σ_t` at all
+//! of them, and the kernel goes on: kernels and fields add up, they do not multiply. This is the
+//! *look up* of event-based tracking.
+//!
+//! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
+//! computers*, Progress in Nuclear Energy 14 (1984).
+
+use fearless_simd::{Level, Simd, SimdBase, f64x8};
+
+use super::{Extinction, Field};
+use crate::geometry::Point;
+use crate::numeric::pack::{self, Task, WIDTH, in_fused_code};
+use crate::numeric::twin::PAIR;
+use crate::numeric::{Lane, Twin};
+
+/// The lookups of one field on the hardware of one level.
+trait Batch: Send + Sync {
+    /// `σ_t` at one distance.
+    fn one(&self, t: f64) -> f64;
+
+    /// Replaces distances by `σ_t`; their number is a multiple of eight.
+    fn all(&self, t: &mut [f64]);
+}
+
+struct Compiled<'a, F, S> {
+    field: &'a F,
+    simd: S,
+}
+
+impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
+    fn one(&self, t: f64) -> f64 {
+        self.simd.vectorize(
+            #[inline(always)]
+            || self.field.extinction(t),
+        )
+    }
+
+    fn all(&self, t: &mut [f64]) {
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                let (pairs, rest) = t.as_chunks_mut::<PAIR>();
+                for pair in pairs {
+                    self.field.extinction(Twin::from_slice(self.simd, pair)).store_slice(pair);
+                }
+                for pack in rest.as_chunks_mut::<WIDTH>().0 {
+                    self.field.extinction(f64x8::from_slice(self.simd, pack)).store_slice(pack);
+                }
+            },
+        );
+    }
+}
+
+/// A field along a ray as kernels see it: `σ_t` in 1/length at distances inside the support.
+pub struct Lookups<'a> {
+    batch: Box<dyn Batch + 'a>,
+    single_value: Option<f64>,
+    is_costly: bool,
+}
+
+impl<'a> Lookups<'a> {
+    /// Those of a field on the hardware of a level.
+    #[must_use]
+    pub fn new<F: Extinction>(field: &'a F, level: Level) -> Self {
+        let (single_value, is_costly) = (field.single_value(), field.is_costly());
+        Self { batch: pack::on(level, Compile(field)), single_value, is_costly }
+    }
+
+    /// `σ_t`, where it has one value.
+    #[inline(always)]
+    #[must_use]
+    pub fn single_value(&self) -> Option<f64> {
+        self.single_value
+    }
+
+    /// See [`Extinction::is_costly`].
+    #[must_use]
+    pub fn is_costly(&self) -> bool {
+        self.is_costly
+    }
+
+    /// Replaces distances by `σ_t`; their number is a multiple of eight.
+    #[inline(always)]
+    pub fn replace(&self, t: &mut [f64]) {
+        match self.single_value {
+            Some(value) => t.fill(value),
+            None => self.batch.all(t),
+        }
+    }
+}
+
+impl Extinction for Lookups<'_> {
+    #[inline(always)]
+    fn extinction<L: Lane>(&self, t: L) -> L {
+        match self.single_value {
+            Some(value) => t.each(value),
+            None => t.replaced(
+                #[inline(always)]
+                |t| match t {
+                    [t] => *t = self.batch.one(*t),
+                    _ => self.batch.all(t),
+                },
+            ),
+        }
+    }
+}
+
+struct Compile<'a, F>(&'a F);
+
+impl<'a, F: Extinction> Task for Compile<'a, F> {
+    type Output = Box<dyn Batch + 'a>;
+
+    fn run<S: Simd>(self, simd: S) -> Self::Output {
+        Box::new(Compiled { field: self.0, simd })
+    }
+}
+
+/// The lookups of one field in space.
+trait AtPoint: Send + Sync {
+    /// `σ_t` at a point within the bounds.
+    fn one(&self, p: Point) -> f64;
+}
+
+impl<F: Field> AtPoint for F {
+    fn one(&self, p: Point) -> f64 {
+        in_fused_code(
+            #[inline(always)]
+            || self.extinction_at(p),
+        )
+    }
+}
+
+/// A field in space as kernels see it: `σ_t` in 1/length at points within the bounds.
+pub struct Points<'a>(&'a dyn AtPoint);
+
+impl<'a> Points<'a> {
+    /// Those of a field.
+    #[must_use]
+    pub fn new<F: Field>(field: &'a F) -> Self {
+        Self(field)
+    }
+
+    /// `σ_t` at a point.
+    #[inline(always)]
+    #[must_use]
+    pub fn extinction(&self, p: Point) -> f64 {
+        self.0.one(p)
+    }
+}
