@@ -21,6 +21,9 @@ trait Batch: Send + Sync {
     /// `σ_t` at one distance.
     fn one(&self, t: f64) -> f64;
 
+    /// Replaces the distances of two packs by `σ_t`.
+    fn pair(&self, t: &mut [f64; PAIR]);
+
     /// Replaces distances by `σ_t`; their number is a multiple of eight.
     fn all(&self, t: &mut [f64]);
 }
@@ -36,6 +39,13 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
             #[inline(always)]
             || self.field.extinction(t),
         )
+    }
+
+    fn pair(&self, t: &mut [f64; PAIR]) {
+        self.simd.vectorize(
+            #[inline(always)]
+            || self.field.extinction(Twin::from_slice(self.simd, t)).store_slice(t),
+        );
     }
 
     fn all(&self, t: &mut [f64]) {
@@ -80,6 +90,19 @@ impl<'a> Lookups<'a> {
     #[must_use]
     pub fn is_costly(&self) -> bool {
         self.is_costly
+    }
+
+    /// `σ_t` at the distances of two packs.
+    #[inline(always)]
+    #[must_use]
+    pub fn pair<S: Simd>(&self, simd: S, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+        if let Some(value) = self.single_value {
+            return Twin::splat(simd, value);
+        }
+        let mut row = [0.0; PAIR];
+        t.store_slice(&mut row);
+        self.batch.pair(&mut row);
+        Twin::from_slice(simd, &row)
     }
 
     /// Replaces distances by `σ_t`; their number is a multiple of eight.

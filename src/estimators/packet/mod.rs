@@ -26,7 +26,6 @@ use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::Twin;
 use crate::numeric::pack::WIDTH;
-use crate::numeric::twin::PAIR;
 use crate::rng::{LANES, Stream, Streams, Xoshiro};
 
 pub use decomposition::decomposition;
@@ -249,10 +248,8 @@ fn run<S: Simd, W: Walks<S>>(
         for step in 0..STEPS {
             let numbers = window.numbers(step, &mut streams, decides);
             let other_numbers = other_window.numbers(step, &mut other_streams, decides);
-            let mut places = [0.0; PAIR];
-            Twin(walks.fly(&numbers), others.fly(&other_numbers)).store_slice(&mut places);
-            medium.replace(&mut places);
-            let Twin(here, there) = Twin::from_slice(simd, &places);
+            let places = Twin(walks.fly(&numbers), others.fly(&other_numbers));
+            let Twin(here, there) = medium.pair(simd, places);
             let ends = walks.collide(here, &numbers, &mut window.rows[step]);
             window.note(step, &ends, decides);
             let ends = others.collide(there, &other_numbers, &mut other_window.rows[step]);
