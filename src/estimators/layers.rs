@@ -96,7 +96,7 @@ pub fn draw(
                 pack::on(level, Place { placement, chance, sites: &mut *sites });
                 let length = sites.length;
                 sites.extinction[..length].copy_from_slice(&sites.t[..length]);
-                medium.replace(&mut sites.extinction[..length]);
+                medium.replace_all(&mut sites.extinction[..length]);
                 if decides {
                     pack::on(level, Decide { fate: &mut fate, sites });
                 }

@@ -295,7 +295,7 @@ impl<R: Collision> Task for Layer<'_, R> {
             for pair in &mut *batch {
                 integers(&mut places).times_plus(unit, from).store_slice(pair);
             }
-            medium.replace(batch.as_flattened_mut());
+            medium.replace_all(batch.as_flattened_mut());
             is_unknown |= flock.meet(
                 simd,
                 rule,

@@ -40,11 +40,11 @@ impl Control {
             Self::None => extinction.fill(0.0),
             Self::Pieces(pieces) => {
                 extinction.copy_from_slice(at);
-                pieces.lookups(level).replace(extinction);
+                pieces.lookups(level).replace_all(extinction);
             }
             Self::Field(field) => {
                 extinction.copy_from_slice(at);
-                field.lookups(level).replace(extinction);
+                field.lookups(level).replace_all(extinction);
                 let support = field.support();
                 for (extinction, &t) in extinction.iter_mut().zip(at) {
                     if t < support.from || t > support.to {

@@ -21,10 +21,10 @@ trait Batch: Send + Sync {
     /// `σ_t` at one distance.
     fn one(&self, t: f64) -> f64;
 
-    /// Replaces the distances of two packs by `σ_t`.
+    /// Replaces the distances of two packs by `σ_t`, with the bits of [`Batch::one`].
     fn pair(&self, t: &mut [f64; PAIR]);
 
-    /// Replaces distances by `σ_t`; their number is a multiple of eight.
+    /// Replaces distances by `σ_t`, to rounding; their number is a multiple of eight.
     fn all(&self, t: &mut [f64]);
 }
 
@@ -44,7 +44,11 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
     fn pair(&self, t: &mut [f64; PAIR]) {
         self.simd.vectorize(
             #[inline(always)]
-            || self.field.extinction(Twin::from_slice(self.simd, t)).store_slice(t),
+            || {
+                // Not as twins: draws along the ray have the bits of scalars.
+                let Twin(first, second) = Twin::from_slice(self.simd, t);
+                Twin(self.field.extinction(first), self.field.extinction(second)).store_slice(t);
+            },
         );
     }
 
@@ -105,9 +109,17 @@ impl<'a> Lookups<'a> {
         Twin::from_slice(simd, &row)
     }
 
-    /// Replaces distances by `σ_t`; their number is a multiple of eight.
-    #[inline(always)]
+    /// Replaces distances by `σ_t`, with the bits that each has by itself.
     pub fn replace(&self, t: &mut [f64]) {
+        let (pairs, rest) = t.as_chunks_mut();
+        pairs.iter_mut().for_each(|pair| self.batch.pair(pair));
+        rest.iter_mut().for_each(|t| *t = self.batch.one(*t));
+    }
+
+    /// The same to rounding and faster, for draws that no others have to equal; their number is a multiple
+    /// of eight.
+    #[inline(always)]
+    pub fn replace_all(&self, t: &mut [f64]) {
         match self.single_value {
             Some(value) => t.fill(value),
             None => self.batch.all(t),

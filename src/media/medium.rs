@@ -6,7 +6,6 @@ use fearless_simd::Level;
 
 use super::inverse::Table;
 use super::{Extinction, Inverse, Lookups, Profile};
-use crate::numeric::pack::WIDTH;
 use crate::numeric::{Known, Lane, Span};
 
 /// A field along one ray, zero outside its support.
@@ -73,13 +72,9 @@ impl Medium {
     /// `σ_t` at many distances inside the support.
     #[must_use]
     pub fn extinctions(&self, at: &[f64]) -> Vec<f64> {
-        {
-            let mut found = at.to_vec();
-            found.resize(at.len().next_multiple_of(WIDTH), at.last().copied().unwrap_or_default());
-            self.lookups(Level::new()).replace(&mut found);
-            found.truncate(at.len());
-            found
-        }
+        let mut found = at.to_vec();
+        self.lookups(Level::new()).replace(&mut found);
+        found
     }
 
     /// `σ_t` inside the support, for kernels on the hardware of a level.
