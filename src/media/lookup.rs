@@ -112,8 +112,12 @@ impl<'a> Lookups<'a> {
     /// Replaces distances by `σ_t`, with the bits that each has by itself.
     pub fn replace(&self, t: &mut [f64]) {
         let (pairs, rest) = t.as_chunks_mut();
-        pairs.iter_mut().for_each(|pair| self.batch.pair(pair));
-        rest.iter_mut().for_each(|t| *t = self.batch.one(*t));
+        for pair in pairs {
+            self.batch.pair(pair);
+        }
+        for t in rest {
+            *t = self.batch.one(*t);
+        }
     }
 
     /// The same to rounding and faster, for draws that no others have to equal; their number is a multiple
