@@ -71,8 +71,8 @@ struct Scattered {
     rounding: f64,
 }
 
-/// Given the powers, the lookups and the relative rounding of a power at a node.
-fn scattered(scene: &Scene, at: &dyn Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
+/// `at` answers the powers, the lookups and the relative rounding of a power at a node.
+fn scattered(scene: &Scene, at: impl Fn(&Node) -> ([f64; 4], [f64; 4], f64)) -> Scattered {
     let mut parts = [MOMENT; 12];
     parts[4..8].fill(LOOKUPS);
     parts[8..].fill(f64::INFINITY);
@@ -95,7 +95,7 @@ fn of_shadow(node: &Node) -> [f64; 5] {
 /// Scattered at collisions: `p = σ̂`, and the lookups are the cumulants of a compound Poisson number, moments
 /// of what each collision costs.
 fn scattered_at_collisions(scene: &Scene) -> Scattered {
-    scattered(scene, &|node| {
+    scattered(scene, |node: &Node| {
         let [sampling, _] = scene.camera.collision(node.s, node.extinction);
         if sampling <= 0.0 {
             return ([0.0; 4], [0.0; 4], 0.0);
@@ -116,14 +116,14 @@ fn powers_of_sum(
     scored: &dyn Fn(&At, f64, usize) -> f64,
 ) -> Vec<Solved> {
     let mut known: Vec<Solved> = Vec::new();
-    for k in 1..=most {
+    for (k, binomial) in BINOMIAL.iter().enumerate().take(most + 1).skip(1) {
         let loss = |losses: &Losses| if signed { losses.signed[k] } else { losses.sizes[k] };
         let solved = chain.solve(&loss, &|at, p, i| {
             let [sampling, h, weight] = gain(at);
             let weight = if signed { weight } else { weight.abs() };
             let lower = |n: usize| if n == 0 { 1.0 } else { known[n - 1].at[p][i] };
             let term =
-                |j: usize| BINOMIAL[k][j] * scored(at, h, j) * power(weight, k - j) * lower(k - j);
+                |j: usize| binomial[j] * scored(at, h, j) * power(weight, k - j) * lower(k - j);
             sampling * (1..=k).map(term).sum::<f64>()
         });
         known.push(solved);
@@ -213,7 +213,7 @@ pub fn at_points(scene: &Scene, count: usize, density: &dyn Fn(&Node) -> f64) ->
         let p = density(node);
         p * power(node.extinction * node.source / p, k) * node.shadow.powers[k]
     };
-    let found = scattered(scene, &|node| {
+    let found = scattered(scene, |node: &Node| {
         let shadow = of_shadow(node);
         let from_first = [1, 2, 3, 4];
         let powers = from_first.map(|k| scored(node, k) * node.camera.powers[k]);
