@@ -32,6 +32,7 @@ use crate::media::body::RayNeed;
 use crate::media::{Body, Medium, Volume};
 
 /// The radiance along a ray into a furnace.
+#[derive(Clone)]
 pub struct Furnace {
     scene: Scene,
     entry: Point,
@@ -83,12 +84,6 @@ impl Problem for Furnace {
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        let scene = self.scene.with_albedo(albedo);
-        Some(Self {
-            scene,
-            medium: self.medium.clone(),
-            entry: self.entry,
-            direction: self.direction,
-        })
+        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
     }
 }

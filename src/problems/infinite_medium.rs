@@ -35,6 +35,7 @@ pub use super::rod::Values;
 const MOST_RADII: usize = 8;
 
 /// A point source in a homogeneous medium without end.
+#[derive(Clone)]
 pub struct InfiniteMedium {
     scene: Scene,
     medium: Medium,
@@ -115,7 +116,6 @@ impl Problem for InfiniteMedium {
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        let (medium, radii) = (self.medium.clone(), self.radii.clone());
-        Some(Self { scene: self.scene.with_albedo(albedo), medium, radii, ..*self })
+        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
     }
 }

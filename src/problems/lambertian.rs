@@ -46,6 +46,7 @@ use crate::numeric::Known;
 pub use super::rod::Values;
 
 /// A body under light from all sides.
+#[derive(Clone)]
 pub struct Lambertian {
     scene: Scene,
     medium: Medium,
@@ -130,8 +131,7 @@ impl Problem for Lambertian {
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        let content = self.content.clone();
-        Some(Self { scene: self.scene.with_albedo(albedo), medium: self.medium.clone(), content })
+        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
     }
 }
 

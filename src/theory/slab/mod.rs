@@ -36,24 +36,30 @@ pub use walk::{Existence, Walk};
 
 /// What becomes of light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Energy {
+pub struct Shares<T> {
     /// The share that comes back.
-    pub reflected: f64,
+    pub reflected: T,
     /// The share that passes, unscattered light included.
-    pub transmitted: f64,
+    pub transmitted: T,
     /// The score of its collisions.
-    pub score: f64,
+    pub score: T,
 }
 
-/// What becomes of light, with error bounds.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Answer {
-    /// The share that comes back.
-    pub reflected: Known,
-    /// The share that passes, unscattered light included.
-    pub transmitted: Known,
-    /// The score of its collisions.
-    pub score: Known,
+/// Without error bounds.
+pub type Energy = Shares<f64>;
+
+/// With error bounds.
+pub type Answer = Shares<Known>;
+
+impl<T> Shares<T> {
+    /// Made one by one, given how each is taken from others.
+    fn each<U>(of: impl Fn(fn(&Shares<U>) -> &U) -> T) -> Self {
+        Self {
+            reflected: of(|shares| &shares.reflected),
+            transmitted: of(|shares| &shares.transmitted),
+            score: of(|shares| &shares.score),
+        }
+    }
 }
 
 impl Answer {
@@ -159,9 +165,9 @@ pub fn solve_all(
     let thin = if depth > 0.0 { (THIN / depth).max(1.0) } else { 1.0 };
     let answer = |i: usize| {
         // What is known of the first layer and of rounding is added.
-        let known = |of: &dyn Fn(&Energy) -> f64| {
-            let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(of);
-            let half = half.as_ref().map_or(fine, |half| of(&half[i]));
+        Answer::each(|of: fn(&Energy) -> &f64| {
+            let [fine, coarse, coarsest] = [&fine[i], &coarse[i], &coarsest[i]].map(|all| *of(all));
+            let half = half.as_ref().map_or(fine, |half| *of(&half[i]));
             let [of_coarsest, of_half] = resolution.gains;
             let differences = (SAFETY * (fine - coarse).abs())
                 .max((fine - coarsest).abs() / of_coarsest)
@@ -170,12 +176,7 @@ pub fn solve_all(
                 fine,
                 thin * differences + thick * (resolution.first_layer + ROUNDING) * fine.abs(),
             )
-        };
-        Answer {
-            reflected: known(&|energy| energy.reflected),
-            transmitted: known(&|energy| energy.transmitted),
-            score: known(&|energy| energy.score),
-        }
+        })
     };
     Some((0..lights.len()).map(answer).collect())
 }
@@ -258,12 +259,10 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
             Light::Collimated(cosine) => 4.0 + 1.0 / cosine,
             Light::Diffuse => 6.0,
         };
-        let blurred = |known: Known| Known::new(known.value, known.error + steepest * depth.error);
-        Answer {
-            reflected: blurred(answer.reflected),
-            transmitted: blurred(answer.transmitted),
-            score: blurred(answer.score),
-        }
+        Answer::each(|of: fn(&Answer) -> &Known| {
+            let known = of(&answer);
+            Known::new(known.value, known.error + steepest * depth.error)
+        })
     };
     Some(answers.into_iter().zip(lights).map(blurred).collect())
 }
