@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[path = "../../tests/common/mutated.rs"]
+#[path = "../../tests/it/common/mutated.rs"]
 mod mutated;
 
 fuzz_target!(|text: &str| {

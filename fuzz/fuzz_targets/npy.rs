@@ -4,7 +4,7 @@
 
 use libfuzzer_sys::fuzz_target;
 
-#[path = "../../tests/common/grids.rs"]
+#[path = "../../tests/it/common/grids.rs"]
 mod grids;
 
 fuzz_target!(|bytes: &[u8]| {

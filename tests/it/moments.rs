@@ -1,8 +1,6 @@
 //! Predictions against numbers from another arithmetic: see `tests/data/README.md`.
 
-mod common;
-
-use common::{differs, none, predicted, row};
+use crate::common::{differs, none, predicted, row};
 use trueflight::estimators::rules::{Single, Weight};
 use trueflight::media::{Control, Medium, Piecewise};
 use trueflight::numeric::Span;
@@ -17,7 +15,7 @@ struct Reference {
 
 impl Reference {
     fn all() -> Vec<Self> {
-        let file = include_str!("data/transmittance-moments.csv");
+        let file = include_str!("../data/transmittance-moments.csv");
         let mut reader = csv::Reader::from_reader(file.as_bytes());
         let words = |record: &csv::StringRecord| record.iter().map(str::to_owned).collect();
         let columns: Vec<String> = words(reader.headers().expect("a header"));
@@ -68,7 +66,7 @@ impl Reference {
 }
 
 fn mesh(name: &str) -> Mesh {
-    Mesh::new(common::medium(match name {
+    Mesh::new(crate::common::medium(match name {
         "const" => "medium.constant.extinction = 0.5\nspan = [0, 4]",
         "pwc" => {
             "medium.piecewise-constant = { breaks = [0, 2, 3, 6, 6.5, 10], \

@@ -1,8 +1,6 @@
 //! Slabs against reference values that were computed by other means: reflectance, transmittance, the
 //! H-function and the second moments of walks.
 
-mod common;
-
 use serde::Deserialize;
 
 use trueflight::numeric::Known;
@@ -36,7 +34,7 @@ struct Params {
 const COSINES: [f64; 6] = [0.1, 0.3, 0.5, 0.7, 0.9, 1.0];
 
 fn references() -> Vec<Reference> {
-    serde_json::from_str(include_str!("data/slabs.json")).expect("the reference values")
+    serde_json::from_str(include_str!("../data/slabs.json")).expect("the reference values")
 }
 
 /// The phase function of a slab, and how near its values must come.
@@ -149,7 +147,7 @@ fn second_moments_that_predict_prints_are_those_of_the_references() {
     for reference in references().iter().filter(|r| r.id.starts_with("spm_slab/")) {
         let (_, rule, sampling, thickness) = walk(reference);
         for (cosine, expected) in [(0.5, &reference.value[..2]), (1.0, &reference.value[2..])] {
-            let rows = common::predicted(&format!(
+            let rows = crate::common::predicted(&format!(
                 "title = \"a slab\"\n[problem.slab]\nmedium.constant.extinction = 1\n\
                  span = [0, {thickness}]\nalbedo = {}\nphase.isotropic = {{}}\n\
                  incidence.collimated.cosine = {cosine}\nsampling.constant.value = {sampling}\n\

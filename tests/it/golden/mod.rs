@@ -1,6 +1,6 @@
 //! Every report of one fixed record, byte for byte.
 //!
-//! `UPDATE_GOLDEN=1 cargo test --test golden` rewrites the files; look at what changed before you
+//! `UPDATE_GOLDEN=1 cargo test --test it golden` rewrites the files; look at what changed before you
 //! commit it.
 
 mod bench;

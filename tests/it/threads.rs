@@ -1,8 +1,6 @@
 //! Results are the same to the byte on any number of threads.
 
-mod common;
-
-use common::{case, judged, options};
+use crate::common::{case, judged, options};
 use trueflight::harness::Case;
 
 const DRAWS: u64 = 50_000;

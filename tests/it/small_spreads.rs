@@ -1,8 +1,6 @@
 //! Correct estimators at the edge of what doubles resolve: none of them may fail.
 
-mod common;
-
-use common::{case, judged, options, rows, verdict};
+use crate::common::{case, judged, options, rows, verdict};
 use trueflight::harness::record::{Row, Verdict};
 use trueflight::harness::{Amount, Options};
 

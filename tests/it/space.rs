@@ -1,9 +1,7 @@
 //! Walks in space: exact answers against reference values that were computed by other means, what is
 //! skipped, and the draws of every shipped case.
 
-mod common;
-
-use common::{case, none, options};
+use crate::common::{case, none, options};
 use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
@@ -50,7 +48,7 @@ impl Reference {
 
 fn references(prefix: &str) -> Vec<Reference> {
     let all: Vec<Reference> =
-        serde_json::from_str(include_str!("data/space.json")).expect("the reference values");
+        serde_json::from_str(include_str!("../data/space.json")).expect("the reference values");
     let found: Vec<Reference> =
         all.into_iter().filter(|reference| reference.id.starts_with(prefix)).collect();
     assert!(!found.is_empty(), "no {prefix}");
@@ -180,7 +178,7 @@ fn walks_are_refused_where_nothing_is_known_of_them() {
 fn a_volume_without_bounds_is_a_mistake_with_a_cure() {
     let text =
         furnace("volume.constant = { extinction = 1 }", 0.5, "isotropic = {}", "particle = {}");
-    let error = common::mistakes(&text).expect("a mistake").render(false);
+    let error = crate::common::mistakes(&text).expect("a mistake").render(false);
     assert!(error.contains("never leave a volume without bounds"), "{error}");
     assert!(error.contains("bounds.sphere"), "{error}");
 }
@@ -188,7 +186,8 @@ fn a_volume_without_bounds_is_a_mistake_with_a_cure() {
 #[test]
 fn what_no_page_takes_is_a_mistake_with_its_place() {
     let wrong = |text: &str, expected: &str| {
-        let error = common::mistakes(text).map(|error| error.render(false)).unwrap_or_default();
+        let error =
+            crate::common::mistakes(text).map(|error| error.render(false)).unwrap_or_default();
         assert!(error.contains(expected), "{expected} is not in: {error}");
     };
     let eq21 = |estimator: &str| furnace("volume.eq21 = {}", 0.5, "isotropic = {}", estimator);
@@ -218,7 +217,7 @@ fn what_no_page_takes_is_a_mistake_with_its_place() {
     wrong(&infinite("volume.eq21 = {}", "isotropic = {}", " = 0.5"), "has no end");
     let field = ".constant = { extinction = 0.5 }";
     wrong(&infinite(whole, "isotropic = {}", field), "albedo");
-    assert!(common::mistakes(&infinite(whole, "isotropic = {}", " = 0.5")).is_none());
+    assert!(crate::common::mistakes(&infinite(whole, "isotropic = {}", " = 0.5")).is_none());
 }
 
 #[test]
@@ -293,7 +292,7 @@ fn rays_that_are_not_walked_need_not_be_given() {
     ];
     for (problem, scene, whole, part) in forms {
         let drawn = |ray: &str| {
-            common::rows(
+            crate::common::rows(
                 &format!(
                     "title = \"rays\"\n[problem.{problem}]\n{scene}\n{ray}\n\
                      sampling.constant.value = 2\nestimators = [{{ particle.rule = \"analog\" }}]"
@@ -316,11 +315,11 @@ fn rays_that_are_not_walked_need_not_be_given() {
     let text = "title = \"rays\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
                 ray = { origin = [0, 0, 0], direction = [0, 0, 1] }\n\
                 estimators = [{ closed-form = {} }]";
-    let wrong = common::mistakes(text).expect("a mistake").render(false);
+    let wrong = crate::common::mistakes(text).expect("a mistake").render(false);
     assert!(wrong.contains("`length` is missing"), "{wrong}");
     let text = "title = \"rays\"\n[problem.furnace]\nvolume.eq21 = {}\nalbedo = 1\n\
                 phase.isotropic = {}\nsampling.constant.value = 1\n\
                 estimators = [{ particle.rule = \"analog\" }]";
-    let wrong = common::mistakes(text).expect("a mistake").render(false);
+    let wrong = crate::common::mistakes(text).expect("a mistake").render(false);
     assert!(wrong.contains("`ray` is missing"), "{wrong}");
 }

@@ -1,8 +1,6 @@
 //! What a scene does not need is skipped, and no number changes by it.
 
-mod common;
-
-use common::{case, options};
+use crate::common::{case, options};
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
 use trueflight::harness::reuse::Kept;
@@ -148,7 +146,7 @@ fn what_has_changed_is_drawn_anew() {
         trueflight::harness::Options { seed: 4, ..options.clone() },
         trueflight::harness::Options { alpha: 1e-5, ..options.clone() },
         trueflight::harness::Options { fixed: true, ..options.clone() },
-        common::options(3, 300_000),
+        crate::common::options(3, 300_000),
     ] {
         assert_eq!(kept.count(&Plan::new(&same, &changed))[0], 0);
     }

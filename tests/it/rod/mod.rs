@@ -1,12 +1,10 @@
 //! The rod against numbers from another arithmetic, see `tests/data/README.md`, and against a second
 //! way to find them.
 
-#[path = "../common/mod.rs"]
-mod common;
 mod riccati;
 mod settings;
 
-use common::{case, differs, none, options};
+use crate::common::{case, differs, none, options};
 use serde_json::Value;
 use trueflight::harness::record::{Row, Verdict};
 use trueflight::harness::{Plan, verdict};
@@ -17,7 +15,7 @@ const EQ21: &str = "volume.eq21 = {}
 /// A value of `rod-values.json`.
 fn reference(id: &str) -> Vec<Value> {
     let all: Vec<Value> =
-        serde_json::from_str(include_str!("../data/rod-values.json")).expect("JSON");
+        serde_json::from_str(include_str!("../../data/rod-values.json")).expect("JSON");
     all.into_iter().filter(|entry| entry["id"] == id).collect()
 }
 
@@ -369,11 +367,11 @@ fn a_truth_that_is_not_known_passes_nothing() {
     let rows = planned(text, "analog");
     let through = rows.iter().find(|row| row.channel == "transmittance").expect("a row");
     assert_ne!(through.verdict, Some(Verdict::Pass));
-    let case = common::case(
+    let case = crate::common::case(
         "unknown",
         &format!("title = \"t\"\n[problem.rod]\n{text}\nestimators = [{{ analog = {{}} }}]"),
     );
-    let record = common::judged(&[case], &common::options(1, 20_000));
+    let record = crate::common::judged(&[case], &crate::common::options(1, 20_000));
     let through = record.results.cases[0].rows.iter().find(|row| row.channel == "transmittance");
     assert_ne!(through.and_then(|row| row.verdict), Some(Verdict::Pass));
 }

@@ -4,9 +4,7 @@
 //! addition: values, lookups, defects, and where the streams are left. Below those levels the same
 //! kernels round differently and are judged like any estimator.
 
-mod common;
-
-use common::{case, none, options, shipped};
+use crate::common::{case, none, options, shipped};
 use fearless_simd::Level;
 use trueflight::estimators::{DrawBuffer, Kernel, Order};
 use trueflight::harness::plan::Planned;
@@ -233,8 +231,9 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
     let mut plan = Plan::new(&cases, &options(1, 50_000));
     for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
         if let Ok(ready) = &mut planned.outcome {
-            let experiment = std::mem::replace(&mut ready.experiment, Box::new(common::Nothing));
-            ready.experiment = Box::new(common::At { experiment, level: Level::baseline() });
+            let experiment =
+                std::mem::replace(&mut ready.experiment, Box::new(crate::common::Nothing));
+            ready.experiment = Box::new(crate::common::At { experiment, level: Level::baseline() });
             // Each by itself: what is put in its place shares no lookups.
             planned.places = None;
         }
@@ -285,7 +284,7 @@ fn order_free_draws_do_not_depend_on_the_level() {
 #[test]
 fn order_free_draws_have_the_law_of_the_ordered_ones() {
     let cases = order_free();
-    let record = common::judged(&cases, &options(1, 60_000));
+    let record = crate::common::judged(&cases, &options(1, 60_000));
     let rows: Vec<&Row> = record.results.cases.iter().flat_map(|case| &case.rows).collect();
     let failed: Vec<String> = rows
         .iter()
@@ -308,7 +307,7 @@ fn order_free_draws_say_so() {
         medium.constant.extinction = 1.0\nspan = [0, 2]\nsampling.constant.value = 2.5
         estimators = [{ ratio = {} }, { ratio.kernel = \"ordered\" },
                       { single.rule = \"clamped\" }, { next-flight = {} }]";
-    let rows = common::rows(text, 1_000_000);
+    let rows = crate::common::rows(text, 1_000_000);
     let names: Vec<&str> = rows.iter().map(|row| row.estimator.as_str()).collect();
     assert_eq!(
         names,
@@ -329,7 +328,8 @@ fn an_order_free_kernel_that_is_not_there_is_a_mistake() {
             sampling.constant.value = 1.5\nestimators = [{{ next-flight.kernel = \"{kernel}\" }}]"
         )
     };
-    let message = |kernel: &str| common::mistakes(&text(kernel)).map(|error| error.render(false));
+    let message =
+        |kernel: &str| crate::common::mistakes(&text(kernel)).map(|error| error.render(false));
     assert!(message("ordered").is_none());
     let missing = message("order-free").expect("a mistake");
     assert!(missing.contains("`next-flight` has no order-free kernel"), "{missing}");
@@ -348,13 +348,13 @@ const SWEEP: &str = "title = \"sweep\"\nkernel = \"order-free\"\n[problem.transm
 #[test]
 fn shared_lookups_change_no_draw() {
     let sweep = [case("sweep", SWEEP)];
-    let all = common::judged(&sweep, &options(3, 90_000));
+    let all = crate::common::judged(&sweep, &options(3, 90_000));
     let all = &all.results.cases[0].rows;
     let mut shared = 0;
     for pattern in ["*:ratio*", "*:double*", "*:woodcock*", "*:single*"] {
         let filter = Filter::new(pattern);
         let filter = Some(filter.expect("a pattern"));
-        let alone = common::judged(&sweep, &Options { filter, ..options(3, 90_000) });
+        let alone = crate::common::judged(&sweep, &Options { filter, ..options(3, 90_000) });
         for row in &alone.results.cases[0].rows {
             let same = |other: &&Row| {
                 (&other.estimator, &other.sampling_kind, other.swept)
@@ -376,7 +376,7 @@ fn order_free_draws_of_too_many_collisions_are_refused() {
     let text = "title = \"many\"\n[problem.transmittance]
         medium.constant.extinction = 5.0\nspan = [0, 4]\nsampling.constant.value = 1e6
         estimators = [{ woodcock.kernel = \"order-free\" }, { woodcock = {} }]";
-    let rows = common::predicted(text);
+    let rows = crate::common::predicted(text);
     assert_eq!(rows[0].verdict, Some(Verdict::Refused));
     assert!(rows[0].reason.contains("order-free"), "{}", rows[0].reason);
     assert_eq!(rows[1].verdict, None, "{}", rows[1].reason);

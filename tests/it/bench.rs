@@ -1,13 +1,11 @@
 //! `trueflight bench`: figures that agree with each other, results that do not depend on time or
 //! threads, exit codes, and stored benches.
 
-mod common;
-
 use std::path::Path;
 use std::process::Output;
 
+use crate::common::{case, options};
 use assert_cmd::Command;
-use common::{case, options};
 use tempfile::TempDir;
 use trueflight::bench::figures::ERRORS;
 use trueflight::bench::record::{Bench, BenchRow};

@@ -4,9 +4,7 @@
 //! makes the z-scores of its kind large together, long before a single one fails; one that is too
 //! large makes them small, which no single check would ever see.
 
-mod common;
-
-use common::{ALPHA, judged, none, options, shipped};
+use crate::common::{ALPHA, judged, none, options, shipped};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trueflight::harness::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;

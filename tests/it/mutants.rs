@@ -2,11 +2,9 @@
 //! names, at the suite's levels and within its draws; its honest twin makes the estimator's own
 //! draws and passes; and no check of the catalogue is without a bug that it catches.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{none, options};
+use crate::common::{none, options};
 use trueflight::harness::checks;
 use trueflight::harness::{Case, Plan, suite};
 use trueflight::mutants;

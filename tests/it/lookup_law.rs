@@ -1,15 +1,13 @@
 //! The probabilities of the numbers of lookups against closed forms.
 
-mod common;
-
-use common::{differs, none};
+use crate::common::{differs, none};
 use trueflight::estimators::rules::{Null, Single, Weight};
 use trueflight::media::{Control, Piecewise};
 use trueflight::theory::product::Product;
 use trueflight::theory::{CountLaw, Mesh, Rule};
 
 fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountLaw {
-    let mesh = Mesh::new(common::medium(medium));
+    let mesh = Mesh::new(crate::common::medium(medium));
     let sampling = Piecewise::constant(sampling, mesh.support());
     let product = Product { killing, ..Product::new(&mesh, &sampling, &Control::None, rule) };
     product.predict().lookups.expect("a law")

@@ -1,6 +1,7 @@
 //! Cases written as text, read, predicted, drawn and judged.
 
-#![allow(dead_code)] // each test file uses its own part
+pub mod grids;
+pub mod mutated;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

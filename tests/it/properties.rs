@@ -2,14 +2,10 @@
 //!
 //! The random numbers are proptest's with a fixed seed: every run tests the same cases.
 
-mod common;
-#[path = "common/mutated.rs"]
-mod mutated;
-
 use std::path::Path;
 
-use common::{case, medium, options};
-use mutated::{mutated, reads_or_names_the_place};
+use crate::common::mutated::{mutated, reads_or_names_the_place};
+use crate::common::{case, medium, options};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use trueflight::harness::plan::Planned;

@@ -15,14 +15,12 @@
 //! Equation numbers: Szirmay-Kalos et al., *Unbiased Light Transport Estimators for Inhomogeneous
 //! Participating Media*, Computer Graphics Forum 36 (2017).
 
-#[path = "../common/mod.rs"]
-mod common;
 mod field;
 mod ode;
 mod rule;
 mod volterra;
 
-use common::differs;
+use crate::common::differs;
 use field::{
     Field, Shape, atmosphere, blob, constant, explorers, hills, homogeneous, layers, lines,
     no_control, smooth, steps, twin, waves,
@@ -83,7 +81,7 @@ impl Scene {
         let entries: Vec<String> =
             estimators().iter().map(|estimator| format!("{{ {} }}", estimator.text)).collect();
         let medium = self.medium.text.replace("constant.value", "constant.extinction");
-        common::case(
+        crate::common::case(
             "equation14",
             &format!(
                 "title = \"t\"\n[problem.transmittance]\nmedium.{medium}\nspan = [0, {}]\n\
@@ -250,7 +248,7 @@ fn check_all(scenes: &[Scene], least: usize) {
         differences.extend(found);
         compared += count;
     }
-    common::none(&differences);
+    crate::common::none(&differences);
     assert!(compared >= least, "only {compared} predictions were compared");
 }
 
@@ -344,7 +342,7 @@ fn eq21(t: f64) -> f64 {
 
 #[test]
 fn eq_21_by_equation_14() {
-    let case = common::case(
+    let case = crate::common::case(
         "eq21",
         "title = \"t\"\n[problem.transmittance]\nvolume.eq21 = {}\n\
          ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\n\
@@ -373,5 +371,5 @@ fn eq_21_by_equation_14() {
             .expect("it exists");
         differences.extend(compare(&format!("estimator {index} of Eq. 21"), &found, expected));
     }
-    common::none(&differences);
+    crate::common::none(&differences);
 }

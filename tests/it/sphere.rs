@@ -1,11 +1,9 @@
 //! Balls against reference values that were computed by other means: escape probabilities, radiances
 //! under an environment, a black light sphere and a point source, and draws of all of them.
 
-mod common;
-
 use serde::Deserialize;
 
-use common::{case, judged, mistakes, none, options, predicted, rows};
+use crate::common::{case, judged, mistakes, none, options, predicted, rows};
 use trueflight::harness::Plan;
 use trueflight::harness::record::Verdict;
 use trueflight::theory::sphere::ball::Ball;
@@ -27,7 +25,7 @@ const PRINTED: f64 = 6e-13;
 
 fn references(light: &str) -> Vec<Reference> {
     let all: Vec<Reference> =
-        serde_json::from_str(include_str!("data/spheres.json")).expect("the reference values");
+        serde_json::from_str(include_str!("../data/spheres.json")).expect("the reference values");
     let found: Vec<Reference> = all.into_iter().filter(|r| r.light == light).collect();
     assert!(found.len() >= 2);
     found

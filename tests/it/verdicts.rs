@@ -1,8 +1,6 @@
 //! The gate: what passes, what is caught, what is too short, and what is never drawn.
 
-mod common;
-
-use common::{case, finding, judged, options, row, rows, verdict};
+use crate::common::{case, finding, judged, options, row, rows, verdict};
 use trueflight::harness::Record;
 use trueflight::harness::record::{Results, Verdict};
 use trueflight::report::console::{self, View, layout::Pen};
@@ -264,11 +262,11 @@ fn what_is_the_same_by_definition_is_drawn_once() {
         )
     };
     let double = "{ double = {} }";
-    let rows = common::rows(
+    let rows = crate::common::rows(
         &text(&format!("{{ ratio = {{}} }}, {double}, {{ residual-ratio = {{}} }}")),
         100_000,
     );
-    let alone = common::rows(&text(double), 100_000);
+    let alone = crate::common::rows(&text(double), 100_000);
     assert_eq!([&rows[0].same_as, &rows[1].same_as, &rows[2].same_as], ["", "ratio", ""]);
     assert_eq!(alone[0].same_as, "", "there is no other");
     for row in [&rows[1], &alone[0]] {

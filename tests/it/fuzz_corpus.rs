@@ -2,19 +2,14 @@
 //! inputs: seconds in the tests, and as long as `FUZZ_SECONDS` says.
 //!
 //! ```text
-//! FUZZ_SECONDS=600 cargo test --release --test fuzz_corpus
+//! FUZZ_SECONDS=600 cargo test --release --test it fuzz_corpus
 //! ```
-
-#[path = "common/grids.rs"]
-mod grids;
-#[path = "common/mutated.rs"]
-mod mutated;
 
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use grids::{good, reads_or_refuses};
-use mutated::{Choices, mutated, reads_or_names_the_place};
+use crate::common::grids::{good, reads_or_refuses};
+use crate::common::mutated::{Choices, mutated, reads_or_names_the_place};
 
 /// Runs a target on the seeds 0, 1, … until the time is over; answers how many and how many were read.
 fn for_some_time(share: f64, mut target: impl FnMut(u64) -> bool) -> [u64; 2] {

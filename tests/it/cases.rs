@@ -1,10 +1,8 @@
 //! Every case file of the repository can be read, planned and drawn, and is not refuted.
 
-mod common;
-
 use std::collections::BTreeSet;
 
-use common::{judged, none, options, shipped};
+use crate::common::{judged, none, options, shipped};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Plan, Record, suite};
 

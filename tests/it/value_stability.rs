@@ -1,15 +1,13 @@
 //! The first draws of every estimator from seed 1, to the bit.
 //!
 //! A change detector and nothing more: it says that draws have changed, not that they were right.
-//! After a change that is meant, `TRUEFLIGHT_FIRST_DRAWS=write cargo test --test value_stability`
+//! After a change that is meant, `TRUEFLIGHT_FIRST_DRAWS=write cargo test --test it value_stability`
 //! writes the file anew; the difference belongs in the same commit as its reason.
-
-mod common;
 
 use std::fmt::Write;
 use std::path::Path;
 
-use common::{case, options};
+use crate::common::{case, options};
 use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
@@ -257,7 +255,7 @@ fn the_first_draws_have_not_changed() {
         .filter(|(before, now)| before != now)
         .map(|(before, now)| format!("- {before}\n+ {now}"))
         .collect();
-    common::none(&changed);
+    crate::common::none(&changed);
     assert_eq!(before.lines().count(), now.lines().count(), "estimators came or went");
 }
 

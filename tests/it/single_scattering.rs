@@ -1,8 +1,6 @@
 //! Single scattering: the radiance against independent values, and predictions against draws.
 
-mod common;
-
-use common::{case, mistakes, options, row, rows};
+use crate::common::{case, mistakes, options, row, rows};
 use serde::Deserialize;
 use serde_json::Value;
 use trueflight::harness::Plan;
@@ -28,7 +26,7 @@ struct Params {
 }
 
 fn values() -> Vec<Reference> {
-    serde_json::from_str(include_str!("data/single-scattering.json")).expect("values")
+    serde_json::from_str(include_str!("../data/single-scattering.json")).expect("values")
 }
 
 fn case_of(value: &Reference, estimators: &str) -> trueflight::harness::Case {
@@ -135,7 +133,7 @@ fn a_thin_medium_scatters_by_the_angle_that_the_light_sees() {
 #[test]
 fn a_lamp_in_a_ball_shines_as_the_integral_equation_says() {
     let balls: Vec<Value> =
-        serde_json::from_str(include_str!("data/spheres.json")).expect("values");
+        serde_json::from_str(include_str!("../data/spheres.json")).expect("values");
     let mut seen = 0;
     for ball in balls.iter().filter(|ball| ball["light"] == "point") {
         let (volume, albedo) = match ball["ball"].as_str() {
@@ -251,7 +249,7 @@ fn cases_without_an_answer_are_mistakes() {
 #[test]
 fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
     let of = |estimator: &str| {
-        common::predicted(&format!(
+        crate::common::predicted(&format!(
             "title = \"cameras\"
             [problem.single-scattering]
             volume.constant.extinction = 0.8

@@ -1,8 +1,6 @@
 //! Optical depths of catalogued fields against 30-digit quadrature: see `tests/data/README.md`.
 
-mod common;
-
-use common::{differs, none};
+use crate::common::{differs, none};
 
 /// A field and a ray of `data/optical-depths.json` as a case writes them.
 struct Line {
@@ -91,7 +89,7 @@ const LINES: &[Line] = &[
 ];
 
 fn reference(id: &str) -> f64 {
-    let file = include_str!("data/optical-depths.json");
+    let file = include_str!("../data/optical-depths.json");
     let entries: Vec<serde_json::Value> = serde_json::from_str(file).expect("JSON");
     let entry = entries.iter().find(|entry| entry["id"] == id);
     entry.and_then(|entry| entry["value"].as_f64()).unwrap_or_else(|| panic!("no {id}"))
@@ -100,7 +98,7 @@ fn reference(id: &str) -> f64 {
 #[test]
 fn optical_depths_agree_with_quadrature_in_30_digits() {
     let differences = LINES.iter().filter_map(|line| {
-        let medium = common::medium(line.text);
+        let medium = crate::common::medium(line.text);
         let depth = medium.optical_depth(medium.span());
         let exact = reference(line.id) / line.scale + line.shift;
         let rounding = f64::EPSILON * exact;
@@ -119,6 +117,6 @@ fn optical_depths_agree_with_quadrature_in_30_digits() {
 
 #[test]
 fn every_reference_is_used() {
-    let file = include_str!("data/optical-depths.json");
+    let file = include_str!("../data/optical-depths.json");
     assert_eq!(file.matches("\"id\"").count(), LINES.len());
 }

@@ -1,7 +1,5 @@
 //! Every setting of a rod is read, and each mistake is told.
 
-use crate::common;
-
 #[test]
 fn every_setting_is_checked() {
     let rod = |line: &str| {
@@ -9,7 +7,7 @@ fn every_setting_is_checked() {
             "title = \"a rod\"\n[problem.rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\n{line}
             sampling.constant.value = 2\nestimators = [{{ analog = {{}} }}]"
         );
-        common::mistakes(&text).map(|error| error.render(false))
+        crate::common::mistakes(&text).map(|error| error.render(false))
     };
     assert_eq!(rod("albedo = 0.5\nforward = 0.2\nabsorbed = true\norders = 2"), None);
     for (line, expected) in [

@@ -1,8 +1,6 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
-mod common;
-
-use common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
+use crate::common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
 use trueflight::estimators::rules::Weight;
 use trueflight::harness::record::{Row, Verdict};
 use trueflight::harness::{Options, Plan, curves, verdict};
@@ -24,7 +22,7 @@ fn predictions(text: &str) -> Vec<Prediction> {
 fn the_clock_of_a_curve_in_a_homogeneous_medium() {
     // σ_t = 1/2, σ̂ = 1: r = 1/2 and X(s)/T(s) = e^{s/2} 2^{−N}, N ~ Poisson(s), so that
     // E[(X/T)^k] = exp(s(k/2 − 1 + 2^{−k})) and J₂(s) = s/4.
-    let mesh = Mesh::new(common::medium("medium.constant.extinction = 0.5\nspan = [0, 3]"));
+    let mesh = Mesh::new(crate::common::medium("medium.constant.extinction = 0.5\nspan = [0, 3]"));
     let sampling = Piecewise::constant(1.0, mesh.support());
     let product = Product::new(&mesh, &sampling, &Control::None, &Weight);
     let prediction = curve::predict(&product, &[1.0, 3.0]);

@@ -1,0 +1,35 @@
+//! The integration tests: one binary, a module a topic.
+
+mod architecture;
+mod baseline;
+mod bench;
+mod calibration;
+mod cases;
+mod channels;
+mod check;
+mod cli;
+mod common;
+mod equation14;
+mod fuzz_corpus;
+mod golden;
+mod judge;
+mod junit;
+mod lookup_law;
+mod media_laws;
+mod moments;
+mod mutants;
+mod optical_depth;
+mod packets;
+mod properties;
+mod render;
+mod rod;
+mod single_scattering;
+mod skips;
+mod slab;
+mod small_spreads;
+mod space;
+mod sphere;
+mod stress;
+mod threads;
+mod value_stability;
+mod verdicts;
