@@ -10,7 +10,7 @@
 //! `tests/packets.rs` and `tests/verdicts.rs`.
 
 use cpu_time::ProcessTime;
-use trueflight::harness::reuse::Kept;
+use trueflight::harness::cache::Cache;
 use trueflight::harness::{Amount, Case, Options, Plan, Source, run};
 
 /// Draws per experiment.
@@ -110,14 +110,14 @@ fn main() {
         println!("{:<46} {:>9} {:>9} {:>8}", "", "ns, with", "without", "ratio");
         for pair in &pairs {
             let plans = [&pair.skipping, &pair.whole].map(|cases| plan(cases));
-            report(pair.name, || plans.each_ref().map(|plan| time(plan, &Kept::default())));
+            report(pair.name, || plans.each_ref().map(|plan| time(plan, &Cache::default())));
         }
         let cases = [eq21("kept", both)];
         let plan = plan(&cases);
-        let mut kept = Kept::new("this program");
+        let mut kept = Cache::new("this program");
         kept.keep(&plan, &run::draw(&plan, &|_| {}));
         report("an experiment drawn by an earlier run", || {
-            [time(&plan, &kept), time(&plan, &Kept::default())]
+            [time(&plan, &kept), time(&plan, &Cache::default())]
         });
     });
 }
@@ -127,9 +127,9 @@ fn plan(cases: &[Case]) -> Plan<'_> {
 }
 
 /// Processor seconds of the drawing.
-fn time(plan: &Plan, kept: &Kept) -> f64 {
+fn time(plan: &Plan, kept: &Cache) -> f64 {
     let begin = ProcessTime::now();
-    std::hint::black_box(run::draw_the_rest(plan, kept, &|_| {}));
+    std::hint::black_box(run::draw_uncached(plan, kept, &|_| {}));
     begin.elapsed().as_secs_f64()
 }
 

@@ -9,7 +9,7 @@ use super::record::{BenchRow, CurvePoint, Times};
 use super::spread::Spread;
 use crate::estimators::Refusal;
 use crate::harness::plan::Planned;
-use crate::harness::scenario::Ready;
+use crate::harness::ready::Ready;
 use crate::theory::Channel;
 
 /// A relative variance below this is rounding.

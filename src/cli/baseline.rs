@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::anyhow;
 use clap::Args;
-use trueflight::harness::baseline::compare::{Comparison, Rules, compare};
 use trueflight::harness::baseline::{Baseline, fingerprint};
+use trueflight::harness::baseline::{Comparison, Rules, compare};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
 use trueflight::report::changes;

@@ -9,8 +9,8 @@ use anyhow::Context;
 use indicatif::ProgressBar;
 use trueflight::files;
 use trueflight::harness::baseline::fingerprint;
+use trueflight::harness::cache::Cache;
 use trueflight::harness::record::Record;
-use trueflight::harness::reuse::Kept;
 use trueflight::harness::{Plan, run, verdict};
 
 use super::{Console, output};
@@ -20,21 +20,21 @@ const KEPT: &str = "draws.bin";
 
 /// Draws a plan and judges it.
 pub fn draw(plan: &Plan, console: &Console) -> Record {
-    draw_the_rest(plan, &mut Kept::default(), console)
+    draw_uncached(plan, &mut Cache::default(), console)
 }
 
 /// Draws what has not been kept, keeps it, and judges all.
-pub fn draw_the_rest(plan: &Plan, kept: &mut Kept, console: &Console) -> Record {
+pub fn draw_uncached(plan: &Plan, kept: &mut Cache, console: &Console) -> Record {
     let begin = Instant::now();
     let bar = progress(plan, console);
-    let draws = run::draw_the_rest(plan, kept, &|draws| bar.inc(draws));
+    let draws = run::draw_uncached(plan, kept, &|draws| bar.inc(draws));
     bar.finish_and_clear();
     kept.keep(plan, &draws);
     verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
 /// What this program has drawn for the results in a folder.
-pub fn kept(out: &Path) -> anyhow::Result<Kept> {
+pub fn kept(out: &Path) -> anyhow::Result<Cache> {
     let path = out.join(KEPT);
     let bytes = match fs::read(&path) {
         Ok(bytes) => bytes,
@@ -45,11 +45,11 @@ pub fn kept(out: &Path) -> anyhow::Result<Kept> {
             return Err(error).with_context(cure);
         }
     };
-    Ok(Kept::read(&bytes, &fingerprint()?))
+    Ok(Cache::read(&bytes, &fingerprint()?))
 }
 
 /// Writes what was drawn beside the results.
-pub fn keep(kept: &Kept, out: &Path) -> anyhow::Result<()> {
+pub fn keep(kept: &Cache, out: &Path) -> anyhow::Result<()> {
     let path = out.join(KEPT);
     let bytes = kept.bytes().with_context(|| format!("cannot encode {}", path.display()))?;
     files::replace(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))

@@ -63,7 +63,7 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let (record, [reused, ready]) = selection.on_threads(|| {
         let plan = selection.plan(&cases, &options)?;
         let counts = kept.count(&plan);
-        Ok((drawing::draw_the_rest(&plan, &mut kept, console), counts))
+        Ok((drawing::draw_uncached(&plan, &mut kept, console), counts))
     })?;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Vec::new();

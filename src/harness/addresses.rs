@@ -1,21 +1,17 @@
 //! Where experiments find their random numbers: addresses made of names.
 
-use super::case::Case;
-use super::scenario::{Names, Variation};
+use super::names::Names;
+use super::sweep::Variation;
 use crate::rng::{Address, name_hash};
 
-/// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
-/// the theory's line and the experiments on it learn the same σ̂.
-#[must_use]
-pub fn pilots(seed: u64, case: &Case, estimator: usize) -> Address {
-    own(seed, &case.name, &case.scenario.names(estimator, None), None, estimator)
-}
+/// Draws per block, always.
+pub const BLOCK: u64 = 1 << 14;
 
-/// Where order-free experiments of a case find the places of their collisions, if these are as likely
-/// anywhere in the same places: whatever the estimator, the control and σ̂.
+/// Where order-free experiments of a case find their collisions, if these are as likely anywhere on
+/// the same stretches: whatever the estimator, the control and σ̂.
 #[must_use]
-pub fn places(seed: u64, case: &str, even_places: &str) -> Address {
-    let experiment = name_hash(&format!("{case}|places{even_places}"));
+pub fn shared(seed: u64, case: &str, stretches: &str) -> Address {
+    let experiment = name_hash(&format!("{case}|places{stretches}"));
     Address { seed, experiment, block: 0, lane: 0 }
 }
 

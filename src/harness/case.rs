@@ -30,27 +30,17 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::scenario::{AnyScenario, Scenario};
+use super::addresses;
+use super::estimator::{Defaults, read_expect, read_kernel};
+use super::options::Tolerance;
+use super::problem;
+use super::scenario::Scenario;
 use super::source::{CaseError, Source};
 use super::sweep::SweepAxis;
-use super::written::Usual;
 use crate::catalogue::{Domain, Page, Settings};
-use crate::estimators::Order;
 use crate::media::Body;
-use crate::problems::{self, Problem, each_problem};
-use crate::rng::name_hash;
-
-macro_rules! readers {
-    ($($module:ident :: $Problem:ident,)*) => {
-        [$(Scenario::<problems::$Problem>::read),*]
-    };
-}
-
-macro_rules! rays {
-    ($($module:ident :: $Problem:ident,)*) => {
-        [$(<problems::$Problem as Problem>::RAY),*]
-    };
-}
+use crate::problems;
+use crate::rng::{Address, name_hash};
 
 /// A case file, read.
 pub struct Case {
@@ -63,7 +53,7 @@ pub struct Case {
     /// The problem's name in the catalogue.
     pub problem: String,
     /// The problem with its medium and estimators.
-    pub scenario: Box<dyn AnyScenario>,
+    pub scenario: Scenario,
     /// What is swept.
     pub sweep: Option<SweepAxis>,
     /// How many draws each experiment makes, if the case says.
@@ -74,25 +64,6 @@ pub struct Case {
     pub allow_underpowered: bool,
     /// A hash of the file's text.
     pub digest: u64,
-}
-
-/// The smallest relative differences that must be seen; `None` where the case does not say.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Tolerance {
-    /// Of the mean, relative to the truth.
-    pub mean: Option<f64>,
-    /// Of the variance, relative to the prediction.
-    pub variance: Option<f64>,
-    /// Of the lookups, relative to the prediction.
-    pub lookups: Option<f64>,
-}
-
-impl Tolerance {
-    /// Whether the case has any.
-    #[must_use]
-    pub fn says_something(&self) -> bool {
-        *self != Self::default()
-    }
 }
 
 impl Case {
@@ -135,16 +106,16 @@ impl Case {
         let order = read_kernel(root);
         let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
         let problem = root.chosen("problem", &names).and_then(|(index, settings)| {
-            let body = Body::read_for(&settings, each_problem!(rays)[index]);
+            let kind = problem::kind(index);
+            let body = Body::read_for(&settings, kind.ray);
             let sweep = read_sweep(&settings);
-            let usual = Usual {
+            let defaults = Defaults {
                 expect_biased: expect_biased.unwrap_or_default(),
                 order: order.unwrap_or_default(),
                 sampling: false,
             };
             let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-            let read = each_problem!(readers)[index];
-            let scenario = read(&settings, body.as_ref(), usual, swept);
+            let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults, swept);
             settings.close();
             Some((names[index].clone(), scenario?, sweep?))
         });
@@ -176,6 +147,14 @@ impl Case {
         })
     }
 
+    /// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
+    /// the theory's line and the experiments on it learn the same σ̂.
+    #[must_use]
+    pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
+        let names = self.scenario.names(estimator, None);
+        addresses::own(seed, &self.name, &names, None, estimator)
+    }
+
     /// Reads every case of a file, or of a folder and those below it, in the order of the names.
     ///
     /// # Errors
@@ -201,7 +180,7 @@ impl Case {
     }
 }
 
-fn files(path: &Path) -> Result<Vec<std::path::PathBuf>, CaseError> {
+fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
     let unreadable = |cause| CaseError::Unreadable { path: path.display().to_string(), cause };
     if !path.is_dir() {
         return Ok(vec![path.to_owned()]);
@@ -228,17 +207,6 @@ fn files(path: &Path) -> Result<Vec<std::path::PathBuf>, CaseError> {
         return Err(CaseError::Empty { path: path.display().to_string() });
     }
     Ok(found)
-}
-
-/// Reads `expect = "biased"`; `None` after a mistake.
-pub(super) fn read_expect(settings: &Settings) -> Option<bool> {
-    settings.word_or("expect", &["unbiased", "biased"], "unbiased").map(|word| word == "biased")
-}
-
-/// Reads `kernel = "order-free"`; `None` after a mistake.
-pub(super) fn read_kernel(settings: &Settings) -> Option<Order> {
-    let words = Order::ALL.map(Order::word);
-    settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
 }
 
 #[allow(clippy::option_option)] // the outer `None` is a recorded mistake

@@ -2,13 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::addresses;
 use super::case::Case;
+use super::names::Names;
 use super::options::Options;
 use super::plan::{Planned, PlannedCase};
 use super::record::{Curve, CurvePoint, Sweep};
-use super::scenario::{Names, Variation};
-use super::sweep::{SweepAxis, What};
+use super::sweep::{SweepAxis, Variation, What};
 use crate::theory::Channel;
 use crate::theory::optimum::{Optimum, best_constants};
 
@@ -93,7 +92,7 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
     if !scenario.depends_on(estimator, What::SamplingScale) {
         return Vec::new();
     }
-    let pilots = addresses::pilots(seed, case, estimator);
+    let pilots = case.pilots(seed, estimator);
     best_constants(scenario.natural_scale(estimator, variation), |sampling| {
         scenario.predict(estimator, variation, Some(sampling), pilots)
     })
@@ -113,7 +112,7 @@ fn points(
     variation: Variation,
     x: f64,
 ) -> Vec<(String, Option<CurvePoint>)> {
-    let pilots = addresses::pilots(seed, case, estimator);
+    let pilots = case.pilots(seed, estimator);
     let Some(prediction) = case.scenario.predict(estimator, variation, None, pilots) else {
         return Vec::new();
     };

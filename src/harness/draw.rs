@@ -10,9 +10,9 @@ use cpu_time::ThreadTime;
 use fearless_simd::Level;
 
 use super::checks::Kind;
-use super::counted::Counted;
+use super::checks::batch::Batch;
 use super::plan::{BLOCK, Planned};
-use super::scenario::Ready;
+use super::ready::Ready;
 use crate::estimators::DrawBuffer;
 use crate::estimators::walkers::{Request, Walkers};
 use crate::numeric::pack::in_fused_code;
@@ -92,7 +92,7 @@ fn fill_together(drawings: &mut [&mut Drawing]) {
         // The same for all: they find them at the same address.
         places = Some(drawing.streams.places());
         let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
-        let request = Request { counts, count, buffer: &mut drawing.room.buffer };
+        let request = Request { counts, count, buffer: &mut drawing.scratch.buffer };
         drawing.ready.experiment.walkers(request)
     });
     let mut walkers: Vec<Box<dyn Walkers + '_>> = walkers.collect();
@@ -102,9 +102,9 @@ fn fill_together(drawings: &mut [&mut Drawing]) {
     }
 }
 
-/// Room for draws and for what a question makes of them.
+/// Scratch for draws and for what a question makes of them.
 #[derive(Default)]
-struct Room {
+struct Scratch {
     buffer: DrawBuffer,
     y: Vec<f64>,
 }
@@ -112,18 +112,18 @@ struct Room {
 thread_local! {
     /// What the blocks before have left to the thread: so much memory, asked for anew, would cost a block as
     /// much time as some of its questions.
-    static ROOMS: RefCell<Vec<Room>> = const { RefCell::new(Vec::new()) };
+    static SCRATCH: RefCell<Vec<Scratch>> = const { RefCell::new(Vec::new()) };
 }
 
-impl Room {
+impl Scratch {
     fn take(channels: usize) -> Self {
-        let mut room: Self = ROOMS.with_borrow_mut(Vec::pop).unwrap_or_default();
-        room.buffer.set_channels(channels);
-        room
+        let mut scratch: Self = SCRATCH.with_borrow_mut(Vec::pop).unwrap_or_default();
+        scratch.buffer.set_channels(channels);
+        scratch
     }
 
     fn leave(self) {
-        ROOMS.with_borrow_mut(|rooms| rooms.push(self));
+        SCRATCH.with_borrow_mut(|scratchs| scratchs.push(self));
     }
 }
 
@@ -134,7 +134,7 @@ struct Drawing<'p> {
     streams: Streams,
     /// How many draws the buffer takes.
     length: u64,
-    room: Room,
+    scratch: Scratch,
     absorbers: Vec<Absorber>,
     tallies: Vec<Tally>,
     lookups: Tally,
@@ -155,7 +155,7 @@ impl<'p> Drawing<'p> {
             ready,
             streams: planned.streams(block),
             length: DrawBuffer::length(channels) as u64,
-            room: Room::take(channels),
+            scratch: Scratch::take(channels),
             absorbers: planned.questions.iter().map(|q| Absorber::new(&q.kind)).collect(),
             tallies: vec![Tally::default(); channels],
             lookups: Tally::default(),
@@ -179,14 +179,14 @@ impl<'p> Drawing<'p> {
 
     fn fill(&mut self) {
         let count = self.count();
-        self.ready.experiment.fill(&mut self.streams, count, &mut self.room.buffer);
+        self.ready.experiment.fill(&mut self.streams, count, &mut self.scratch.buffer);
     }
 
     /// Every question absorbs the buffer.
     fn absorb(&mut self) {
         let (count, is_fixed) = (self.count(), self.is_fixed());
-        let Room { buffer, y } = &mut self.room;
-        let draws = Counted::new(buffer);
+        let Scratch { buffer, y } = &mut self.scratch;
+        let draws = Batch::new(buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
         for (question, absorber) in self.planned.questions.iter().zip(&mut self.absorbers) {
@@ -210,7 +210,7 @@ impl<'p> Drawing<'p> {
         let questions = self.planned.questions.iter().zip(self.absorbers);
         let answers = questions.map(|(q, absorber)| absorber.answer(&q.kind, fixed)).collect();
         let Self { tallies, lookups, .. } = self;
-        self.room.leave();
+        self.scratch.leave();
         Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
     }
 }
@@ -228,7 +228,7 @@ impl Absorber {
     fn absorb(
         &mut self,
         kind: &Kind,
-        draws: &Counted,
+        draws: &Batch,
         first: usize,
         is_fixed: bool,
         y: &mut Vec<f64>,

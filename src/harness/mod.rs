@@ -3,33 +3,47 @@
 //! The only place where names become types: a case file is read into a [`Case`], a [`Plan`] prepares
 //! its experiments and shares out the error rate, [`run::draw`] draws them, and [`verdict`] turns what
 //! was drawn into a [`Record`], which is all that reports see.
+//!
+//! A file imports only files before it in this list:
+//!
+//! ```text
+//! words       source  sweep  names  filter  options  addresses  normality  suite
+//! case        ready  problem  estimator  scenario  case
+//! plan        checks  plan  mutation
+//! draws       draw  drawn  cache  run
+//! record      baseline/{file, comparison}  plot_data  record
+//! verdict     evaluate  theory_rows  curves  summary  verdict
+//! baselines   baseline/{stored, scope, compare}
+//! ```
 
 pub mod addresses;
 pub mod baseline;
+pub mod cache;
 pub mod case;
 pub mod checks;
-mod computable;
-pub mod counted;
 pub mod curves;
 pub mod draw;
+pub mod drawn;
+pub mod estimator;
+pub mod evaluate;
 pub mod filter;
-pub mod findings;
 pub mod mutation;
+pub mod names;
 pub mod normality;
 pub mod options;
 pub mod plan;
+mod plot_data;
+pub mod problem;
+pub mod ready;
 pub mod record;
-pub mod reuse;
 pub mod run;
 pub mod scenario;
-mod shown;
 pub mod source;
 pub mod suite;
 pub mod summary;
 pub mod sweep;
 mod theory_rows;
 pub mod verdict;
-pub(crate) mod written;
 
 use crate::catalogue::Catalogue;
 

@@ -1,36 +1,10 @@
 //! Known bugs in the place of honest estimators, on the experiments of a case.
 
-use super::addresses;
 use super::case::Case;
 use super::plan::{Plan, Planned};
-use super::scenario::Scenario;
-use crate::estimators::{Experiment, Refusal, Setup};
-use crate::mutants::{About, Mutable, Target};
-
-/// Which of a mutant's two walks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Walk {
-    /// The one with the bug.
-    Faulty,
-    /// The same code without it.
-    Twin,
-}
-
-impl<P: Mutable> Scenario<P> {
-    /// A mutant's experiment; `None` if the problem has no mutant of that name.
-    pub(super) fn mutant(
-        &self,
-        name: &str,
-        walk: Walk,
-        setup: impl FnOnce(&Self) -> Result<Setup<P>, Refusal>,
-    ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
-        let mutant = P::mutants().into_iter().find(|mutant| mutant.about.name == name)?;
-        Some(setup(self).map(|setup| match walk {
-            Walk::Faulty => mutant.experiment(setup),
-            Walk::Twin => mutant.twin(setup),
-        }))
-    }
-}
+pub use super::problem::Walk;
+use crate::estimators::{Experiment, Refusal};
+use crate::mutants::{About, Target};
 
 /// Finds a mutant's experiment in a plan that has its case.
 #[must_use]
@@ -55,6 +29,6 @@ pub fn experiment(
     planned: &Planned,
     seed: u64,
 ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
-    let pilots = addresses::pilots(seed, case, planned.estimator);
+    let pilots = case.pilots(seed, planned.estimator);
     case.scenario.mutated(planned.estimator, planned.variation, pilots, about.name, walk)
 }

@@ -8,9 +8,6 @@
 //! n(2) is the rare-event size: with fewer draws the events that make the variance are not seen. Where
 //! theory does not know a tail it counts as too heavy.
 
-use super::record::Row;
-use crate::theory::Prediction;
-
 /// The largest share of n that the ratio of moments may be.
 const HEAVY: f64 = 0.01;
 /// Draws in units of the rare-event size, from which on the variance's events are seen.
@@ -61,25 +58,6 @@ impl Tails {
         });
         is_near && is_sharp
     }
-}
-
-/// The columns of z in a row that are not to be read as normal; the lookups are of so many draws.
-#[must_use]
-pub fn marks(row: &Row, prediction: &Prediction, looked: u64) -> Vec<&'static str> {
-    let n = row.draws.unwrap_or(0) as f64;
-    let tails = Tails {
-        kurtosis: row.predicted_kurtosis,
-        eighth_moment_ratio: row.eighth_moment_ratio,
-        rare_event_size: row.rare_event_size,
-    };
-    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
-    let is_normal = of_lookups.is_some_and(|needed| looked as f64 >= needed);
-    let all = [
-        ("z_mean", row.z_mean, tails.has_normal_mean(n)),
-        ("z_variance", row.z_variance, tails.has_normal_variance(n)),
-        ("z_lookups", row.z_lookups, is_normal),
-    ];
-    all.into_iter().filter(|(_, z, is)| z.is_some() && !is).map(|(name, ..)| name).collect()
 }
 
 #[cfg(test)]

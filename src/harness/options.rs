@@ -70,3 +70,22 @@ impl Default for Options {
         }
     }
 }
+
+/// The smallest relative differences that must be seen; `None` where the case does not say.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Tolerance {
+    /// Of the mean, relative to the truth.
+    pub mean: Option<f64>,
+    /// Of the variance, relative to the prediction.
+    pub variance: Option<f64>,
+    /// Of the lookups, relative to the prediction.
+    pub lookups: Option<f64>,
+}
+
+impl Tolerance {
+    /// Whether the case has any.
+    #[must_use]
+    pub fn says_something(&self) -> bool {
+        *self != Self::default()
+    }
+}

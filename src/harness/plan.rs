@@ -13,15 +13,17 @@ use rayon::prelude::*;
 use super::addresses;
 use super::case::Case;
 use super::checks::{self, Kind, Pilot, Question, Scalar, Subject};
+use super::names::Names;
 use super::options::Options;
-use super::scenario::{Names, Prepared, Ready, Variation};
+use super::ready::{Prepared, Ready};
+use super::sweep::Variation;
 use crate::estimators::{DrawBuffer, Order, Refusal};
 use crate::numeric::pack::WIDTH;
 use crate::rng::{Address, PILOT, Streams};
 use crate::stats::{gate, normal};
 
-/// Draws per block, always.
-pub const BLOCK: u64 = 1 << 14;
+pub use super::addresses::BLOCK;
+
 /// The share of the error rate that goes to tests of whole laws.
 const LAW_SHARE: f64 = 0.2;
 /// β, the chance that a check passes although the bias is as large as its tolerance.
@@ -276,10 +278,10 @@ fn plan_experiment(
     if twins > 0 {
         names.estimator = format!("{} #{}", names.estimator, twins + 1);
     }
-    let pilots = addresses::pilots(options.seed, case, estimator);
+    let pilots = case.pilots(options.seed, estimator);
     let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
     let places = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
-    let places = places.map(|places| addresses::places(options.seed, &case.name, &places));
+    let places = places.map(|places| addresses::shared(options.seed, &case.name, &places));
     Planned {
         estimator,
         variation,

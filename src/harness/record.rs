@@ -6,9 +6,9 @@
 
 use serde::Serialize;
 
-use super::baseline::compare::Comparison;
+use super::baseline::comparison::Comparison;
 
-pub use super::shown::{Anatomy, Curve, CurvePoint, MeasuredPoint, Sweep};
+pub use super::plot_data::{Anatomy, Curve, CurvePoint, MeasuredPoint, Sweep};
 
 /// The version of the record's form: it grows when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;

@@ -13,75 +13,16 @@ use std::collections::VecDeque;
 use std::time::Instant;
 
 use rayon::prelude::*;
-use serde::{Deserialize, Serialize};
 
+use super::cache::Cache;
 use super::checks::Kind;
-use super::draw::{self, Answer, Block, larger};
+use super::draw::{self, Block};
+use super::drawn::{Drawn, Draws, Total};
 use super::plan::{BLOCK, Plan, Planned};
-use super::reuse::Kept;
-use crate::numeric::sum::Sum;
-use crate::stats::Tally;
-use crate::stats::gate::{Decision, Evidence, SUMS};
+use crate::stats::gate::Decision;
 
 /// Blocks drawn between two merges; results do not depend on it.
 const BATCH: usize = 256;
-
-/// What one experiment drew.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Drawn {
-    /// How many draws all of its questions saw.
-    pub draws: u64,
-    /// One tally per channel over the fixed draws, in units of the truth about the predicted mean.
-    pub tallies: Vec<Tally>,
-    /// The lookups of the fixed draws, about their predicted mean.
-    pub lookups: Tally,
-    /// One total per question.
-    pub totals: Vec<Total>,
-    /// Processor seconds.
-    pub seconds: f64,
-    /// Whether an earlier run drew it.
-    #[serde(skip)]
-    pub is_reused: bool,
-}
-
-/// What all blocks say to one question.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Total {
-    /// Where the gate stands.
-    Gate(Standing),
-    /// The sums of a law over the fixed draws.
-    Law(Vec<Sum>),
-    /// The largest value, and the block where it was found first.
-    Largest(f64, u64),
-    /// Nothing.
-    Silent,
-}
-
-/// Where a question of the gate stands.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Standing {
-    psi: [Sum; SUMS],
-    y: Sum,
-    /// The mean of y up to the look of the decision, or to the last.
-    pub mean: f64,
-    /// The evidence at the look of the decision, or at the last.
-    pub evidence: Evidence,
-    /// The decision.
-    pub decision: Decision,
-    /// The draws up to that look.
-    pub draws: u64,
-}
-
-/// Everything that a plan drew.
-#[derive(Debug, Clone)]
-pub struct Draws {
-    /// Per case, per experiment; nothing for refused ones.
-    pub cases: Vec<Vec<Drawn>>,
-    /// Whether the time limit came first.
-    pub cut_by_time: bool,
-    /// Whether the budget of draws came first.
-    pub cut_by_budget: bool,
-}
 
 /// An experiment on its way.
 struct Front<'p> {
@@ -100,15 +41,15 @@ struct Front<'p> {
 
 /// Draws a plan; `progress` is told after each block how many draws it made.
 pub fn draw(plan: &Plan, progress: &(dyn Fn(u64) + Sync)) -> Draws {
-    draw_the_rest(plan, &Kept::default(), progress)
+    draw_uncached(plan, &Cache::default(), progress)
 }
 
 /// Draws what an earlier run has not drawn already.
-pub fn draw_the_rest(plan: &Plan, kept: &Kept, progress: &(dyn Fn(u64) + Sync)) -> Draws {
+pub fn draw_uncached(plan: &Plan, cache: &Cache, progress: &(dyn Fn(u64) + Sync)) -> Draws {
     let begin = Instant::now();
     let expired =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
-    let (mut cases, mut fronts) = begin_all(plan, kept);
+    let (mut cases, mut fronts) = begin_all(plan, cache);
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
     while !cut_by_time && fronts.iter().any(|front| !front.is_done) {
@@ -178,7 +119,7 @@ fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
 }
 
 /// What is drawn already, and a front for each experiment that is not.
-fn begin_all<'p>(plan: &'p Plan, kept: &Kept) -> (Vec<Vec<Drawn>>, Vec<Front<'p>>) {
+fn begin_all<'p>(plan: &'p Plan, cache: &Cache) -> (Vec<Vec<Drawn>>, Vec<Front<'p>>) {
     let mut cases: Vec<Vec<Drawn>> =
         plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
     let mut fronts = Vec::new();
@@ -187,7 +128,7 @@ fn begin_all<'p>(plan: &'p Plan, kept: &Kept) -> (Vec<Vec<Drawn>>, Vec<Front<'p>
             if planned.outcome.is_err() || planned_case.twin(index).is_some() {
                 continue;
             }
-            if let Some(drawn) = kept.drawn(plan, planned_case, planned) {
+            if let Some(drawn) = cache.drawn(plan, planned_case, planned) {
                 cases[case][index] = drawn;
                 continue;
             }
@@ -326,9 +267,7 @@ impl Front<'_> {
         self.is_done = is_over || (!is_open && !plan.options.fixed);
         self.look = next_look(self.look, self.last());
     }
-}
 
-impl Front<'_> {
     /// Whether the one check that matters has failed.
     fn has_failed(&self, plan: &Plan) -> bool {
         let Some(name) = &plan.options.until_failed else { return false };
@@ -342,54 +281,5 @@ impl Front<'_> {
                 _ => false,
             }
         })
-    }
-}
-
-impl Drawn {
-    fn new(planned: &Planned) -> Self {
-        let totals = planned.questions.iter().map(|question| match &question.kind {
-            Kind::Scalar(_) => Total::Gate(Standing {
-                psi: [Sum::default(); SUMS],
-                y: Sum::default(),
-                mean: 0.0,
-                evidence: Evidence::NONE,
-                decision: Decision::Open,
-                draws: 0,
-            }),
-            Kind::Law(law) => Total::Law(vec![Sum::default(); law.size()]),
-            Kind::Always(_) => Total::Largest(0.0, 0),
-            Kind::Inspection(_) | Kind::Untestable(_) => Total::Silent,
-        });
-        let channels = planned.outcome.as_ref().map_or(0, |ready| ready.prediction.channels.len());
-        let tallies = vec![Tally::default(); channels];
-        Self { totals: totals.collect(), tallies, ..Self::default() }
-    }
-
-    /// Adds the block that follows.
-    fn merge(&mut self, block: &Block, number: u64) {
-        self.draws += block.draws;
-        for (tally, other) in self.tallies.iter_mut().zip(&block.tallies) {
-            tally.merge(other);
-        }
-        self.lookups.merge(&block.lookups);
-        for (total, answer) in self.totals.iter_mut().zip(&block.answers) {
-            match (total, answer) {
-                (Total::Gate(standing), Answer::Gate { psi, y }) => {
-                    standing.psi.iter_mut().zip(psi).for_each(|(sum, &x)| sum.add(x));
-                    standing.y.add(*y);
-                }
-                (Total::Law(sums), Answer::Law(others)) => {
-                    sums.iter_mut().zip(others).for_each(|(sum, &x)| sum.add(x));
-                }
-                (Total::Largest(most, at), Answer::Largest(other)) => {
-                    let largest = larger(*most, *other);
-                    if largest.to_bits() != most.to_bits() {
-                        (*most, *at) = (largest, number);
-                    }
-                }
-                _ => {}
-            }
-        }
-        self.seconds += block.seconds;
     }
 }

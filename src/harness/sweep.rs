@@ -28,6 +28,9 @@ pub enum What {
     Points,
 }
 
+/// One value of a sweep.
+pub type Variation = Option<(What, f64)>;
+
 /// Every quantity with its key in case files, the axis title and the numbers it takes.
 const KINDS: [(What, &str, &str, Domain); 5] = [
     (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Domain::Positive),

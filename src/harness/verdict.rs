@@ -3,15 +3,16 @@
 use fearless_simd::Level;
 use rayon::prelude::*;
 
+use super::drawn::{Drawn, Draws};
+use super::normality::{Tails, needed};
 use super::options::Options;
 use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
     Anatomy, CaseRecord, Finding, Gate, MeasuredPoint, Record, Results, Row, SCHEMA, Timing,
     Verdict,
 };
-use super::run::{Drawn, Draws};
 use super::theory_rows::{finite, theory_rows};
-use super::{curves, findings, normality, suite, summary};
+use super::{curves, evaluate, suite, summary};
 use crate::numeric::pack;
 use crate::stats::Tally;
 use crate::theory::{Channel, Prediction};
@@ -25,7 +26,7 @@ pub fn planned(plan: &Plan) -> Record {
             for (channel, row) in
                 rows.iter_mut().enumerate().filter(|(_, row)| row.verdict.is_none())
             {
-                row.reason = findings::untestable(planned, channel);
+                row.reason = evaluate::untestable(planned, channel);
             }
             rows
         });
@@ -75,7 +76,7 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
 #[must_use]
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
-    let findings = findings::of_run(plan, draws);
+    let findings = evaluate::run(plan, draws);
     let parts: Vec<_> = pairs
         .par_iter()
         .zip(&findings)
@@ -180,7 +181,7 @@ fn drawn_rows(
         if let Some(tally) = drawn.tallies.get(index) {
             measure(row, channel, tally);
             measure_lookups(row, prediction, drawn);
-            row.not_normal = normality::marks(row, prediction, drawn.lookups.draws);
+            row.not_normal = not_normal(row, prediction, drawn.lookups.draws);
         }
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);
         let about =
@@ -239,6 +240,24 @@ fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
     }
     let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
     row.fom = finite(fom.filter(|_| row.z_mean.is_some()));
+}
+
+/// The columns of z in a row that are not to be read as normal; the lookups are of so many draws.
+fn not_normal(row: &Row, prediction: &Prediction, looked: u64) -> Vec<&'static str> {
+    let n = row.draws.unwrap_or(0) as f64;
+    let tails = Tails {
+        kurtosis: row.predicted_kurtosis,
+        eighth_moment_ratio: row.eighth_moment_ratio,
+        rare_event_size: row.rare_event_size,
+    };
+    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
+    let is_normal = of_lookups.is_some_and(|needed| looked as f64 >= needed);
+    let all = [
+        ("z_mean", row.z_mean, tails.has_normal_mean(n)),
+        ("z_variance", row.z_variance, tails.has_normal_variance(n)),
+        ("z_lookups", row.z_lookups, is_normal),
+    ];
+    all.into_iter().filter(|(_, z, is)| z.is_some() && !is).map(|(name, ..)| name).collect()
 }
 
 /// A relative variance below this is rounding.

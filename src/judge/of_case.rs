@@ -1,10 +1,10 @@
 //! What theory claims of one experiment of a case.
 
 use super::claim::{Claim, ClaimError, Lookups};
-use crate::harness::addresses;
 use crate::harness::case::Case;
 use crate::harness::checks;
-use crate::harness::scenario::{Ready, Variation};
+use crate::harness::ready::Ready;
+use crate::harness::sweep::Variation;
 
 /// Two values of a sweep this near to each other are the same: tables print few digits.
 const SAME: f64 = 1e-3;
@@ -31,7 +31,7 @@ impl Claim {
     pub fn of_case(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
         let (index, label) = find(case, choice.estimator)?;
         let variation = variation(case, index, &label, choice.swept)?;
-        let pilots = addresses::pilots(choice.seed, case, index);
+        let pilots = case.pilots(choice.seed, index);
         let prepared = case.scenario.prepare(index, variation, pilots);
         let Ready { prediction, .. } = prepared.outcome.map_err(|refusal| {
             let why = refusal.to_string();

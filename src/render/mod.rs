@@ -4,9 +4,10 @@
 //! reports see. Every pixel of every estimator has random numbers of its own, found by name and
 //! number, so that pictures do not depend on the number of threads.
 
-pub mod expose;
+pub mod budget;
 pub mod gallery;
 pub mod picture;
+pub mod pixel;
 pub mod record;
 pub mod reference;
 pub mod scene;

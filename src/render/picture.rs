@@ -43,7 +43,8 @@ use std::path::Path;
 
 use super::gallery;
 use super::record::PictureRecord;
-use super::scene::{AnyScene, Request, Scene};
+use super::scene::{Request, Scene};
+use super::subject::SubjectKind;
 use crate::catalogue::Settings;
 use crate::harness::source::{CaseError, Source};
 use crate::problems::{MultipleScattering, SingleScattering, Transmittance};
@@ -56,17 +57,17 @@ pub struct Picture {
     pub title: String,
     /// What it shows: the problem's name in the catalogue.
     pub problem: String,
-    scene: Box<dyn AnyScene>,
+    scene: Scene,
 }
 
-type Reader = fn(&Settings) -> Option<Box<dyn AnyScene>>;
-
 /// What can be shown.
-const SUBJECTS: [(&str, Reader); 3] = [
-    ("transmittance", Scene::<Transmittance>::read),
-    ("single-scattering", Scene::<SingleScattering>::read),
-    ("multiple-scattering", Scene::<MultipleScattering>::read),
-];
+fn subjects() -> [SubjectKind; 3] {
+    [
+        SubjectKind::of::<Transmittance>("transmittance"),
+        SubjectKind::of::<SingleScattering>("single-scattering"),
+        SubjectKind::of::<MultipleScattering>("multiple-scattering"),
+    ]
+}
 
 impl Picture {
     /// Reads a picture.
@@ -99,12 +100,12 @@ impl Picture {
             return None;
         }
         let title = root.text("title");
-        let names = SUBJECTS.map(|(name, _)| name.to_owned());
+        let subjects = subjects();
+        let names = subjects.each_ref().map(|kind| kind.name.to_owned());
         let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
-            let (name, read) = SUBJECTS[index];
-            let scene = read(&settings);
+            let scene = Scene::read(&subjects[index], &settings);
             settings.close();
-            Some((name.to_owned(), scene?))
+            Some((names[index].clone(), scene?))
         });
         root.close();
         let (problem, scene) = scene?;
@@ -126,14 +127,13 @@ impl Picture {
     /// How many rows of pixels it has.
     #[must_use]
     pub fn rows(&self) -> usize {
-        self.scene.view().size[1]
+        self.scene.view.size[1]
     }
 
     /// Renders it with a seed; `progress` is told of every row, twice.
     #[must_use]
     pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
         let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
-        let view = self.scene.view();
-        PictureRecord::new(self, view, rendered)
+        PictureRecord::new([&self.name, &self.title, &self.problem], &self.scene.view, rendered)
     }
 }

@@ -2,8 +2,7 @@
 
 use serde::Serialize;
 
-use super::expose::Exposed;
-use super::picture::Picture;
+use super::budget::PixelValues;
 use super::scene::Rendered;
 use super::view::View;
 
@@ -86,9 +85,9 @@ pub struct Exposure {
 
 impl PictureRecord {
     /// Compares what was rendered.
-    pub(super) fn new(picture: &Picture, view: &View, rendered: Rendered) -> Self {
-        let Rendered { budget, covered, reference, exposures } = rendered;
-        let exposures: Vec<ExposureRecord> = exposures
+    pub(super) fn new([name, title, problem]: [&str; 3], view: &View, rendered: Rendered) -> Self {
+        let Rendered { budget, covered, reference, images } = rendered;
+        let exposures: Vec<ExposureRecord> = images
             .into_iter()
             .map(|(names, outcome)| ExposureRecord {
                 estimator: names.estimator,
@@ -116,9 +115,9 @@ impl PictureRecord {
         let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
         let image = image(view, &covered, &exposed.values);
         Self {
-            name: picture.name.clone(),
-            title: picture.title.clone(),
-            problem: picture.problem.clone(),
+            name: name.to_owned(),
+            title: title.to_owned(),
+            problem: problem.to_owned(),
             medium: view.medium.clone(),
             size: view.size,
             covered: covered.len(),
@@ -154,7 +153,7 @@ impl PictureRecord {
 }
 
 impl Exposure {
-    fn new(view: &View, covered: &[usize], truth: &Exposed, exposed: &Exposed) -> Self {
+    fn new(view: &View, covered: &[usize], truth: &PixelValues, exposed: &PixelValues) -> Self {
         let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
         let apart = || exposed.values.iter().zip(&truth.values).map(|(x, truth)| x - truth);
         let square = over(&mut apart().map(|x| x * x));

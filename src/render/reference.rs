@@ -1,12 +1,14 @@
 //! What an image is compared with.
 
-use super::subject::Subject;
-use crate::catalogue::Settings;
-use crate::harness::written::{Usual, Written};
+use super::budget::PixelValues;
+use super::pixel::Label;
+use crate::catalogue::{Catalogue, Settings};
+use crate::harness::estimator::{Defaults, EntryReader, ParsedEstimator};
 use crate::media::Body;
+use crate::numeric::Known;
 
 /// How the reference is found.
-pub enum Reference<P> {
+pub enum Reference {
     /// In closed form.
     Exact,
     /// By Gauss quadrature.
@@ -19,29 +21,40 @@ pub enum Reference<P> {
         /// Lookups per covered pixel.
         lookups: u64,
         /// The estimator.
-        written: Box<Written<P>>,
+        parsed: Box<ParsedEstimator>,
     },
 }
 
-impl<P: Subject> Reference<P> {
+/// What of a subject the reference depends on.
+#[derive(Clone, Copy)]
+pub struct Ways<'a> {
+    /// Whether there is a closed form.
+    pub has_exact: bool,
+    /// Whether draws walk along the ray, so that there is a quadrature.
+    pub along_ray: bool,
+    /// Its estimators.
+    pub estimators: &'a Catalogue,
+}
+
+impl Reference {
     /// Reads `reference`; estimators find a σ̂ that they need in the picture if it has one.
     pub fn read(
         settings: &Settings,
-        shared: Option<&P::Shared>,
+        ways: Ways,
         body: Option<&Body>,
-        usual: Usual,
+        reader: &mut dyn EntryReader,
+        defaults: Defaults,
     ) -> Option<Self> {
         let names = ["closed-form", "quadrature", "draws"].map(str::to_owned);
         let (index, reference) = settings.chosen("reference", &names)?;
         let read = match index {
-            // What cannot be read has been told.
-            0 if shared.is_none_or(P::has_exact) => Some(Self::Exact),
+            0 if ways.has_exact => Some(Self::Exact),
             0 => {
                 let help = "use `quadrature = {}` or `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no closed form", help);
                 None
             }
-            1 if !P::ALONG_RAY => {
+            1 if !ways.along_ray => {
                 let help = "use `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no quadrature", help);
                 reference.has("panels");
@@ -53,13 +66,40 @@ impl<P: Subject> Reference<P> {
             }
             _ => {
                 let lookups = reference.count("lookups", 1..=1_000_000_000);
-                let estimator = reference.table("estimator");
-                let written = estimator.and_then(|table| Written::read(&table, body, usual));
-                let (lookups, written) = (lookups?, Box::new(written?));
-                Some(Self::Draws { lookups, written })
+                let parsed = reference.table("estimator").and_then(|table| {
+                    ParsedEstimator::read(&table, body, defaults, ways.estimators, reader)
+                });
+                let (lookups, parsed) = (lookups?, Box::new(parsed?));
+                Some(Self::Draws { lookups, parsed })
             }
         };
         reference.close();
         read
+    }
+
+    /// How it was found, in words, and what was found: from the answers of all covered pixels, or as
+    /// the last of the images.
+    pub fn of(
+        &self,
+        images: &mut Vec<(Label, Result<PixelValues, String>)>,
+        answers: &[Option<Known>],
+    ) -> (String, PixelValues) {
+        let how = match self {
+            Self::Exact => "closed form".to_owned(),
+            Self::Quadrature { panels } => format!("Gauss quadrature, {} nodes", 32 * panels),
+            Self::Draws { .. } => {
+                return match images.pop() {
+                    Some((label, Ok(found))) => {
+                        (format!("many draws of {}", label.estimator), found)
+                    }
+                    Some((_, Err(refusal))) => (format!("none: {refusal}"), PixelValues::default()),
+                    None => Default::default(),
+                };
+            }
+        };
+        let answers = || answers.iter().flatten();
+        let values = answers().map(|known| known.value).collect();
+        let square_errors = answers().map(|known| known.error * known.error).collect();
+        (how, PixelValues { values, square_errors, ..PixelValues::default() })
     }
 }

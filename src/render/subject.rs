@@ -3,10 +3,13 @@
 use std::sync::Arc;
 
 use super::view::View;
-use crate::catalogue::{Domain, Settings};
-use crate::estimators::Estimated;
+use crate::catalogue::{Catalogue, Domain, Settings};
+use crate::estimators::trial::Entry;
+use crate::estimators::{Estimated, Experiment, Order, Refusal, Setup};
 use crate::geometry::Ray;
-use crate::media::{Medium, Volume};
+use crate::harness::estimator::EntryReader;
+use crate::harness::problem::Parts;
+use crate::media::{Majorants, Medium, Volume};
 use crate::numeric::{Known, Lane};
 use crate::phase::Phase;
 use crate::problems::scene::read_albedo;
@@ -14,8 +17,8 @@ use crate::problems::single_scattering::{Lamp, OnTheLine};
 use crate::problems::{
     Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, Transmittance,
 };
-use crate::theory::Mesh;
 use crate::theory::single::quick;
+use crate::theory::{Mesh, Prediction};
 
 /// A problem that pictures are made of.
 pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
@@ -63,6 +66,166 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
     fn by_quadrature(&self, panels: usize) -> Option<Known> {
         let _ = panels;
         None
+    }
+}
+
+/// What a subject is, whatever it is read from.
+#[derive(Debug, Clone, Copy)]
+pub struct Traits {
+    /// See [`Subject::BEFORE_SKY`].
+    pub before_sky: bool,
+    /// See [`Subject::ALONG_RAY`].
+    pub along_ray: bool,
+    /// See [`Subject::IS_PREDICTED`].
+    pub is_predicted: bool,
+}
+
+/// Reads the estimators of a picture; is told whether there is a closed form.
+pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader, bool);
+
+/// A subject of the catalogue, before a picture is read.
+pub struct SubjectKind {
+    /// Its name in picture files.
+    pub name: &'static str,
+    /// See [`Subject::SHOWS_SKY`].
+    pub shows_sky: bool,
+    /// See [`Subject::ALONG_RAY`].
+    pub along_ray: bool,
+    /// Its estimators.
+    pub estimators: Catalogue,
+    /// Its reader.
+    pub read: Read,
+}
+
+/// Reads what all rays share and, by the last argument, the estimators; `None` after a mistake.
+pub type Read = fn(&Settings, Option<&View>, ReadEstimators) -> Option<Box<dyn AnySubject>>;
+
+impl SubjectKind {
+    /// Of a problem.
+    #[must_use]
+    pub fn of<P: Subject>(name: &'static str) -> Self {
+        Self {
+            name,
+            shows_sky: P::SHOWS_SKY,
+            along_ray: P::ALONG_RAY,
+            estimators: P::CATALOGUE,
+            read: |settings, view, read_estimators| {
+                let shared = P::read_shared(settings, view);
+                if let (Some(view), Some(shared)) = (view, &shared) {
+                    let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
+                    let refused = rays.map(|ray| P::allows(shared, &ray)).find_map(Result::err);
+                    if let Some([found, help]) = refused {
+                        settings.fault("light", found, help);
+                    }
+                }
+                let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
+                // What cannot be read has been told.
+                read_estimators(&mut entries, shared.as_ref().is_none_or(P::has_exact));
+                Some(Box::new(Shown { shared: shared?, entries }))
+            },
+        }
+    }
+}
+
+/// A subject with the estimators of a picture, whose type is no longer visible.
+pub trait AnySubject: Send + Sync {
+    /// What it is.
+    fn traits(&self) -> Traits;
+
+    /// The problem of one ray; `None` where it is not allowed.
+    fn at(&self, volume: &Arc<Volume>, ray: &Ray) -> Option<Box<dyn AnyRay + '_>>;
+}
+
+/// What is asked before the draws.
+#[derive(Debug, Clone, Copy)]
+pub struct Ask {
+    /// Whether the estimator exists and is unbiased here.
+    pub domain: bool,
+    /// What theory says of it.
+    pub prediction: bool,
+}
+
+/// The problem of one ray, whose type is no longer visible.
+pub trait AnyRay {
+    /// The field along the ray.
+    fn medium(&self) -> &Medium;
+
+    /// See [`Subject::exact`].
+    fn exact(&self) -> Option<Known>;
+
+    /// See [`Subject::by_quadrature`].
+    fn by_quadrature(&self, panels: usize) -> Option<Known>;
+
+    /// An estimator of the picture on the ray, with σ̂ in space where that is given.
+    ///
+    /// # Errors
+    ///
+    /// Why the estimator is refused.
+    fn prepare(
+        &self,
+        estimator: usize,
+        parts: Parts,
+        space: Option<&Arc<Majorants>>,
+        ask: Ask,
+    ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal>;
+}
+
+struct Shown<P: Subject> {
+    shared: P::Shared,
+    entries: Vec<Box<dyn Entry<P>>>,
+}
+
+impl<P: Subject> AnySubject for Shown<P> {
+    fn traits(&self) -> Traits {
+        Traits { before_sky: P::BEFORE_SKY, along_ray: P::ALONG_RAY, is_predicted: P::IS_PREDICTED }
+    }
+
+    fn at(&self, volume: &Arc<Volume>, ray: &Ray) -> Option<Box<dyn AnyRay + '_>> {
+        let problem = Arc::new(P::at(&self.shared, volume, ray)?);
+        Some(Box::new(OneRay { problem, entries: &self.entries }))
+    }
+}
+
+struct OneRay<'a, P> {
+    problem: Arc<P>,
+    entries: &'a [Box<dyn Entry<P>>],
+}
+
+impl<P: Subject> AnyRay for OneRay<'_, P> {
+    fn medium(&self) -> &Medium {
+        self.problem.medium()
+    }
+
+    fn exact(&self) -> Option<Known> {
+        Subject::exact(&*self.problem)
+    }
+
+    fn by_quadrature(&self, panels: usize) -> Option<Known> {
+        Subject::by_quadrature(&*self.problem, panels)
+    }
+
+    fn prepare(
+        &self,
+        estimator: usize,
+        parts: Parts,
+        space: Option<&Arc<Majorants>>,
+        ask: Ask,
+    ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal> {
+        let entry = &self.entries[estimator];
+        let Parts { mesh, sampling, control, recipe, .. } = parts;
+        let setup = Setup::new(self.problem.clone(), mesh.clone(), sampling, control);
+        let setup = match space {
+            _ if P::ALONG_RAY && entry.skips() => setup.skipping(),
+            _ if P::ALONG_RAY => setup,
+            Some(space) => Setup { space: Some(space.clone()), ..setup },
+            None => setup.in_space(None, recipe, 1.0)?,
+        };
+        let setup = Setup { laws: !P::ALONG_RAY, ..setup };
+        if ask.domain {
+            entry.domain(&setup)?;
+        }
+        let prediction = ask.prediction.then(|| entry.predict(&setup));
+        Ok((prediction, entry.experiment(setup, Order::Along)))
     }
 }
 

@@ -6,7 +6,7 @@
 
 use std::fmt::Write;
 
-use crate::harness::baseline::compare::Comparison;
+use crate::harness::baseline::Comparison;
 use crate::harness::record::{Record, Verdict};
 use crate::report::changes;
 use crate::report::troubles::{Trouble, troubles};

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use crate::harness::baseline::compare::Comparison;
+use crate::harness::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::changes;
 use crate::report::number::range;

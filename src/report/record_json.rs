@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use serde::Serialize;
 
-use crate::harness::baseline::compare::Comparison;
+use crate::harness::baseline::Comparison;
 use crate::harness::record::{Record, Results, Timing};
 use crate::report::{Artifact, Report, ReportError};
 

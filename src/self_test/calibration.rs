@@ -19,7 +19,7 @@ use crate::harness::checks::{self, Kind};
 use crate::harness::options::Options;
 use crate::harness::plan::{MISS, Plan};
 use crate::harness::record::{Finding, Verdict};
-use crate::harness::{Case, CaseError, findings, run, suite};
+use crate::harness::{Case, CaseError, evaluate, run, suite};
 use crate::stats::{anderson_darling, binomial};
 
 /// The run-level α of the calibration.
@@ -150,7 +150,7 @@ fn draw(plan: &mut Plan, seed: u64) -> (u64, Vec<Finding>) {
     plan.reseed(seed);
     let draws = run::draw(plan, &|_| {});
     let drawn = draws.cases.iter().flatten().map(|drawn| drawn.draws).sum();
-    (drawn, findings::of_run(plan, &draws).into_iter().flatten().flatten().collect())
+    (drawn, evaluate::run(plan, &draws).into_iter().flatten().flatten().collect())
 }
 
 /// Adds `sign · ε` to every scalar: a bias of exactly the tolerance.

@@ -13,7 +13,7 @@ use crate::harness::mutation::{self, Walk};
 use crate::harness::options::Options;
 use crate::harness::plan::{BLOCK, Levels, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
-use crate::harness::{Case, CaseError, findings, run, suite};
+use crate::harness::{Case, CaseError, evaluate, run, suite};
 use crate::mutants::{self, About, StreamMutant, Target, streams};
 
 /// What became of one mutant.
@@ -101,7 +101,7 @@ impl<'a> Bench<'a> {
 
     fn judged(plan: &Plan) -> Judged {
         let fixed = plan.experiments().map(|(_, planned)| planned.fixed).max().unwrap_or(0);
-        let findings = findings::of_run(plan, &run::draw(plan, &|_| {}));
+        let findings = evaluate::run(plan, &run::draw(plan, &|_| {}));
         Judged { fixed, findings: findings.into_iter().flatten().flatten().collect() }
     }
 

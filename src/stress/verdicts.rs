@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::{Effort, Measure, Row, text};
 use crate::harness::checks::Kind;
 use crate::harness::record::{Row as Found, Verdict};
-use crate::harness::{Amount, Options, Plan, findings, run, verdict};
+use crate::harness::{Amount, Options, Plan, evaluate, run, verdict};
 
 /// The run-level α of each.
 const ALPHA: f64 = 1e-7;
@@ -207,7 +207,7 @@ fn passes(problem: &str, seed: u64, sign: f64) -> Option<[u64; 2]> {
     }
     let drawn = run::draw(&plan, &|_| {});
     let mut counts = [0, 0];
-    for finding in findings::of_run(&plan, &drawn).into_iter().flatten().flatten() {
+    for finding in evaluate::run(&plan, &drawn).into_iter().flatten().flatten() {
         // What could not pass anyway promises nothing.
         if finding.gate.is_some_and(|gate| gate.needed.is_none()) {
             counts[1] += 1;

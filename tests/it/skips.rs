@@ -2,9 +2,9 @@
 
 use crate::common::{case, options};
 use trueflight::estimators::DrawBuffer;
+use trueflight::harness::cache::Cache;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::reuse::Kept;
-use trueflight::harness::{Case, Plan, run, verdict};
+use trueflight::harness::{Case, Plan, drawn, run, verdict};
 
 /// The first draws of the first experiment of a case, from the same streams whatever its name.
 fn first_draws(text: &str) -> (DrawBuffer, f64) {
@@ -111,14 +111,14 @@ fn cases(title: &str) -> [Case; 1] {
 fn what_has_not_changed_is_reused_and_no_number_changes() {
     let (cases, options) = (cases("t"), options(3, 200_000));
     let plan = Plan::new(&cases, &options);
-    let mut kept = Kept::new("program");
-    let first = run::draw_the_rest(&plan, &kept, &|_| {});
+    let mut kept = Cache::new("program");
+    let first = run::draw_uncached(&plan, &kept, &|_| {});
     assert_eq!(kept.count(&plan), [0, 2]);
     kept.keep(&plan, &first);
-    let read = Kept::read(&kept.bytes().expect("encodes"), "program");
+    let read = Cache::read(&kept.bytes().expect("encodes"), "program");
     assert_eq!(read, kept);
     assert_eq!(read.count(&plan), [2, 2]);
-    let second = run::draw_the_rest(&plan, &read, &|_| panic!("nothing is drawn"));
+    let second = run::draw_uncached(&plan, &read, &|_| panic!("nothing is drawn"));
     assert!(second.cases[0].iter().all(|drawn| drawn.is_reused));
     let json = |draws| {
         let record = verdict::judged(&plan, draws, 0.0);
@@ -132,15 +132,15 @@ fn what_has_changed_is_drawn_anew() {
     let (same, other) = (cases("t"), cases("another"));
     let options = options(3, 200_000);
     let plan = Plan::new(&same, &options);
-    let mut kept = Kept::new("program");
+    let mut kept = Cache::new("program");
     kept.keep(&plan, &run::draw(&plan, &|_| {}));
     let bytes = kept.bytes().expect("encodes");
-    assert_eq!(Kept::read(&bytes, "another program").count(&plan), [0, 2]);
-    assert_eq!(Kept::read(&bytes[..bytes.len() - 1], "program").count(&plan), [0, 2]);
-    assert_eq!(Kept::read(&[], "program").count(&plan), [0, 2]);
+    assert_eq!(Cache::read(&bytes, "another program").count(&plan), [0, 2]);
+    assert_eq!(Cache::read(&bytes[..bytes.len() - 1], "program").count(&plan), [0, 2]);
+    assert_eq!(Cache::read(&[], "program").count(&plan), [0, 2]);
     let mut spoilt = bytes.clone();
     spoilt[100] ^= 1;
-    assert_eq!(Kept::read(&spoilt, "program").count(&plan), [0, 2]);
+    assert_eq!(Cache::read(&spoilt, "program").count(&plan), [0, 2]);
     assert_eq!(kept.count(&Plan::new(&other, &options)), [0, 2]);
     for changed in [
         trueflight::harness::Options { seed: 4, ..options.clone() },
@@ -156,8 +156,8 @@ fn what_has_changed_is_drawn_anew() {
 fn draws_that_a_limit_cut_short_are_not_kept() {
     let (cases, options) = (cases("t"), options(3, 200_000));
     let plan = Plan::new(&cases, &options);
-    let mut kept = Kept::new("program");
-    let cut = run::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
+    let mut kept = Cache::new("program");
+    let cut = drawn::Draws { cut_by_time: true, ..run::draw(&plan, &|_| {}) };
     kept.keep(&plan, &cut);
     assert_eq!(kept.count(&plan), [0, 2]);
 }

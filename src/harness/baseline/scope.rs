@@ -1,9 +1,7 @@
 //! What of two entries can be compared, and what is left out.
 
-use serde::Serialize;
-
-use super::Entry;
-use super::compare::Rules;
+use super::comparison::{LeftOut, Rules};
+use super::stored::Entry;
 use crate::harness::normality::{Tails, variance_error};
 
 /// Times below this are noise.
@@ -45,61 +43,42 @@ pub(super) fn is_comparable(before: &Entry, now: &Entry) -> bool {
     !now.learns || before.seed == now.seed
 }
 
-/// The experiments that both runs have of which something was not compared, by the reason.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
-pub struct LeftOut {
-    /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
-    pub relearned: Vec<String>,
-    /// The variance is too uncertain.
-    pub blunt: Vec<String>,
-    /// Theory has no kurtosis, so that nobody knows how uncertain the variance is.
-    pub unpredicted: Vec<String>,
-    /// Theory has no variance of the number of lookups.
-    pub uncounted: Vec<String>,
-    /// The draws took less than 0.1 s, then or now.
-    pub brief: Vec<String>,
-    /// The lookups were shared with other experiments, then or now: the time is of their company.
-    pub shared: Vec<String>,
-}
-
-impl LeftOut {
-    /// Of the experiments that both runs have, each stored and now.
-    pub(super) fn of(pairs: &[(&Entry, &Entry)], rules: &Rules) -> Self {
-        let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<String> {
-            let out = pairs.iter().filter(|(before, now)| is_out(before, now));
-            out.map(|(_, now)| now.id.clone()).collect()
-        };
-        let of_one = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
-            list(&|before, now| is_comparable(before, now) && is_out(before, now))
-        };
-        let timed = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
-            list(&|before, now| rules.asks_for_times() && is_out(before, now))
-        };
-        Self {
-            relearned: list(&|before, now| !is_comparable(before, now)),
-            blunt: of_one(&|before, now| {
-                let has_both = before.variance().is_some() && now.variance().is_some();
-                has_both && !(before.is_sharp() && now.is_sharp())
-            }),
-            unpredicted: of_one(&|before, now| {
-                let varies = |entry: &Entry| entry.variance != Some(0.0);
-                let has_both = before.variance().is_some() && now.variance().is_some();
-                !has_both && (varies(before) || varies(now))
-            }),
-            uncounted: of_one(&|before, now| {
-                let looks = |entry: &Entry| entry.lookups.is_some_and(|lookups| lookups > 0.0);
-                let has_both = before.lookups().is_some() && now.lookups().is_some();
-                !has_both && (looks(before) || looks(now))
-            }),
-            brief: timed(&|before, now| {
-                let has_both = before.seconds.is_some() && now.seconds.is_some();
-                has_both && (before.nanoseconds().is_none() || now.nanoseconds().is_none())
-            }),
-            // Times and lookups stand in the first entry of an experiment only.
-            shared: timed(&|before, now| {
-                let is_first = before.lookups.is_some() || now.lookups.is_some();
-                is_first && (before.seconds.is_none() || now.seconds.is_none())
-            }),
-        }
+/// What is left out of the experiments that both runs have, each stored and now.
+pub(super) fn left_out(pairs: &[(&Entry, &Entry)], rules: &Rules) -> LeftOut {
+    let list = |is_out: &dyn Fn(&Entry, &Entry) -> bool| -> Vec<String> {
+        let out = pairs.iter().filter(|(before, now)| is_out(before, now));
+        out.map(|(_, now)| now.id.clone()).collect()
+    };
+    let of_one = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+        list(&|before, now| is_comparable(before, now) && is_out(before, now))
+    };
+    let timed = |is_out: &dyn Fn(&Entry, &Entry) -> bool| {
+        list(&|before, now| rules.asks_for_times() && is_out(before, now))
+    };
+    LeftOut {
+        relearned: list(&|before, now| !is_comparable(before, now)),
+        blunt: of_one(&|before, now| {
+            let has_both = before.variance().is_some() && now.variance().is_some();
+            has_both && !(before.is_sharp() && now.is_sharp())
+        }),
+        unpredicted: of_one(&|before, now| {
+            let varies = |entry: &Entry| entry.variance != Some(0.0);
+            let has_both = before.variance().is_some() && now.variance().is_some();
+            !has_both && (varies(before) || varies(now))
+        }),
+        uncounted: of_one(&|before, now| {
+            let looks = |entry: &Entry| entry.lookups.is_some_and(|lookups| lookups > 0.0);
+            let has_both = before.lookups().is_some() && now.lookups().is_some();
+            !has_both && (looks(before) || looks(now))
+        }),
+        brief: timed(&|before, now| {
+            let has_both = before.seconds.is_some() && now.seconds.is_some();
+            has_both && (before.nanoseconds().is_none() || now.nanoseconds().is_none())
+        }),
+        // Times and lookups stand in the first entry of an experiment only.
+        shared: timed(&|before, now| {
+            let is_first = before.lookups.is_some() || now.lookups.is_some();
+            is_first && (before.seconds.is_none() || now.seconds.is_none())
+        }),
     }
 }

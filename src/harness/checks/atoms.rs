@@ -4,8 +4,8 @@
 //! `T_c (1 − r)^N` of a constant ratio, the single value of deterministic estimators. A draw that
 //! is none of them is strange: a single one fails the check where the list is complete.
 
-use super::{Ask, Check, Kind, Law, Subject};
-use crate::harness::counted::Counted;
+use super::batch::Batch;
+use super::question::{Check, Kind, Law, Question, Subject};
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -51,7 +51,7 @@ impl Law for Values {
         self.value.len() + 1
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let strange = self.value.len();
         let mut count = |x: f64, times| sums[self.find(x).unwrap_or(strange)] += times;
         match &draws.values[0] {
@@ -77,7 +77,7 @@ impl Law for Values {
 }
 
 impl Check for Atoms {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
         if subject.expect_biased {
             return Vec::new();
@@ -86,7 +86,7 @@ impl Check for Atoms {
         if chi_square::testable_bins(&values.probability, subject.fixed as f64) < 2 {
             return Vec::new();
         }
-        vec![Ask::whole("the shares of the values", Kind::Law(Box::new(values)))]
+        vec![Question::whole("the shares of the values", Kind::Law(Box::new(values)))]
     }
 
     /// Two values have their exact binomial law, whose p-values are discrete: never too often small.

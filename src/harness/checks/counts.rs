@@ -7,8 +7,8 @@
 //!
 //! It applies where theory knows the law and at least two classes expect enough draws.
 
-use super::{Ask, Check, Kind, Law, Subject};
-use crate::harness::counted::Counted;
+use super::batch::Batch;
+use super::question::{Check, Kind, Law, Question, Subject};
 use crate::stats::chi_square;
 
 /// The check of the lookups' law.
@@ -23,7 +23,7 @@ impl Law for Classes {
         self.probability.len() + 1
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let beyond = self.probability.len();
         let mut count = |lookups: u32, times| sums[(lookups as usize).min(beyond)] += times;
         match &draws.lookups {
@@ -40,7 +40,7 @@ impl Law for Classes {
 }
 
 impl Check for Counts {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(law) = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0) else {
             return Vec::new();
         };
@@ -50,6 +50,9 @@ impl Check for Counts {
         {
             return Vec::new();
         }
-        vec![Ask::whole("the law of the lookups", Kind::Law(Box::new(Classes { probability })))]
+        vec![Question::whole(
+            "the law of the lookups",
+            Kind::Law(Box::new(Classes { probability })),
+        )]
     }
 }

@@ -8,7 +8,8 @@
 //! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted};
+use super::observe::Observe;
+use super::question::{Check, Kind, Known, Question, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 use crate::theory::prediction::Covariance as Predicted;
 
@@ -22,7 +23,7 @@ const ERROR: f64 = 1e-10;
 pub struct Covariance;
 
 impl Check for Covariance {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         if subject.expect_biased {
             return Vec::new();
         }
@@ -34,7 +35,7 @@ impl Check for Covariance {
     }
 }
 
-fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
+fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
     let [first, second] = covariance.pair.map(|i| &subject.prediction.channels[i]);
     if is_faint(subject, first) || is_faint(subject, second) {
         return None;
@@ -62,5 +63,5 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Ask> {
     } else {
         Kind::Untestable("its variance overflows".into())
     };
-    Some(Ask::channel(covariance.pair[1], &what, kind))
+    Some(Question::channel(covariance.pair[1], &what, kind))
 }

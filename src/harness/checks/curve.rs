@@ -12,9 +12,10 @@
 //! Source: the martingale is Eq. 13 of Szirmay-Kalos et al. 2017, whose increments over disjoint
 //! stretches are independent; the supremum is the reflection principle of Brownian motion.
 
-use super::{Ask, Check, Kind, Known, Law, Observe, Scalar, Subject, Wanted, rounding_of};
+use super::batch::Batch;
+use super::observe::Observe;
+use super::question::{Check, Kind, Known, Law, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
-use crate::harness::counted::Counted;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::stats::{chi_square, reflection};
 use crate::theory::Increment;
@@ -61,7 +62,7 @@ impl Law for Increments {
         self.scale.len()
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let mut last: Option<(&[f64], f64)> = None;
         for ((&j, &scale), sum) in self.at.iter().zip(&self.scale).zip(sums) {
             let now = &draws.draws.values[j];
@@ -91,7 +92,7 @@ impl Law for Increments {
 }
 
 impl Check for Curve {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let increments = &subject.prediction.increments;
         if subject.expect_biased || increments.is_empty() {
             return Vec::new();
@@ -104,7 +105,7 @@ impl Check for Curve {
         if is_long && increments.iter().all(|step| step.error <= SHARP) {
             let law = Increments::of(subject, &scale).map(|law| Kind::Law(Box::new(law)));
             return law
-                .map(|law| Ask::whole("the curve along one walk", law))
+                .map(|law| Question::whole("the curve along one walk", law))
                 .into_iter()
                 .collect();
         }
@@ -114,7 +115,7 @@ impl Check for Curve {
         let steps = increments.iter().enumerate().filter(|(_, increment)| has_spread(increment));
         steps
             .map(|(j, increment)| {
-                Ask::channel(j, "the step to it", step(subject, j, &scale, increment))
+                Question::channel(j, "the step to it", step(subject, j, &scale, increment))
             })
             .collect()
     }

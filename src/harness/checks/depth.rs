@@ -11,9 +11,9 @@
 //! Source: T. W. Anderson, D. A. Darling, *Asymptotic theory of certain "goodness of fit" criteria
 //! based on stochastic processes*, Annals of Mathematical Statistics 23 (1952), 193–212.
 
+use super::batch::Batch;
 use super::distances::Classes;
-use super::{Ask, Check, Kind, Law, Subject};
-use crate::harness::counted::Counted;
+use super::question::{Check, Kind, Law, Question, Subject};
 use crate::stats::anderson_darling;
 
 /// The check of the depth.
@@ -26,8 +26,8 @@ impl Law for Empirical {
         self.0.len() + 1
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
-        draws.add_distances(&self.0, sums);
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
+        draws.add_distances(|draws| self.0.count(draws), sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
@@ -36,9 +36,9 @@ impl Law for Empirical {
 }
 
 impl Check for Depth {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
         let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
-        kind.map(|kind| Ask::whole("the tails of the distances", kind)).into_iter().collect()
+        kind.map(|kind| Question::whole("the tails of the distances", kind)).into_iter().collect()
     }
 }

@@ -8,11 +8,11 @@
 //! streams that depend on each other make them differ too much. Neither need show in the mean of
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
+use super::batch::Batch;
 use super::mean::is_faint;
-use super::{Ask, BLURRED, Check, Kind, Law, Subject};
-use crate::harness::counted::Counted;
+use super::question::{BLURRED, Check, Kind, Law, Question, Subject};
+use crate::harness::addresses::BLOCK;
 use crate::harness::normality;
-use crate::harness::plan::BLOCK;
 use crate::numeric::sum::sum_in_lanes;
 use crate::stats::chi_square;
 
@@ -34,7 +34,7 @@ impl Law for BlockMeans {
         2
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let y = |x: f64| (x - self.mean) * self.scale;
         sums[0] += match (draws.values.last(), draws.draws.values.last()) {
             (Some(Some(census)), _) => census.sum(|&x| y(x)),
@@ -58,7 +58,7 @@ impl Law for BlockMeans {
 }
 
 impl Check for Dispersion {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
         let Some(moments) = channel.moments else { return Vec::new() };
         let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
@@ -70,6 +70,6 @@ impl Check for Dispersion {
         }
         let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
         let law = BlockMeans { mean, scale, least: needed };
-        vec![Ask::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
+        vec![Question::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
     }
 }

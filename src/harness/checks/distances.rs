@@ -7,9 +7,9 @@
 //!
 //! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
 
-use super::{Ask, Check, Kind, Law, Subject};
+use super::batch::Batch;
+use super::question::{Check, Kind, Law, Question, Subject};
 use crate::estimators::DrawBuffer;
-use crate::harness::counted::Counted;
 use crate::numeric::pack::in_fused_code;
 use crate::stats::chi_square;
 use crate::theory;
@@ -148,8 +148,8 @@ impl Law for Bins {
         self.classes.len() + 1
     }
 
-    fn add(&self, draws: &Counted, _: usize, sums: &mut [f64]) {
-        draws.add_distances(&self.classes, sums);
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
+        draws.add_distances(|draws| self.classes.count(draws), sums);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
@@ -165,14 +165,14 @@ impl Law for Bins {
 }
 
 impl Check for Distances {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
         let bins = classes.map(|classes| {
             let size = (classes.len() / BINS).max(1);
             Bins { classes, size }
         });
         let kind = bins.map(|bins| Kind::Law(Box::new(bins)));
-        kind.map(|kind| Ask::whole("the law of the distances", kind)).into_iter().collect()
+        kind.map(|kind| Question::whole("the law of the distances", kind)).into_iter().collect()
     }
 }
 

@@ -11,7 +11,7 @@
 //! the third gives the p-value. The words of a block are those of its lanes in turn, so that lanes
 //! are compared with each other as blocks are.
 
-use super::{Ask, Check, Inspected, Kind, Subject};
+use super::question::{Check, Inspected, Kind, Question, Subject};
 use crate::estimators::Order;
 use crate::stats::{correlation, ties};
 
@@ -30,7 +30,7 @@ const SHORT: usize = 256;
 pub struct Generator;
 
 impl Check for Generator {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         // One look at the streams needs draws that use them.
         let random = subject
             .prediction
@@ -40,7 +40,7 @@ impl Check for Generator {
         if subject.expect_biased || !random {
             return Vec::new();
         }
-        vec![Ask::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
+        vec![Question::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
     }
 
     fn is_uniform(&self) -> bool {

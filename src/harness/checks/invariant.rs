@@ -8,7 +8,7 @@
 //! For the double particle (q = 1) without a control it reads Σ rᵢ X(tᵢ⁻) + X(S) = 1: absorbed and
 //! transmitted light are all the light there was. It applies to walks that keep their books.
 
-use super::{Always, Ask, Check, Kind, Subject, rounding};
+use super::question::{Always, Check, Kind, Question, Subject, rounding};
 use crate::estimators::DrawBuffer;
 
 /// The check of the invariant.
@@ -39,11 +39,11 @@ fn largest(draws: &DrawBuffer) -> f64 {
 }
 
 impl Check for Invariant {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         if !subject.keeps_books || subject.expect_biased {
             return Vec::new();
         }
         let bound = Always { largest: Box::new(largest), bound: rounding(0.0) };
-        vec![Ask::whole("the balance of each walk", Kind::Always(bound))]
+        vec![Question::whole("the balance of each walk", Kind::Always(bound))]
     }
 }

@@ -7,7 +7,8 @@
 //! It sees wrong free flights and wrong endings that the mean hides, and much sooner. A number that
 //! theory says is always the same must be met by every draw.
 
-use super::{Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted};
+use super::observe::Observe;
+use super::question::{Always, Check, Kind, Known, Question, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 
 /// The largest relative error of the lookups that is still worth a promise.
@@ -19,7 +20,7 @@ pub const ERROR: f64 = 1e-10;
 pub struct Lookups;
 
 impl Check for Lookups {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(law) = &subject.prediction.lookups else { return Vec::new() };
         let mean = law.mean;
         let kind = if law.variance > 0.0 {
@@ -40,6 +41,6 @@ impl Check for Lookups {
             // The law's own number may be rounded; a draw that differs by one is far beyond that.
             Kind::Always(Always { largest: Box::new(largest), bound: 0.5 })
         };
-        vec![Ask::whole("the number of lookups", kind)]
+        vec![Question::whole("the number of lookups", kind)]
     }
 }

@@ -11,9 +11,8 @@
 //! bound on the variance, V is that bound; where it has none but knows that tails are light, as of the
 //! length of a walk, V is again twice that of pilot draws.
 
-use super::{
-    Always, Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, observe_each, rounding_of,
-};
+use super::observe::{Observe, observe_each};
+use super::question::{Always, Check, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::theory::Channel;
 
@@ -46,10 +45,12 @@ fn floor(subject: &Subject, channel: &Channel) -> f64 {
 }
 
 impl Check for Mean {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let channels = subject.prediction.channels.iter().enumerate();
         channels
-            .map(|(index, channel)| Ask::channel(index, "the mean", kind(subject, index, channel)))
+            .map(|(index, channel)| {
+                Question::channel(index, "the mean", kind(subject, index, channel))
+            })
             .collect()
     }
 }

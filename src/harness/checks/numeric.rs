@@ -3,7 +3,7 @@
 //! A draw that is not a number, or infinite, is a failure whatever else the draws say: no mean of
 //! such draws exists.
 
-use super::{Always, Ask, Check, Kind, Subject};
+use super::question::{Always, Check, Kind, Question, Subject};
 use crate::estimators::DrawBuffer;
 use crate::numeric::sum::sum_in_lanes;
 
@@ -16,8 +16,8 @@ fn largest(draws: &DrawBuffer) -> f64 {
 }
 
 impl Check for Numeric {
-    fn questions(&self, _: &Subject) -> Vec<Ask> {
+    fn questions(&self, _: &Subject) -> Vec<Question> {
         let bound = Always { largest: Box::new(largest), bound: 0.0 };
-        vec![Ask::whole("every draw", Kind::Always(bound))]
+        vec![Question::whole("every draw", Kind::Always(bound))]
     }
 }

@@ -11,8 +11,8 @@
 //! Coarse random numbers and positions in single precision escape every mean and variance. The
 //! check looks at the collisions of one block, drawn once more.
 
-use super::{Ask, Check, Inspected, Kind, Subject};
-use crate::harness::plan::BLOCK;
+use super::question::{Check, Inspected, Kind, Question, Subject};
+use crate::harness::addresses::BLOCK;
 use crate::stats::ties;
 use crate::theory::Law;
 
@@ -23,7 +23,7 @@ const FEWEST: usize = 100;
 pub struct Resolution;
 
 impl Check for Resolution {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(Law::Distances { bins, end, from, .. }) = &subject.prediction.law else {
             return Vec::new();
         };
@@ -32,7 +32,7 @@ impl Check for Resolution {
         }
         let (end, grain) = (*end, grain(bins, *end, *from));
         let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, end, grain)));
-        vec![Ask::whole("the resolution of the distances", kind)]
+        vec![Question::whole("the resolution of the distances", kind)]
     }
 
     fn is_uniform(&self) -> bool {

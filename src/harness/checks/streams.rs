@@ -10,10 +10,10 @@
 //! B blocks that share a seed have sums B times as wide; two that share one, twice. It looks at the
 //! first L = 1024 draws of each block.
 
+use super::batch::Batch;
 use super::mean::is_faint;
-use super::{Ask, BLURRED, Check, Kind, Law, Subject};
-use crate::harness::counted::Counted;
-use crate::harness::plan::BLOCK;
+use super::question::{BLURRED, Check, Kind, Law, Question, Subject};
+use crate::harness::addresses::BLOCK;
 use crate::stats::correlation;
 
 /// L.
@@ -39,7 +39,7 @@ impl Law for IndexSums {
         FIRST + 1
     }
 
-    fn add(&self, draws: &Counted, first: usize, sums: &mut [f64]) {
+    fn add(&self, draws: &Batch, first: usize, sums: &mut [f64]) {
         let Some(values) = draws.draws.values.last() else { return };
         let places = sums[..FIRST].iter_mut().skip(first);
         for (sum, x) in places.zip(values) {
@@ -64,7 +64,7 @@ impl Law for IndexSums {
 }
 
 impl Check for Streams {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
         let Some(moments) = channel.moments else { return Vec::new() };
         let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
@@ -80,6 +80,6 @@ impl Check for Streams {
         }
         let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
         let law = IndexSums { mean, scale, kurtosis };
-        vec![Ask::whole("the sums across streams", Kind::Law(Box::new(law)))]
+        vec![Question::whole("the sums across streams", Kind::Law(Box::new(law)))]
     }
 }

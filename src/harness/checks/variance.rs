@@ -10,7 +10,8 @@
 //! values, and of experiments that a case declares biased.
 
 use super::mean::is_faint;
-use super::{Ask, Check, Kind, Known, Observe, Scalar, Subject, Wanted, observe_each, rounding_of};
+use super::observe::{Observe, observe_each};
+use super::question::{Check, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::theory::Channel;
 
 /// The largest relative error of the variance that is still worth a promise.
@@ -22,14 +23,14 @@ const TWO_POINT: f64 = 1.0 + 1e-6;
 pub struct Variance;
 
 impl Check for Variance {
-    fn questions(&self, subject: &Subject) -> Vec<Ask> {
+    fn questions(&self, subject: &Subject) -> Vec<Question> {
         if subject.expect_biased {
             return Vec::new();
         }
         let channels = subject.prediction.channels.iter().enumerate();
         channels
             .filter_map(|(index, channel)| {
-                Some(Ask::channel(index, "the variance", kind(subject, index, channel)?))
+                Some(Question::channel(index, "the variance", kind(subject, index, channel)?))
             })
             .collect()
     }

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::layout::{self, Column, Field, Grid, Paint, Pen, wrapped};
 use super::{View, views};
-use crate::harness::baseline::compare::Comparison;
+use crate::harness::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::changes;
 use crate::report::number::{fixed, range, short};

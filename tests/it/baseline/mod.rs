@@ -10,8 +10,8 @@ use serde_json::Value;
 use tempfile::TempDir;
 use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
-use trueflight::harness::baseline::compare::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::baseline::{Baseline, BaselineError, Entry};
+use trueflight::harness::baseline::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, run, verdict};
 use trueflight::rng::Streams;
 

@@ -28,7 +28,6 @@ use field::{
 use ode::{Solution, solve};
 use rule::Rule;
 use trueflight::harness::Case;
-use trueflight::harness::addresses;
 use trueflight::theory::Prediction;
 use volterra::volterra;
 
@@ -226,7 +225,7 @@ fn check(scene: &Scene) -> (Vec<String>, usize) {
             Law::Product { controlled: false, .. } | Law::NextFlight | Law::UnidirectionalMis
         );
         let exists = (estimator.exists)(scene, scene.ranges(controlled));
-        let found = case.scenario.predict(index, None, None, addresses::pilots(1, &case, index));
+        let found = case.scenario.predict(index, None, None, case.pilots(1, index));
         assert_eq!(found.is_some(), exists, "whether it exists: {what}");
         let Some(found) = found else { continue };
         let expected = match (law, sampling.shape) {
@@ -365,10 +364,8 @@ fn eq_21_by_equation_14() {
     ];
     let mut differences = Vec::new();
     for (index, expected) in expected.iter().enumerate() {
-        let found = case
-            .scenario
-            .predict(index, None, None, addresses::pilots(1, &case, index))
-            .expect("it exists");
+        let found =
+            case.scenario.predict(index, None, None, case.pilots(1, index)).expect("it exists");
         differences.extend(compare(&format!("estimator {index} of Eq. 21"), &found, expected));
     }
     crate::common::none(&differences);

@@ -1,4 +1,4 @@
-//! A buffer of draws, counted where they take few values.
+//! A batch of draws, counted where they take few values.
 //!
 //! Walks that end as 0 or 1, products of equal factors, and the numbers of lookups of most
 //! experiments take far fewer values than there are draws. What a question asks of them is then asked
@@ -6,8 +6,7 @@
 
 use std::cell::OnceCell;
 
-use super::checks::distances::Classes;
-use super::checks::{Observe, Observer};
+use super::observe::{Observe, Observer};
 use crate::estimators::DrawBuffer;
 use crate::stats::{Census, Tally};
 
@@ -15,7 +14,7 @@ use crate::stats::{Census, Tally};
 const PART: usize = 1024;
 
 /// Draws, with what is known of their values.
-pub struct Counted<'a> {
+pub struct Batch<'a> {
     /// The draws.
     pub draws: &'a DrawBuffer,
     /// Per channel its values, where they are few.
@@ -26,8 +25,8 @@ pub struct Counted<'a> {
     distances: OnceCell<Vec<f64>>,
 }
 
-impl<'a> Counted<'a> {
-    /// Counts what can be counted.
+impl<'a> Batch<'a> {
+    /// Counts what can be batch.
     #[must_use]
     pub fn new(draws: &'a DrawBuffer) -> Self {
         let values = draws.values.iter().map(|values| Census::<f64>::of(values)).collect();
@@ -60,9 +59,10 @@ impl<'a> Counted<'a> {
         }
     }
 
-    /// Adds how many draws are in each class of the experiment's distances: the same for all that ask.
-    pub fn add_distances(&self, classes: &Classes, sums: &mut [f64]) {
-        let counts = self.distances.get_or_init(|| classes.count(self.draws));
+    /// Adds how many draws are in each class of the experiment's distances: counted once for all
+    /// that ask.
+    pub fn add_distances(&self, count: impl Fn(&DrawBuffer) -> Vec<f64>, sums: &mut [f64]) {
+        let counts = self.distances.get_or_init(|| count(self.draws));
         debug_assert_eq!(sums.len(), counts.len(), "an experiment has one law of distances");
         sums.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
     }
@@ -117,9 +117,9 @@ mod tests {
     }
 
     /// The sum of the y's, whichever way they come.
-    fn sum(counted: &Counted, observe: &Observe) -> (bool, f64) {
+    fn sum(batch: &Batch, observe: &Observe) -> (bool, f64) {
         let (mut few, mut sum) = (false, 0.0);
-        counted.observe(observe, &mut Vec::new(), |y, times| {
+        batch.observe(observe, &mut Vec::new(), |y, times| {
             few = times.is_some();
             let times = |i: usize| times.map_or(1.0, |times| times[i]);
             sum += y.iter().enumerate().map(|(i, y)| y * times(i)).sum::<f64>();
@@ -134,14 +134,14 @@ mod tests {
         let lookups =
             Observe::Lookups(Box::new(|n, y| y.extend(n.iter().map(|&n| f64::from(n) - 1.0))));
         let draw = Observe::Draw(Box::new(|draws, y| y.extend(&draws.values[0])));
-        let counted = Counted::new(&few);
-        assert_eq!(sum(&counted, &value), (true, 999.0));
-        assert_eq!(sum(&counted, &lookups), (true, 500.0));
-        assert_eq!(sum(&counted, &draw), (false, 499.0));
-        assert_eq!(counted.tally(0, 0.0, 1.0).moments().map(|m| m.mean), Some(499.0 / 500.0));
-        assert_eq!(counted.tally_of_lookups(2.0).moments().map(|m| m.mean), Some(0.0));
-        let counted = Counted::new(&many);
+        let batch = Batch::new(&few);
+        assert_eq!(sum(&batch, &value), (true, 999.0));
+        assert_eq!(sum(&batch, &lookups), (true, 500.0));
+        assert_eq!(sum(&batch, &draw), (false, 499.0));
+        assert_eq!(batch.tally(0, 0.0, 1.0).moments().map(|m| m.mean), Some(499.0 / 500.0));
+        assert_eq!(batch.tally_of_lookups(2.0).moments().map(|m| m.mean), Some(0.0));
+        let batch = Batch::new(&many);
         let plain: f64 = many.values[0].iter().map(|x| x + 1.0).sum();
-        assert_eq!(sum(&counted, &value), (false, plain));
+        assert_eq!(sum(&batch, &value), (false, plain));
     }
 }

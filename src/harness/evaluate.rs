@@ -13,9 +13,9 @@
 use rayon::prelude::*;
 
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
+use super::drawn::{Drawn, Draws, Standing, Total};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::record::{Finding, GateFinding, Verdict};
-use super::run::{Drawn, Draws, Standing, Total};
 use crate::numeric::sum::Sum;
 use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
@@ -25,7 +25,7 @@ pub const ASSUMED: &str = "variance assumed";
 
 /// What is found of a run: per case, per experiment, per question.
 #[must_use]
-pub fn of_run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
+pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
     let mut findings: Vec<Vec<Vec<Finding>>> = pairs
         .par_iter()

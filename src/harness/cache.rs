@@ -11,14 +11,15 @@ use std::collections::BTreeMap;
 use fearless_simd::Level;
 use serde::{Deserialize, Serialize};
 
+use super::drawn::{Drawn, Draws};
 use super::plan::{Plan, Planned, PlannedCase};
-use super::run::{Drawn, Draws};
+
 use crate::numeric::pack;
 use crate::rng::{hash, name_hash};
 
 /// What is kept: experiments by what they are made of. Without a program nothing is.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub struct Kept {
+pub struct Cache {
     /// The fingerprint of the program's file.
     program: String,
     experiments: BTreeMap<u64, Drawn>,
@@ -30,14 +31,14 @@ pub struct Kept {
 /// More experiments than this are not kept: a file of some 20 MB.
 const MOST: usize = 2000;
 
-impl Kept {
+impl Cache {
     /// Nothing yet, drawn by a program of that fingerprint.
     #[must_use]
     pub fn new(program: &str) -> Self {
         Self { program: program.to_owned(), ..Self::default() }
     }
 
-    /// What the same program wrote with [`Kept::bytes`]. What another one wrote, and what is broken,
+    /// What the same program wrote with [`Cache::bytes`]. What another one wrote, and what is broken,
     /// is as good as nothing.
     #[must_use]
     pub fn read(bytes: &[u8], program: &str) -> Self {

@@ -1,7 +1,24 @@
-//! What no computer with doubles can test in a lifetime.
+//! An experiment that can be drawn, or why it cannot: what no computer with doubles can test in a
+//! lifetime is refused.
 
-use super::scenario::Ready;
-use crate::estimators::Refusal;
+use crate::estimators::{Experiment, Refusal};
+use crate::theory::Prediction;
+
+/// An experiment that can be drawn.
+pub struct Ready {
+    /// What draws.
+    pub experiment: Box<dyn Experiment>,
+    /// What theory says. For a forced experiment the moments are void and removed.
+    pub prediction: Prediction,
+}
+
+/// An experiment that can be drawn, or the reason why not.
+pub struct Prepared {
+    /// The experiment and what theory says of it.
+    pub outcome: Result<Ready, Refusal>,
+    /// Whether the case declares it biased.
+    pub expect_biased: bool,
+}
 
 /// Below this transmittance the ratio of a draw to the truth is no longer a double.
 pub const FAINTEST: f64 = 1e-300;

@@ -1,0 +1,142 @@
+//! What a comparison of two runs says.
+
+use serde::Serialize;
+
+/// What the comparison is to say at which level.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Rules {
+    /// The chance that equal code shows any regression of a variance or of lookups.
+    pub alpha: f64,
+    /// How much more time per draw is no regression, as a share.
+    pub time_tolerance: f64,
+}
+
+impl Rules {
+    /// Whether any time could be a regression.
+    #[must_use]
+    pub fn asks_for_times(&self) -> bool {
+        self.time_tolerance < f64::INFINITY
+    }
+}
+
+/// What changed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Comparison {
+    /// What the stored run is called.
+    pub name: String,
+    /// The levels.
+    pub rules: Rules,
+    /// Whether e-values were multiplied, and why not.
+    pub sequel: Sequel,
+    /// How many variances and lookups were compared: α is shared among them.
+    pub compared: usize,
+    /// How many times per draw were compared.
+    pub times: usize,
+    /// How many e-values were multiplied with stored ones.
+    pub multiplied: usize,
+    /// How many variances were too uncertain to compare.
+    pub blunt: usize,
+    /// What of the experiments that both have was not compared.
+    pub left_out: LeftOut,
+    /// What grew or shrank.
+    pub changes: Vec<Change>,
+    /// Checks that fail over all runs together.
+    pub drifts: Vec<Drift>,
+    /// Experiments of this run that the baseline has not.
+    pub added: Vec<String>,
+    /// Experiments of the baseline that this run has not.
+    pub missing: Vec<String>,
+    /// Experiments whose case has another text than in the baseline.
+    pub rewritten: Vec<String>,
+}
+
+/// Whether the e-values of both runs multiply.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Sequel {
+    /// They do: so many runs together.
+    Run(usize),
+    /// The seed is among those stored: its draws say nothing new.
+    SameSeed,
+    /// Another program drew.
+    OtherProgram,
+}
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Quantity {
+    /// The sample variance of one draw.
+    Variance,
+    /// Lookups per draw.
+    Lookups,
+    /// Processor nanoseconds per draw.
+    Time,
+}
+
+/// A quantity that differs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Change {
+    /// The experiment.
+    pub id: String,
+    /// The quantity.
+    pub quantity: Quantity,
+    /// Its stored value, with its standard error.
+    pub before: [f64; 2],
+    /// Its value now, with its standard error.
+    pub now: [f64; 2],
+    /// now/before.
+    pub ratio: f64,
+    /// Where the true ratio is; `None` for times.
+    pub interval: Option<[f64; 2]>,
+    /// Whether it became worse.
+    pub is_regression: bool,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+/// A check that fails over several runs.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Drift {
+    /// The experiment.
+    pub id: String,
+    /// The check.
+    pub check: String,
+    /// ln E of all runs together.
+    pub ln_e: f64,
+    /// The limit.
+    pub limit: f64,
+    /// The command that repeats the experiment.
+    pub command: String,
+}
+
+impl Comparison {
+    /// Whether anything became worse.
+    #[must_use]
+    pub fn fails(&self) -> bool {
+        !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
+    }
+
+    /// Whether nothing of the run was compared with anything: such a comparison says nothing.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.compared == 0 && self.times == 0 && self.multiplied == 0
+    }
+}
+
+/// The experiments that both runs have of which something was not compared, by the reason.
+#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+pub struct LeftOut {
+    /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
+    pub relearned: Vec<String>,
+    /// The variance is too uncertain.
+    pub blunt: Vec<String>,
+    /// Theory has no kurtosis, so that nobody knows how uncertain the variance is.
+    pub unpredicted: Vec<String>,
+    /// Theory has no variance of the number of lookups.
+    pub uncounted: Vec<String>,
+    /// The draws took less than 0.1 s, then or now.
+    pub brief: Vec<String>,
+    /// The lookups were shared with other experiments, then or now: the time is of their company.
+    pub shared: Vec<String>,
+}

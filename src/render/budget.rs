@@ -1,0 +1,189 @@
+//! How many draws each pixel makes, and what the draws of all pixels come to.
+
+use crate::catalogue::{number, rounded};
+
+/// More draws at a pixel than this are a mistake in the picture.
+const MOST_DRAWS: f64 = 1e7;
+
+/// What is expected of a draw at a pixel.
+#[derive(Debug, Clone)]
+pub struct Forecast {
+    /// Its lookups; `None` where no pilot was drawn.
+    pub lookups: Option<f64>,
+    /// Its variance, by theory.
+    pub variance: Option<f64>,
+    /// By how much its mean is off, by theory.
+    pub bias: f64,
+    /// Whether the pixel fits its own control.
+    pub leads: bool,
+    /// The lookups of the pilot.
+    pub pilots: u64,
+}
+
+/// What the draws of a pixel came to.
+#[derive(Debug, Clone, Copy)]
+pub struct PixelDraws {
+    /// How many.
+    pub draws: u64,
+    /// The sum of their values.
+    pub sum: f64,
+    /// The sum of their squares.
+    pub squares: f64,
+    /// The sum of their lookups.
+    pub lookups: u64,
+}
+
+/// How many draws each pixel makes: fixed before the first.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    draws: f64,
+    /// The lookups of a control, for each pixel.
+    points: Vec<u64>,
+    pilots: u64,
+    variances: Vec<f64>,
+    biases: Vec<f64>,
+}
+
+/// What an estimator found: one number for each covered pixel.
+#[derive(Debug, Clone, Default)]
+pub struct PixelValues {
+    /// The pixels' values.
+    pub values: Vec<f64>,
+    /// Their squared standard errors, measured; not a number where there is one draw only.
+    pub square_errors: Vec<f64>,
+    /// Their expected squared errors by theory; empty where it is not asked.
+    pub predicted: Vec<f64>,
+    /// Draws.
+    pub draws: Vec<u64>,
+    /// Lookups.
+    pub lookups: Vec<u64>,
+    /// Lookups of all pilots.
+    pub pilots: u64,
+}
+
+impl Plan {
+    /// Shares `budget` lookups per pixel out among draws.
+    ///
+    /// # Errors
+    ///
+    /// Why the estimator is refused at a pixel, or that a draw costs more than there is.
+    pub fn new<'a>(
+        forecasts: impl Iterator<Item = &'a Result<Forecast, String>>,
+        points: usize,
+        budget: u64,
+    ) -> Result<Self, String> {
+        let (mut fitted, mut pilots) = (Vec::new(), 0);
+        let (mut lookups, mut counted) = (0.0, 0.0);
+        let (mut variances, mut biases) = (Vec::new(), Vec::new());
+        for forecast in forecasts {
+            let forecast = forecast.as_ref().map_err(String::clone)?;
+            if let Some(expected) = forecast.lookups {
+                lookups += expected;
+                counted += 1.0;
+            }
+            variances.extend(forecast.variance);
+            biases.push(forecast.bias);
+            fitted.push(if forecast.leads { points as u64 } else { 0 });
+            pilots += forecast.pilots;
+        }
+        if variances.len() < biases.len() {
+            variances.clear();
+        }
+        if counted == 0.0 {
+            return Err("no pixel is covered, or none by a pilot".into());
+        }
+        let expected = lookups / counted;
+        if expected.is_nan() || expected <= 0.0 {
+            return Err("it looks nothing up: there is nothing to compare at".into());
+        }
+        let control = fitted.iter().sum::<u64>() as f64 / fitted.len() as f64;
+        let draws = (budget as f64 - control) / expected;
+        if draws.is_nan() || draws < 1.0 {
+            let least = number((expected + control).ceil());
+            return Err(format!("a draw takes {least} lookups at a pixel, and there are {budget}"));
+        }
+        if draws > MOST_DRAWS {
+            let (expected, draws) = (rounded(expected), rounded(draws));
+            return Err(format!(
+                "a draw takes {expected} lookups: {draws} draws a pixel are too many"
+            ));
+        }
+        Ok(Self { draws, points: fitted, pilots, variances, biases })
+    }
+
+    /// The draws of the covered pixel of a number: the whole part of their share so far.
+    #[must_use]
+    pub fn draws_of(&self, number: usize) -> u64 {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2⁵³
+        let until = |n: usize| (self.draws * n as f64).floor() as u64;
+        until(number + 1) - until(number)
+    }
+
+    /// Gathers what pixels came to.
+    #[must_use]
+    pub fn gather(&self, pixels: &[PixelDraws]) -> PixelValues {
+        let spread = |pixel: &PixelDraws| {
+            let n = pixel.draws as f64;
+            let mean = pixel.sum / n;
+            if n < 2.0 { f64::NAN } else { (pixel.squares / n - mean * mean).max(0.0) / (n - 1.0) }
+        };
+        let predicted = self.variances.iter().zip(&self.biases).zip(pixels);
+        let lookups = pixels.iter().zip(&self.points);
+        PixelValues {
+            values: pixels.iter().map(|pixel| pixel.sum / pixel.draws as f64).collect(),
+            square_errors: pixels.iter().map(spread).collect(),
+            predicted: predicted.map(|((v, b), p)| v / p.draws as f64 + b * b).collect(),
+            draws: pixels.iter().map(|pixel| pixel.draws).collect(),
+            lookups: lookups.map(|(pixel, points)| pixel.lookups + points).collect(),
+            pilots: self.pilots,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    type Asked = Result<Forecast, String>;
+
+    fn of(lookups: f64) -> Forecast {
+        let (lookups, variance) = (Some(lookups), Some(1.0));
+        Forecast { lookups, variance, bias: 0.0, leads: true, pilots: 0 }
+    }
+
+    #[test]
+    fn pixels_share_the_draws_evenly() {
+        let forecasts: [Asked; 2] = [Ok(of(6.0)), Ok(of(10.0))];
+        let plan = Plan::new(forecasts.iter(), 4, 24).expect("2.5 draws");
+        let draws: Vec<u64> = (0..6).map(|i| plan.draws_of(i)).collect();
+        assert_eq!(draws, [2, 3, 2, 3, 2, 3]);
+    }
+
+    #[test]
+    fn a_shared_control_is_paid_once() {
+        let follower: Asked = Ok(Forecast { leads: false, ..of(5.0) });
+        let plan = Plan::new([Ok(of(5.0)), follower].iter(), 20, 20).expect("2 draws");
+        assert_eq!((plan.draws, plan.points), (2.0, vec![20, 0]));
+    }
+
+    #[test]
+    fn a_draw_that_costs_more_than_there_is_and_one_that_costs_nothing_are_refused() {
+        let error = Plan::new([Ok(of(30.0))].iter(), 0, 20).expect_err("too dear");
+        assert!(error.contains("30 lookups"), "{error}");
+        let error = Plan::new([Ok(of(0.0))].iter(), 0, 20).expect_err("free");
+        assert!(error.contains("looks nothing up"), "{error}");
+        let refused = Err("pixel (0, 0) needs more".to_owned());
+        let error = Plan::new([refused].iter(), 0, 20).expect_err("refused");
+        assert!(error.contains("pixel (0, 0)"), "{error}");
+    }
+
+    #[test]
+    fn a_pixel_knows_its_standard_error() {
+        let plan = Plan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
+        let pixel = PixelDraws { draws: 4, sum: 2.0, squares: 2.0, lookups: 18 };
+        let found = plan.gather(&[pixel]);
+        // 0, 0, 1, 1: s² = 1/3, over 4 draws.
+        assert!((found.square_errors[0] - 1.0 / 12.0).abs() < 1e-15);
+        assert_eq!((found.values[0], found.predicted[0]), (0.5, 0.25));
+    }
+}
