@@ -19,7 +19,6 @@ use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Stream, exponential};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
     fn on(target: Target, name: &'static str, check: &'static str, slip: Slip, bug: &'static str) -> Mutant<TransmittanceCurve> {

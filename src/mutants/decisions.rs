@@ -8,7 +8,7 @@
 //! not: who flies far decides otherwise than who does not.
 
 use super::Mutant;
-use super::fault::{Fault, Memory};
+use super::fault::{Fault, Memory, RIGHT};
 use super::target::{TERMINATING, WOODCOCK};
 use super::walk::product;
 use crate::estimators::rules::{Null, Single};
@@ -17,14 +17,13 @@ use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
     vec![
-        product("number-shared", "one random number for the distance and for the decision", WOODCOCK, "mean", Null, Shared),
-        product("number-shared-reversed", "the distance from u, the decision from 1 − u", WOODCOCK, "mean", Null, SharedReversed),
-        product("number-stale", "the decision takes the number of the flight before", WOODCOCK, "mean", Null, Stale),
-        product("number-of-first-decision", "one number for all decisions of a walk", TERMINATING, "variance", Single::Terminating, OneForAll),
+        product("number-shared", "one random number for the distance and for the decision", WOODCOCK, "mean", Null, SHARED),
+        product("number-shared-reversed", "the distance from u, the decision from 1 − u", WOODCOCK, "mean", Null, SHARED_REVERSED),
+        product("number-stale", "the decision takes the number of the flight before", WOODCOCK, "mean", Null, STALE),
+        product("number-of-first-decision", "one number for all decisions of a walk", TERMINATING, "variance", Single::Terminating, ONE_FOR_ALL),
     ]
 }
 
@@ -35,60 +34,26 @@ fn remembered_flight(memory: &mut Memory, rng: &mut Stream) -> f64 {
 }
 
 /// `vᵢ = uᵢ`.
-#[derive(Clone, Copy)]
-pub struct Shared;
-
-impl Fault for Shared {
-    #[inline(always)]
-    fn flight(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        remembered_flight(memory, rng)
-    }
-
-    #[inline(always)]
-    fn number(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        memory.number.unwrap_or_else(|| unit(rng))
-    }
-}
+pub const SHARED: Fault = Fault {
+    flight: remembered_flight,
+    number: |memory, rng| memory.number.unwrap_or_else(|| unit(rng)),
+    ..RIGHT
+};
 
 /// `vᵢ = 1 − uᵢ`.
-#[derive(Clone, Copy)]
-struct SharedReversed;
-
-impl Fault for SharedReversed {
-    #[inline(always)]
-    fn flight(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        remembered_flight(memory, rng)
-    }
-
-    #[inline(always)]
-    fn number(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        1.0 - memory.number.unwrap_or_else(|| unit(rng))
-    }
-}
+const SHARED_REVERSED: Fault = Fault {
+    flight: remembered_flight,
+    number: |memory, rng| 1.0 - memory.number.unwrap_or_else(|| unit(rng)),
+    ..RIGHT
+};
 
 /// `vᵢ = uᵢ₋₁`; the first is fresh.
-#[derive(Clone, Copy)]
-pub struct Stale;
-
-impl Fault for Stale {
-    #[inline(always)]
-    fn flight(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        remembered_flight(memory, rng)
-    }
-
-    #[inline(always)]
-    fn number(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        memory.older.unwrap_or_else(|| unit(rng))
-    }
-}
+pub const STALE: Fault = Fault {
+    flight: remembered_flight,
+    number: |memory, rng| memory.older.unwrap_or_else(|| unit(rng)),
+    ..RIGHT
+};
 
 /// `vᵢ = v₁`.
-#[derive(Clone, Copy)]
-pub struct OneForAll;
-
-impl Fault for OneForAll {
-    #[inline(always)]
-    fn number(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        *memory.number.get_or_insert_with(|| unit(rng))
-    }
-}
+pub const ONE_FOR_ALL: Fault =
+    Fault { number: |memory, rng| *memory.number.get_or_insert_with(|| unit(rng)), ..RIGHT };

@@ -1,11 +1,10 @@
-//! The steps of a walk, one method each: a fault overrides one of them.
+//! The steps of a walk, one function each: a fault replaces some of them.
 
 use crate::estimators::Setup;
 use crate::media::{Control, Cursor, Extinction, Lookups, Piecewise};
 use crate::numeric::Span;
-use crate::problems::Problem;
 use crate::rng::{Stream, exponential, unit};
-use crate::theory::{Outcome, Rule};
+use crate::theory::{Mesh, Outcome};
 
 /// What a walk remembers, whether it should or not.
 pub struct Memory {
@@ -27,122 +26,87 @@ pub struct Memory {
 
 impl Memory {
     /// At the beginning of a draw.
-    #[inline(always)]
-    #[must_use]
     pub fn new(support: Span, weight: f64, rng: &Stream) -> Self {
-        Self {
-            support,
-            from: support.from,
-            lookups: 0,
-            before: weight,
-            beginning: *rng,
-            number: None,
-            older: None,
-        }
+        let (from, beginning) = (support.from, *rng);
+        Self { support, from, lookups: 0, before: weight, beginning, number: None, older: None }
     }
 }
 
-/// A mistake in one step of a walk; the default of every step is right.
-pub trait Fault: Copy + Send + Sync + 'static {
-    /// See [`super::Draws::REPLAYS`].
-    const REPLAYS: bool = false;
+/// What a fault may change before the first draw.
+pub struct Prepared<'a> {
+    /// The medium.
+    pub mesh: &'a Mesh,
+    /// σ̂ on the support.
+    pub sampling: &'a mut Piecewise,
+    /// σ_c.
+    pub control: &'a mut Control,
+    /// `T_c = exp(−∫σ_c)`.
+    pub control_transmittance: &'a mut f64,
+}
 
-    /// What is prepared once: σ̂ on the support, `T_c = exp(−∫σ_c)`.
-    fn prepare<P: Problem>(&self, setup: Setup<P>) -> Setup<P> {
-        setup
-    }
-
+/// The steps of a walk, of which a fault has one wrong; [`RIGHT`] are those of the estimators.
+#[derive(Clone, Copy)]
+pub struct Fault {
+    /// See [`super::Draws::replays`].
+    pub replays: bool,
+    /// Changes what is prepared once.
+    pub prepare: fn(Prepared<'_>),
     /// The optical depth of a flight through σ̂: exponential with mean 1.
-    #[inline(always)]
-    fn flight(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        let _ = memory;
-        exponential(rng)
-    }
-
+    pub flight: fn(&mut Memory, &mut Stream) -> f64,
     /// Flies to the next tentative collision and answers σ̂ there; `None` beyond the end.
-    #[inline(always)]
-    fn fly(&self, sampling: &Piecewise, cursor: &mut Cursor, depth: f64) -> Option<f64> {
-        sampling.fly(cursor, depth)
-    }
-
+    pub fly: fn(&Piecewise, &mut Cursor, f64) -> Option<f64>,
     /// `σ_t` at the collision.
-    #[inline(always)]
-    fn look(&self, memory: &Memory, medium: &Lookups, t: f64) -> f64 {
-        let _ = memory;
-        medium.extinction(t)
-    }
-
+    pub look: fn(&Memory, &Lookups, f64) -> f64,
     /// `σ_c` at the collision.
-    #[inline(always)]
-    fn control(&self, memory: &Memory, control: &Control, t: f64) -> f64 {
-        let _ = memory;
-        control.extinction(t)
-    }
-
-    /// `r = (σ_t − σ_c)/σ̂`.
-    #[inline(always)]
-    fn ratio(&self, sampling: &Piecewise, residual: f64, here: f64) -> f64 {
-        let _ = sampling;
-        residual * (1.0 / here)
-    }
-
-    /// `q` and the weight of a survivor, with `q · weight = 1 − r`.
-    #[inline(always)]
-    fn outcome<R: Rule>(&self, rule: &R, ratio: f64) -> Outcome {
-        rule.outcome(ratio)
-    }
-
+    pub control: fn(&Memory, &Control, f64) -> f64,
+    /// `r = (σ_t − σ_c)/σ̂`, from the whole of σ̂, the residual and σ̂ at the collision.
+    pub ratio: fn(&Piecewise, f64, f64) -> f64,
+    /// `q` and the weight of a survivor, with `q · weight = 1 − r`, from what is right and r.
+    pub outcome: fn(Outcome, f64) -> Outcome,
     /// The number that decides: uniform, and independent of all others.
-    #[inline(always)]
-    fn number(&self, memory: &mut Memory, rng: &mut Stream) -> f64 {
-        let _ = memory;
-        unit(rng)
-    }
-
+    pub number: fn(&mut Memory, &mut Stream) -> f64,
     /// Whether a collision is real, given that the number says so.
-    #[inline(always)]
-    fn real(&self, memory: &Memory, real: bool) -> bool {
-        let _ = memory;
-        real
-    }
-
-    /// The weight after a collision.
-    #[inline(always)]
-    fn weigh(&self, memory: &Memory, weight: f64, factor: f64) -> f64 {
-        let _ = memory;
-        weight * factor
-    }
-
-    /// A walk ends nowhere but at the end or at a collision; `Some` ends it here with that value.
-    #[inline(always)]
-    fn stop(&self, memory: &Memory, weight: f64, rng: &mut Stream) -> Option<f64> {
-        let _ = (memory, weight, rng);
-        None
-    }
-
+    pub real: fn(&Memory, bool) -> bool,
+    /// The weight after a collision, from the one before it and its factor.
+    pub weigh: fn(&Memory, f64, f64) -> f64,
+    /// A walk of a weight ends nowhere but at the end or at a collision; `Some` ends it here with that value.
+    pub stop: fn(&Memory, f64, &mut Stream) -> Option<f64>,
     /// The draw of a walk that reached the end: its weight.
-    #[inline(always)]
-    fn end(&self, memory: &mut Memory, control: &Control, weight: f64) -> f64 {
-        let _ = (memory, control);
-        weight
-    }
-
+    pub end: fn(&mut Memory, &Control, f64) -> f64,
     /// The distance of a real collision, from the beginning of the ray.
-    #[inline(always)]
-    fn distance(&self, ray: Span, t: f64) -> f64 {
-        t - ray.from
-    }
-
+    pub distance: fn(Span, f64) -> f64,
     /// The distance of a flight that escapes: the length of the ray.
-    #[inline(always)]
-    fn escape(&self, memory: &Memory, ray: Span) -> f64 {
-        let _ = memory;
-        ray.length()
-    }
+    pub escape: fn(&Memory, Span) -> f64,
 }
 
 /// No fault.
-#[derive(Clone, Copy)]
-pub struct Honest;
+pub const RIGHT: Fault = Fault {
+    replays: false,
+    prepare: |_| {},
+    flight: |_, rng| exponential(rng),
+    fly: |sampling, cursor, depth| sampling.fly(cursor, depth),
+    look: |_, medium, t| medium.extinction(t),
+    control: |_, control, t| control.extinction(t),
+    ratio: |_, residual, here| residual * (1.0 / here),
+    outcome: |right, _| right,
+    number: |_, rng| unit(rng),
+    real: |_, real| real,
+    weigh: |_, weight, factor| weight * factor,
+    stop: |_, _, _| None,
+    end: |_, _, weight| weight,
+    distance: |ray, t| t - ray.from,
+    escape: |_, ray| ray.length(),
+};
 
-impl Fault for Honest {}
+impl Fault {
+    /// A setup with what is prepared wrongly.
+    pub fn prepared<P>(&self, mut setup: Setup<P>) -> Setup<P> {
+        (self.prepare)(Prepared {
+            mesh: &setup.mesh,
+            sampling: &mut setup.sampling,
+            control: &mut setup.control,
+            control_transmittance: &mut setup.control_transmittance,
+        });
+        setup
+    }
+}

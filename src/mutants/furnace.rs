@@ -19,7 +19,6 @@ use crate::theory::{Odds, ParticleRule};
 use ParticleRule::{Analog, NonTerminating, Terminating};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Furnace>> {
     let roulette = Particle { roulette: Some(0.8), ..of(NonTerminating) };

@@ -16,7 +16,6 @@ use crate::theory::{Odds, ParticleRule};
 use ParticleRule::{Analog, NonTerminating};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Lambertian>> {
     let (white, cells) = (Particle::of(NonTerminating), Particle::of(Analog));

@@ -4,8 +4,8 @@
 //! and the check that must catch it there; `trueflight self-test` draws it in the honest
 //! estimator's place, against the honest estimator's prediction.
 //!
-//! A mutant's walk is [`walk`] with one [`Fault`]: the steps of a correct walk are the fault's
-//! default methods, and a fault overrides one of them. Without a fault the walk is the estimator's
+//! A mutant's walk is [`walk`] with one [`Fault`]: the steps of a correct walk are [`RIGHT`], and a
+//! fault replaces one of them. Without a fault the walk is the estimator's
 //! own, bit for bit; that *honest twin* shows that nothing but the bug was changed. One file holds
 //! one family of bugs; a mutant is one entry in its family's list. Wrong [`streams`] are a family
 //! of their own: there the estimators are right and their random numbers are not.
@@ -43,7 +43,7 @@ use crate::problems::{
     Transmittance, TransmittanceCurve, each_problem,
 };
 
-pub use fault::{Fault, Honest};
+pub use fault::{Fault, RIGHT};
 pub use streams::StreamMutant;
 pub use target::Target;
 pub use trial::Draws;
@@ -81,13 +81,11 @@ impl<P: Problem> Mutant<P> {
     }
 
     /// The experiment with the bug.
-    #[must_use]
     pub fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
         (self.faulty)(setup)
     }
 
     /// The honest twin: the same code without the bug.
-    #[must_use]
     pub fn twin(&self, setup: Setup<P>) -> Box<dyn Experiment> {
         (self.honest)(setup)
     }
@@ -171,7 +169,6 @@ impl Mutable for Sphere {
 }
 
 /// Every mutant of every problem, without the wrong streams.
-#[must_use]
 pub fn all() -> Vec<About> {
     fn about<P: Mutable>() -> Vec<About> {
         P::mutants().into_iter().map(|mutant| mutant.about).collect()

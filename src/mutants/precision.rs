@@ -9,30 +9,28 @@
 //! precision are all numbers of 24 bits. A weight in single precision breaks the books of its walk.
 
 use super::Mutant;
-use super::fault::{Fault, Memory};
+use super::fault::{Fault, RIGHT};
 use super::target::{DENSE, FLIGHT};
 use super::walk::{flight, product};
 use crate::estimators::rules::Weight;
-use crate::numeric::{Lane, Span};
+use crate::numeric::Lane;
 use crate::problems::{FreeFlight, Transmittance};
 use crate::rng::{Stream, exponential, unit};
 
 /// The family's members that estimate the transmittance.
-#[must_use]
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
     let bug = "the weight is kept in single precision";
-    vec![product("weight-f32", bug, DENSE, "invariant", Weight, WeightF32)]
+    vec![product("weight-f32", bug, DENSE, "invariant", Weight, WEIGHT_F32)]
 }
 
 /// The family's members that sample the free flight.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn flights() -> Vec<Mutant<FreeFlight>> {
     vec![
-        flight("position-f32", "positions are kept in single precision", FLIGHT, "resolution", PositionF32),
-        flight("depth-f32", "the flight's optical depth is computed in single precision", FLIGHT, "resolution", DepthF32),
-        flight("uniform-24", "uniform numbers of 24 bits", FLIGHT, "resolution", Uniform { bits: 24 }),
-        flight("uniform-15", "uniform numbers of 15 bits, as of an old rand()", FLIGHT, "resolution", Uniform { bits: 15 }),
+        flight("position-f32", "positions are kept in single precision", FLIGHT, "resolution", POSITION_F32),
+        flight("depth-f32", "the flight's optical depth is computed in single precision", FLIGHT, "resolution", DEPTH_F32),
+        flight("uniform-24", "uniform numbers of 24 bits", FLIGHT, "resolution", UNIFORM_24),
+        flight("uniform-15", "uniform numbers of 15 bits, as of an old rand()", FLIGHT, "resolution", UNIFORM_15),
     ]
 }
 
@@ -41,58 +39,27 @@ fn single(x: f64) -> f64 {
     f64::from(x as f32)
 }
 
-#[derive(Clone, Copy)]
-struct WeightF32;
+const WEIGHT_F32: Fault = Fault { weigh: |_, weight, factor| single(weight * factor), ..RIGHT };
 
-impl Fault for WeightF32 {
-    #[inline(always)]
-    fn weigh(&self, _: &Memory, weight: f64, factor: f64) -> f64 {
-        single(weight * factor)
-    }
-}
+const POSITION_F32: Fault = Fault { distance: |ray, t| single(t) - single(ray.from), ..RIGHT };
 
-#[derive(Clone, Copy)]
-struct PositionF32;
+const DEPTH_F32: Fault = Fault { flight: |_, rng| single(exponential(rng)), ..RIGHT };
 
-impl Fault for PositionF32 {
-    #[inline(always)]
-    fn distance(&self, ray: Span, t: f64) -> f64 {
-        single(t) - single(ray.from)
-    }
-}
+/// `u = ⌊2^24 u⌋/2^24`.
+const UNIFORM_24: Fault = Fault {
+    flight: |_, rng| -Lane::ln(1.0 - rounded(24, rng)),
+    number: |_, rng| rounded(24, rng),
+    ..RIGHT
+};
 
-#[derive(Clone, Copy)]
-struct DepthF32;
+/// `u = ⌊2^15 u⌋/2^15`.
+const UNIFORM_15: Fault = Fault {
+    flight: |_, rng| -Lane::ln(1.0 - rounded(15, rng)),
+    number: |_, rng| rounded(15, rng),
+    ..RIGHT
+};
 
-impl Fault for DepthF32 {
-    #[inline(always)]
-    fn flight(&self, _: &mut Memory, rng: &mut Stream) -> f64 {
-        single(exponential(rng))
-    }
-}
-
-/// `u = ⌊2^bits u⌋/2^bits`.
-#[derive(Clone, Copy)]
-struct Uniform {
-    bits: u32,
-}
-
-impl Uniform {
-    #[inline(always)]
-    fn unit(self, rng: &mut Stream) -> f64 {
-        let scale = f64::from(1_u32 << self.bits);
-        (unit(rng) * scale).floor() / scale
-    }
-}
-
-impl Fault for Uniform {
-    #[inline(always)]
-    fn flight(&self, _: &mut Memory, rng: &mut Stream) -> f64 {
-        -Lane::ln(1.0 - self.unit(rng))
-    }
-
-    #[inline(always)]
-    fn number(&self, _: &mut Memory, rng: &mut Stream) -> f64 {
-        self.unit(rng)
-    }
+fn rounded(bits: u32, rng: &mut Stream) -> f64 {
+    let scale = f64::from(1_u32 << bits);
+    (unit(rng) * scale).floor() / scale
 }

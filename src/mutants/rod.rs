@@ -22,7 +22,6 @@ use crate::theory::{Odds, ParticleRule};
 use ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Rod>> {
     vec![

@@ -9,12 +9,11 @@
 //! What is spent as a chance must come back as a weight, with its sign.
 
 use super::Mutant;
-use super::fault::Fault;
+use super::fault::{Fault, RIGHT};
 use super::target::{ADAPTIVE, CLAMPED, NON_TERMINATING, RATIO_ONE, TERMINATING, WOODCOCK};
 use super::walk::product;
-use crate::estimators::Setup;
 use crate::estimators::rules::{Null, Single};
-use crate::problems::{Problem, Transmittance};
+use crate::problems::Transmittance;
 use crate::theory::{Outcome, Rule};
 
 /// The albedo of the experiments.
@@ -22,44 +21,30 @@ const ALBEDO: f64 = 0.7;
 const FULL: Single = Single::NonTerminating { albedo: ALBEDO };
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
     vec![
-        product("majorant-too-low", "a majorant of 0.6 times its size; what exceeds it is clamped", WOODCOCK, "mean", Null, TooLow),
-        product("real-for-null", "real and null collisions are mixed up", WOODCOCK, "mean", Null, Changed(swapped)),
-        product("terminating-beyond-two", "the terminating rule where |1 − r| > 1", CLAMPED, "mean", Single::Clamped, Changed(beyond_two)),
-        product("chance-without-absolute", "1 − r for |1 − r| as a chance", TERMINATING, "mean", Single::Terminating, Changed(without_absolute)),
-        product("sign-lost", "the survivor of a collision with r > 1 keeps its sign", TERMINATING, "mean", Single::Terminating, Changed(unsigned)),
-        product("sign-lost-non-terminating", "weight D for −D where r > 1", NON_TERMINATING, "mean", FULL, Changed(unsigned)),
-        product("inverse-chance-missing", "the survivor's weight is not divided by q", NON_TERMINATING, "mean", FULL, Changed(undivided)),
-        product("inverse-chance-twice", "the survivor's weight is divided by q twice", NON_TERMINATING, "variance", FULL, Changed(divided_twice)),
-        product("albedo-in-weight", "the transmitted weight is multiplied by the albedo", NON_TERMINATING, "mean", FULL, Changed(albedo)),
-        product("adaptive-literal", "D = a r + |1 − r| without the absolute value of r, as the pseudo-code has it", ADAPTIVE, "mean", Single::Adaptive { albedo: ALBEDO }, Changed(literal)),
-        product("zero-over-zero", "q = 0/0 at r = 1 and albedo 0: no comparison ends the walk", RATIO_ONE, "lookups", Single::NonTerminating { albedo: 0.0 }, Changed(zero_over_zero)),
+        product("majorant-too-low", "a majorant of 0.6 times its size; what exceeds it is clamped", WOODCOCK, "mean", Null, TOO_LOW),
+        product("real-for-null", "real and null collisions are mixed up", WOODCOCK, "mean", Null, changed(swapped)),
+        product("terminating-beyond-two", "the terminating rule where |1 − r| > 1", CLAMPED, "mean", Single::Clamped, changed(beyond_two)),
+        product("chance-without-absolute", "1 − r for |1 − r| as a chance", TERMINATING, "mean", Single::Terminating, changed(without_absolute)),
+        product("sign-lost", "the survivor of a collision with r > 1 keeps its sign", TERMINATING, "mean", Single::Terminating, changed(unsigned)),
+        product("sign-lost-non-terminating", "weight D for −D where r > 1", NON_TERMINATING, "mean", FULL, changed(unsigned)),
+        product("inverse-chance-missing", "the survivor's weight is not divided by q", NON_TERMINATING, "mean", FULL, changed(undivided)),
+        product("inverse-chance-twice", "the survivor's weight is divided by q twice", NON_TERMINATING, "variance", FULL, changed(divided_twice)),
+        product("albedo-in-weight", "the transmitted weight is multiplied by the albedo", NON_TERMINATING, "mean", FULL, changed(albedo)),
+        product("adaptive-literal", "D = a r + |1 − r| without the absolute value of r, as the pseudo-code has it", ADAPTIVE, "mean", Single::Adaptive { albedo: ALBEDO }, changed(literal)),
+        product("zero-over-zero", "q = 0/0 at r = 1 and albedo 0: no comparison ends the walk", RATIO_ONE, "lookups", Single::NonTerminating { albedo: 0.0 }, changed(zero_over_zero)),
     ]
 }
 
 /// σ̂ times 0.6.
-#[derive(Clone, Copy)]
-pub struct TooLow;
-
-impl Fault for TooLow {
-    fn prepare<P: Problem>(&self, setup: Setup<P>) -> Setup<P> {
-        let sampling = setup.sampling.scaled(0.6);
-        Setup { sampling, ..setup }
-    }
-}
+pub const TOO_LOW: Fault =
+    Fault { prepare: |setup| *setup.sampling = setup.sampling.scaled(0.6), ..RIGHT };
 
 /// What should happen at a ratio, changed.
-#[derive(Clone, Copy)]
-struct Changed(fn(Outcome, f64) -> Outcome);
-
-impl Fault for Changed {
-    #[inline(always)]
-    fn outcome<R: Rule>(&self, rule: &R, ratio: f64) -> Outcome {
-        (self.0)(rule.outcome(ratio), ratio)
-    }
+const fn changed(outcome: fn(Outcome, f64) -> Outcome) -> Fault {
+    Fault { outcome, ..RIGHT }
 }
 
 fn weighing(right: Outcome, weight: f64) -> Outcome {

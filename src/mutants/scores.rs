@@ -8,9 +8,10 @@
 //! Each chance to fly straight to the end counts once. A mean of two walks has the right mean and
 //! half the variance; ray marching has next to no variance, and a bias.
 
+use super::fault::RIGHT;
 use super::target::{BELOW, DENSE, MIS, NEXT_FLIGHT};
 use super::walk::Product;
-use super::{About, Draws, Honest, Mutant};
+use super::{About, Draws, Mutant};
 use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
@@ -18,10 +19,9 @@ use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
 
-const RATIO: Product<Weight, Honest> = Product { rule: Weight, fault: Honest };
+const RATIO: Product<Weight> = Product { rule: Weight, fault: RIGHT };
 
 /// The family.
-#[must_use]
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
     let next_flight = |name, bug, faulty| {
         let about = About { name, bug, target: NEXT_FLIGHT, check: "mean" };

@@ -15,7 +15,6 @@ use crate::rng::Stream;
 use crate::theory::single::{Along, Tracking};
 
 /// The family.
-#[must_use]
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
     let exact = SourceDriven { bug: Bug::None, camera: Along::Exact, shadow: Tracking::Exact };
     let ratio = SourceDriven { camera: Along::Ratio, ..exact };

@@ -20,7 +20,6 @@ use crate::theory::{Odds, ParticleRule};
 use ParticleRule::{Adaptive, Analog, NonTerminating, Terminating, Weighted};
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Slab>> {
     vec![

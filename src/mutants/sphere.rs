@@ -17,7 +17,6 @@ use crate::theory::ParticleRule;
 use crate::theory::single::Tracking;
 
 /// The family.
-#[must_use]
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Sphere>> {
     let ratio = Tracking::Ratio { sampling: 2.0, control: 0.0 };

@@ -14,7 +14,6 @@ use crate::problems::Transmittance;
 use crate::rng::Stream;
 
 /// The family.
-#[must_use]
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
     let decomposition = |name, bug, check, faulty: Decomposition| {
         let about = About { name, bug, target: DECOMPOSITION, check };

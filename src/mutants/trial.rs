@@ -14,10 +14,11 @@ pub const PERIOD: usize = 1024;
 /// A way to make draws, right or wrong.
 pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
     /// Whether every [`PERIOD`] draws begin with the same random numbers, which is wrong.
-    const REPLAYS: bool = false;
+    fn replays(&self) -> bool {
+        false
+    }
 
     /// Prepares what it works on, once per experiment.
-    #[must_use]
     fn prepare(&self, setup: Setup<P>) -> Setup<P> {
         setup
     }
@@ -27,7 +28,6 @@ pub trait Draws<P: Problem>: Clone + Send + Sync + 'static {
 }
 
 /// Joins a way to draw and a setup.
-#[must_use]
 pub fn experiment<P: Problem, D: Draws<P>>(draws: D, setup: Setup<P>) -> Box<dyn Experiment> {
     let setup = draws.prepare(setup);
     Box::new(Trial { draws, setup })
@@ -42,12 +42,13 @@ impl<P: Problem, D: Draws<P>> Experiment for Trial<P, D> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
         let begin = streams.clone();
+        let replays = self.draws.replays();
         let medium = &self.setup.problem.medium().lookups(Level::new());
         in_fused_code(
             #[inline(always)]
             || {
                 for number in 0..count {
-                    if D::REPLAYS && number % PERIOD == 0 {
+                    if replays && number % PERIOD == 0 {
                         streams.clone_from(&begin);
                     }
                     let draw = self.draws.draw(&self.setup, medium, streams.of_next_draw());

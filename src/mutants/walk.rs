@@ -5,11 +5,11 @@
 //! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̂(tᵢ);  S if there is none
 //! ```
 //!
-//! With [`Honest`] they make the estimators' draws, bit for bit. The books say what should happen:
+//! With [`RIGHT`] they make the estimators' draws, bit for bit. The books say what should happen:
 //! a survivor of a collision with ratio r and chance q hands over `X(1 − (1 − r)/q)`, whatever the
 //! fault makes of its weight.
 
-use super::fault::{Fault, Honest, Memory};
+use super::fault::{Fault, Memory, RIGHT};
 use super::{About, Draws, Mutant, Target};
 use crate::estimators::rules::Collision;
 use crate::estimators::walk::Books;
@@ -20,18 +20,20 @@ use crate::rng::Stream;
 
 /// A product estimator with a fault.
 #[derive(Clone, Copy)]
-pub struct Product<R, F> {
+pub struct Product<R> {
     /// What happens at a collision.
     pub rule: R,
     /// The fault.
-    pub fault: F,
+    pub fault: Fault,
 }
 
-impl<R: Collision, F: Fault> Draws<Transmittance> for Product<R, F> {
-    const REPLAYS: bool = F::REPLAYS;
+impl<R: Collision> Draws<Transmittance> for Product<R> {
+    fn replays(&self) -> bool {
+        self.fault.replays
+    }
 
     fn prepare(&self, setup: Setup<Transmittance>) -> Setup<Transmittance> {
-        self.fault.prepare(setup)
+        self.fault.prepared(setup)
     }
 
     #[inline]
@@ -48,45 +50,45 @@ impl<R: Collision, F: Fault> Draws<Transmittance> for Product<R, F> {
         let mut memory = Memory::new(setup.mesh.support(), weight, rng);
         loop {
             memory.from = cursor.t;
-            let depth = fault.flight(&mut memory, rng);
-            let number = R::DECIDES.then(|| fault.number(&mut memory, rng));
-            let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
-            let extinction = fault.look(&memory, medium, cursor.t);
-            let residual = extinction - fault.control(&memory, &setup.control, cursor.t);
+            let depth = (fault.flight)(&mut memory, rng);
+            let number = R::DECIDES.then(|| (fault.number)(&mut memory, rng));
+            let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
+            let extinction = (fault.look)(&memory, medium, cursor.t);
+            let residual = extinction - (fault.control)(&memory, &setup.control, cursor.t);
             memory.lookups += 1;
-            let ratio = fault.ratio(&setup.sampling, residual, sampling);
-            let outcome = fault.outcome(rule, ratio);
+            let ratio = (fault.ratio)(&setup.sampling, residual, sampling);
+            let outcome = (fault.outcome)(rule.outcome(ratio), ratio);
             if outcome.survival < 1.0 {
-                let number = number.unwrap_or_else(|| fault.number(&mut memory, rng));
+                let number = number.unwrap_or_else(|| (fault.number)(&mut memory, rng));
                 let killed = number >= outcome.survival;
-                if fault.real(&memory, killed) {
+                if (fault.real)(&memory, killed) {
                     let defect = books.defect(weight);
                     return Draw { value: [0.0], lookups: memory.lookups, defect };
                 }
             }
             books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
             memory.before = weight;
-            weight = fault.weigh(&memory, weight, outcome.weight);
-            if let Some(value) = fault.stop(&memory, weight, rng) {
+            weight = (fault.weigh)(&memory, weight, outcome.weight);
+            if let Some(value) = (fault.stop)(&memory, weight, rng) {
                 let defect = books.defect(weight);
                 return Draw { value: [value], lookups: memory.lookups, defect };
             }
         }
-        let value = fault.end(&mut memory, &setup.control, weight);
+        let value = (fault.end)(&mut memory, &setup.control, weight);
         Draw { value: [value], lookups: memory.lookups, defect: books.defect(value) }
     }
 }
 
 /// Woodcock tracking of the free flight with a fault.
 #[derive(Clone, Copy)]
-pub struct Flight<F> {
+pub struct Flight {
     /// The fault.
-    pub fault: F,
+    pub fault: Fault,
 }
 
-impl<F: Fault> Draws<FreeFlight> for Flight<F> {
+impl Draws<FreeFlight> for Flight {
     fn prepare(&self, setup: Setup<FreeFlight>) -> Setup<FreeFlight> {
-        self.fault.prepare(setup)
+        self.fault.prepared(setup)
     }
 
     #[inline]
@@ -102,41 +104,41 @@ impl<F: Fault> Draws<FreeFlight> for Flight<F> {
         let mut memory = Memory::new(setup.mesh.support(), 1.0, rng);
         loop {
             memory.from = cursor.t;
-            let depth = fault.flight(&mut memory, rng);
-            let number = fault.number(&mut memory, rng);
-            let Some(sampling) = fault.fly(&setup.sampling, &mut cursor, depth) else { break };
+            let depth = (fault.flight)(&mut memory, rng);
+            let number = (fault.number)(&mut memory, rng);
+            let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
             memory.lookups += 1;
-            let real = number < fault.look(&memory, medium, cursor.t) * (1.0 / sampling);
-            if fault.real(&memory, real) || fault.stop(&memory, 1.0, rng).is_some() {
-                return Draw::free([fault.distance(ray, cursor.t)], memory.lookups);
+            let real = number < (fault.look)(&memory, medium, cursor.t) * (1.0 / sampling);
+            if (fault.real)(&memory, real) || (fault.stop)(&memory, 1.0, rng).is_some() {
+                return Draw::free([(fault.distance)(ray, cursor.t)], memory.lookups);
             }
         }
-        let _ = fault.end(&mut memory, &setup.control, 1.0);
-        Draw::free([fault.escape(&memory, ray)], memory.lookups)
+        let _ = (fault.end)(&mut memory, &setup.control, 1.0);
+        Draw::free([(fault.escape)(&memory, ray)], memory.lookups)
     }
 }
 
 /// A product estimator's mutant.
-pub fn product<R: Collision, F: Fault>(
+pub fn product<R: Collision>(
     name: &'static str,
     bug: &'static str,
     target: Target,
     check: &'static str,
     rule: R,
-    fault: F,
+    fault: Fault,
 ) -> Mutant<Transmittance> {
     let about = About { name, bug, target, check };
-    Mutant::new(about, Product { rule, fault }, Product { rule, fault: Honest })
+    Mutant::new(about, Product { rule, fault }, Product { rule, fault: RIGHT })
 }
 
 /// A free-flight sampler's mutant.
-pub fn flight<F: Fault>(
+pub fn flight(
     name: &'static str,
     bug: &'static str,
     target: Target,
     check: &'static str,
-    fault: F,
+    fault: Fault,
 ) -> Mutant<FreeFlight> {
     let about = About { name, bug, target, check };
-    Mutant::new(about, Flight { fault }, Flight { fault: Honest })
+    Mutant::new(about, Flight { fault }, Flight { fault: RIGHT })
 }
