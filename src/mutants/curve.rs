@@ -9,7 +9,7 @@
 //! variances, and no covariances.
 
 use super::target::{CURVE, CURVE_CONTROL};
-use super::{About, Draws, Mutant, Target};
+use super::{About, Mutant, Target, with};
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
@@ -22,7 +22,7 @@ use crate::rng::{Stream, exponential};
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
     fn on(target: Target, name: &'static str, check: &'static str, slip: Slip, bug: &'static str) -> Mutant<TransmittanceCurve> {
-        Mutant::new(About { name, bug, target, check }, Curve { slip }, Curve { slip: Slip::None })
+        Mutant::new(About { name, bug, target, check }, with(slip, curve), with(Slip::None, curve))
     }
     let fresh = About {
         name: "curve-of-fresh-walks",
@@ -43,7 +43,7 @@ pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
             "between collisions the curve is flat: T_c is taken at the last collision before s"),
         on(CURVE_CONTROL, "curve-log2", "lookups", Slip::Log2,
             "log2 for ln in the flight"),
-        Mutant::new(fresh, FreshWalks, Curve { slip: Slip::None }),
+        Mutant::new(fresh, fresh_walks, with(Slip::None, curve)),
     ]
 }
 
@@ -60,87 +60,74 @@ enum Slip {
 }
 
 /// The double particle model's curve, see `estimators/transmittance_curve/double.rs`.
-#[derive(Clone, Copy)]
-struct Curve {
-    slip: Slip,
-}
-
-impl Draws<TransmittanceCurve> for Curve {
-    fn draw(
-        &self,
-        setup: &Setup<TransmittanceCurve>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let slip = self.slip;
-        let support = setup.mesh.support();
-        let distances = setup.problem.ascending();
-        let mut values = Values { at: [0.0; MOST], count: distances.len() };
-        let mut next = 0;
-        let mut pass = |until: f64, last: f64, weight: f64| {
-            while next < distances.len() && distances[next] <= until {
-                let to = match slip {
-                    Slip::WholeControl => support.to,
-                    Slip::ControlToCollision => last,
-                    _ => distances[next],
-                };
-                let upto = Span::new(support.from, to).intersect(support);
-                let depth = setup.control.optical_depth(upto).value;
-                values.at[next] = weight * Lane::exp(-depth);
-                next += 1;
-            }
-        };
-        let mut cursor = setup.sampling.begin();
-        let mut weight = 1.0;
-        let mut books = Books::open(weight);
-        let mut lookups = 0;
-        loop {
-            let last = cursor.t;
-            let scale = if slip == Slip::Log2 { std::f64::consts::LOG2_E } else { 1.0 };
-            let depth = exponential(rng) * scale;
-            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
-                pass(f64::INFINITY, last, weight);
-                break;
+fn curve(
+    slip: &Slip,
+    setup: &Setup<TransmittanceCurve>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let slip = *slip;
+    let support = setup.mesh.support();
+    let distances = setup.problem.ascending();
+    let mut values = Values { at: [0.0; MOST], count: distances.len() };
+    let mut next = 0;
+    let mut pass = |until: f64, last: f64, weight: f64| {
+        while next < distances.len() && distances[next] <= until {
+            let to = match slip {
+                Slip::WholeControl => support.to,
+                Slip::ControlToCollision => last,
+                _ => distances[next],
             };
-            if slip != Slip::TooEarly {
-                pass(cursor.t, last, weight);
-            }
-            let reversed = support.from + (support.to - cursor.t);
-            let at = if slip == Slip::Reversed { reversed } else { cursor.t };
-            let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
-            let due = 1.0 - residual * (1.0 / sampling);
-            books.hand_over(weight, due);
-            weight *= due;
-            lookups += 1;
-            if slip == Slip::TooEarly {
-                pass(cursor.t, last, weight);
-            }
+            let upto = Span::new(support.from, to).intersect(support);
+            let depth = setup.control.optical_depth(upto).value;
+            values.at[next] = weight * Lane::exp(-depth);
+            next += 1;
         }
-        if slip == Slip::Shifted {
-            values.at.rotate_right(1);
-            values.at[0] = 1.0;
+    };
+    let mut cursor = setup.sampling.begin();
+    let mut weight = 1.0;
+    let mut books = Books::open(weight);
+    let mut lookups = 0;
+    loop {
+        let last = cursor.t;
+        let scale = if slip == Slip::Log2 { std::f64::consts::LOG2_E } else { 1.0 };
+        let depth = exponential(rng) * scale;
+        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else {
+            pass(f64::INFINITY, last, weight);
+            break;
+        };
+        if slip != Slip::TooEarly {
+            pass(cursor.t, last, weight);
         }
-        Draw { value: values, lookups, defect: books.defect(weight) }
+        let reversed = support.from + (support.to - cursor.t);
+        let at = if slip == Slip::Reversed { reversed } else { cursor.t };
+        let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
+        let due = 1.0 - residual * (1.0 / sampling);
+        books.hand_over(weight, due);
+        weight *= due;
+        lookups += 1;
+        if slip == Slip::TooEarly {
+            pass(cursor.t, last, weight);
+        }
     }
+    if slip == Slip::Shifted {
+        values.at.rotate_right(1);
+        values.at[0] = 1.0;
+    }
+    Draw { value: values, lookups, defect: books.defect(weight) }
 }
 
 /// K walks for K distances, with the lookups of the last.
-#[derive(Clone, Copy)]
-struct FreshWalks;
-
-impl Draws<TransmittanceCurve> for FreshWalks {
-    fn draw(
-        &self,
-        setup: &Setup<TransmittanceCurve>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        let walk = Curve { slip: Slip::None };
-        let mut draw = walk.draw(setup, medium, rng);
-        for k in 0..draw.value.count - 1 {
-            let fresh = walk.draw(setup, medium, rng);
-            draw.value.at[k] = fresh.value.at[k];
-        }
-        draw
+fn fresh_walks(
+    setup: &Setup<TransmittanceCurve>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let walk = |rng: &mut Stream| curve(&Slip::None, setup, medium, rng);
+    let mut draw = walk(rng);
+    for k in 0..draw.value.count - 1 {
+        let fresh = walk(rng);
+        draw.value.at[k] = fresh.value.at[k];
     }
+    draw
 }

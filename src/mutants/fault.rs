@@ -47,7 +47,7 @@ pub struct Prepared<'a> {
 /// The steps of a walk, of which a fault has one wrong; [`RIGHT`] are those of the estimators.
 #[derive(Clone, Copy)]
 pub struct Fault {
-    /// See [`super::Draws::replays`].
+    /// See [`super::Trial::replays`].
     pub replays: bool,
     /// Changes what is prepared once.
     pub prepare: fn(Prepared<'_>),

@@ -7,7 +7,7 @@
 use super::target::{
     FURNACE_ANALOG, FURNACE_BELOW, FURNACE_NON_TERMINATING, FURNACE_ROULETTE, Target,
 };
-use super::{About, Draws, Mutant};
+use super::{About, Mutant, with};
 use crate::estimators::furnace::draw_with;
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
@@ -41,17 +41,17 @@ fn furnace(
     honest: Particle,
     steps: impl Steps + Clone + Send + Sync + 'static,
 ) -> Mutant<Furnace> {
-    Mutant::new(About { name, bug, target, check: "mean" }, Walk(steps), Walk(honest))
+    Mutant::new(About { name, bug, target, check: "mean" }, with(steps, walk), with(honest, walk))
 }
 
 /// A walk by its steps.
-#[derive(Clone)]
-struct Walk<S>(S);
-
-impl<S: Steps + Clone + Send + Sync + 'static> Draws<Furnace> for Walk<S> {
-    fn draw(&self, setup: &Setup<Furnace>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
-        draw_with(&self.0, setup, rng)
-    }
+fn walk<S: Steps>(
+    steps: &S,
+    setup: &Setup<Furnace>,
+    _: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    draw_with(steps, setup, rng)
 }
 
 /// `a² r`.

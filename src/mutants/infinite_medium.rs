@@ -5,7 +5,7 @@
 //! ```
 
 use super::target::{INFINITE_ANALOG, INFINITE_WEIGHTED, Target};
-use super::{About, Draws, Mutant};
+use super::{About, Mutant, with};
 use crate::estimators::infinite_medium::draw_with;
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
@@ -39,17 +39,17 @@ fn infinite(
     honest: Particle,
     steps: impl Steps + Clone + Send + Sync + 'static,
 ) -> Mutant<InfiniteMedium> {
-    Mutant::new(About { name, bug, target, check: "mean" }, Walk(steps), Walk(honest))
+    Mutant::new(About { name, bug, target, check: "mean" }, with(steps, walk), with(honest, walk))
 }
 
 /// A walk by its steps.
-#[derive(Clone)]
-struct Walk<S>(S);
-
-impl<S: Steps + Clone + Send + Sync + 'static> Draws<InfiniteMedium> for Walk<S> {
-    fn draw(&self, setup: &Setup<InfiniteMedium>, _: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        draw_with(&self.0, setup, rng)
-    }
+fn walk<S: Steps>(
+    steps: &S,
+    setup: &Setup<InfiniteMedium>,
+    _: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    draw_with(steps, setup, rng)
 }
 
 /// Delta tracking that turns wrongly.

@@ -1,7 +1,7 @@
 //! Wrong walks under light from all sides: flights and starts.
 
 use super::target::{LAMBERTIAN, LAMBERTIAN_CELLS, Target};
-use super::{About, Draws, Mutant};
+use super::{About, Mutant};
 use crate::estimators::lambertian::{draw_with, lambertian};
 use crate::estimators::space::{Particle, Steps};
 use crate::estimators::{Draw, Setup};
@@ -33,17 +33,16 @@ fn under<S: Steps + Clone + Send + Sync + 'static>(
     (steps, cosine): (S, fn(f64) -> f64),
 ) -> Mutant<Lambertian> {
     let about = About { name, bug, target, check: "mean" };
-    Mutant::new(about, Walk(steps, cosine, honest), Walk(honest, lambertian, honest))
+    Mutant::new(about, walk(steps, cosine, honest), walk(honest, lambertian, honest))
 }
 
 /// A walk by its steps and the law of its start, and the particle whose channels it has.
-#[derive(Clone)]
-struct Walk<S>(S, fn(f64) -> f64, Particle);
-
-impl<S: Steps + Clone + Send + Sync + 'static> Draws<Lambertian> for Walk<S> {
-    fn draw(&self, setup: &Setup<Lambertian>, _: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        draw_with((&self.0, self.1), &self.2, setup, rng)
-    }
+fn walk(
+    steps: impl Steps + Send + Sync + 'static,
+    cosine: fn(f64) -> f64,
+    particle: Particle,
+) -> impl Fn(&Setup<Lambertian>, &Lookups, &mut Stream) -> Draw<Values> + Send + Sync + 'static {
+    move |setup, _, rng| draw_with((&steps, cosine), &particle, setup, rng)
 }
 
 /// The first cell's σ̂ for the depth, the last one's for the odds.

@@ -37,16 +37,21 @@ pub mod trial;
 pub mod walk;
 pub mod weights;
 
-use crate::estimators::{Estimated, Experiment, Setup};
+use std::sync::Arc;
+
+use crate::estimators::{Draw, Estimated, Experiment, Setup};
+use crate::media::Lookups;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::{
     FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab, Sphere,
     Transmittance, TransmittanceCurve, each_problem,
 };
+use crate::rng::Stream;
 
 pub use fault::{Fault, RIGHT};
 pub use streams::StreamMutant;
 pub use target::Target;
-pub use trial::Draws;
+pub use trial::{Draws, Trial};
 
 /// What a mutant is, without its draws.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -61,34 +66,60 @@ pub struct About {
     pub check: &'static str,
 }
 
-/// Prepares an experiment from an estimator's setup.
-type Build<P> = Box<dyn Fn(Setup<P>) -> Box<dyn Experiment> + Send + Sync>;
-
 /// A known bug in an estimator of problem `P`.
-pub struct Mutant<P> {
+pub struct Mutant<P: Problem> {
     /// What it is.
     pub about: About,
-    faulty: Build<P>,
-    honest: Build<P>,
+    faulty: Arc<Draws<P>>,
+    honest: Arc<Draws<P>>,
+    fault: Fault,
 }
 
 impl<P: Problem> Mutant<P> {
     /// Joins a bug and the same draws without it.
-    pub fn new(about: About, faulty: impl Draws<P>, honest: impl Draws<P>) -> Self {
-        let faulty = Box::new(move |setup| trial::experiment(faulty.clone(), setup));
-        let honest = Box::new(move |setup| trial::experiment(honest.clone(), setup));
-        Self { about, faulty, honest }
+    pub fn new(
+        about: About,
+        faulty: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+        honest: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+    ) -> Self {
+        Self { about, faulty: compiled(faulty), honest: compiled(honest), fault: RIGHT }
+    }
+
+    /// The same on a setup and a generator that a fault makes wrong.
+    #[must_use]
+    pub fn on_faulty_setup(self, fault: Fault) -> Self {
+        Self { fault, ..self }
     }
 
     /// The experiment with the bug.
     pub fn experiment(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        (self.faulty)(setup)
+        let (setup, replays) = (self.fault.prepared(setup), self.fault.replays);
+        Box::new(Trial { draws: self.faulty.clone(), setup, replays })
     }
 
     /// The honest twin: the same code without the bug.
     pub fn twin(&self, setup: Setup<P>) -> Box<dyn Experiment> {
-        (self.honest)(setup)
+        Box::new(Trial { draws: self.honest.clone(), setup, replays: false })
     }
+}
+
+/// Draws by a way to make them, right or wrong.
+fn with<P: Problem, B: Send + Sync + 'static>(
+    bug: B,
+    draw: impl Fn(&B, &Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+) -> impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static {
+    move |setup, medium, rng| draw(&bug, setup, medium, rng)
+}
+
+fn compiled<P: Problem>(
+    draw: impl Fn(&Setup<P>, &Lookups, &mut Stream) -> Draw<P::Value> + Send + Sync + 'static,
+) -> Arc<Draws<P>> {
+    Arc::new(move |setup: &Setup<P>, medium: &Lookups<'_>, rng: &mut Stream| {
+        in_fused_code(
+            #[inline(always)]
+            || draw(setup, medium, rng),
+        )
+    })
 }
 
 /// A problem with known bugs.

@@ -9,13 +9,10 @@ use super::target::{
     ROD_ADAPTIVE, ROD_ANALOG, ROD_NON_TERMINATING, ROD_ROULETTE, ROD_TERMINATING, ROD_WEIGHTED,
     Target,
 };
-use super::{About, Draws, Mutant};
+use super::{About, Mutant, with};
 use crate::estimators::rod::roulette::Roulette;
 use crate::estimators::rod::walk::{self, Steps};
-use crate::estimators::{Draw, Setup};
-use crate::media::Lookups;
 use crate::problems::Rod;
-use crate::problems::rod::Values;
 use crate::rng::Stream;
 use crate::theory::{Odds, ParticleRule};
 
@@ -45,18 +42,11 @@ fn rod(
     honest: impl Steps + Copy + Send + Sync + 'static,
     steps: impl Steps + Copy + Send + Sync + 'static,
 ) -> Mutant<Rod> {
-    Mutant::new(About { name, bug, target, check }, Walk(steps), Walk(honest))
-}
-
-/// A walk by its steps.
-#[derive(Clone, Copy)]
-struct Walk<S>(S);
-
-impl<S: Steps + Copy + Send + Sync + 'static> Draws<Rod> for Walk<S> {
-    #[inline]
-    fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        walk::draw(&self.0, setup, medium, rng)
-    }
+    Mutant::new(
+        About { name, bug, target, check },
+        with(steps, walk::draw),
+        with(honest, walk::draw),
+    )
 }
 
 /// The odds of a rule, changed; the second argument is the albedo.

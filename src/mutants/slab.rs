@@ -8,10 +8,8 @@
 use super::target::{
     SLAB_ADAPTIVE, SLAB_ANALOG, SLAB_DIFFUSE, SLAB_NON_TERMINATING, SLAB_WEIGHTED, Target,
 };
-use super::{About, Draws, Mutant};
+use super::{About, Mutant, with};
 use crate::estimators::slab::walk::{self, Steps};
-use crate::estimators::{Draw, Setup};
-use crate::media::Lookups;
 use crate::phase::Phase;
 use crate::problems::Slab;
 use crate::rng::Stream;
@@ -41,18 +39,11 @@ fn slab(
     honest: ParticleRule,
     steps: impl Steps + Copy + Send + Sync + 'static,
 ) -> Mutant<Slab> {
-    Mutant::new(About { name, bug, target, check }, Walk(steps), Walk(honest))
-}
-
-/// A walk by its steps.
-#[derive(Clone, Copy)]
-struct Walk<S>(S);
-
-impl<S: Steps + Copy + Send + Sync + 'static> Draws<Slab> for Walk<S> {
-    #[inline]
-    fn draw(&self, setup: &Setup<Slab>, medium: &Lookups, rng: &mut Stream) -> Draw<[f64; 2]> {
-        walk::draw(&self.0, setup, medium, rng)
-    }
+    Mutant::new(
+        About { name, bug, target, check },
+        with(steps, walk::draw),
+        with(honest, walk::draw),
+    )
 }
 
 /// The odds of a rule, changed; the second argument is the albedo.

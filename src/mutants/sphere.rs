@@ -5,7 +5,7 @@
 //! ```
 
 use super::target::{SPHERE_LAMP, SPHERE_LAMP_EXACT, SPHERE_SKY, Target};
-use super::{About, Draws, Mutant};
+use super::{About, Mutant};
 use crate::estimators::space::{Particle, Scattering};
 use crate::estimators::sphere::{Connect, Honest, draw_by};
 use crate::estimators::{Draw, Setup};
@@ -36,22 +36,16 @@ fn sphere(
     connect: impl Connect + Copy + Send + 'static,
 ) -> Mutant<Sphere> {
     let about = About { name, bug, target, check: "mean" };
-    Mutant::new(about, Walk { connect, shadow }, Walk { connect: Honest, shadow })
+    Mutant::new(about, walk(connect, shadow), walk(Honest, shadow))
 }
 
 /// A weighted walk by its connections.
-#[derive(Clone, Copy)]
-struct Walk<C> {
-    connect: C,
+fn walk(
+    connect: impl Connect + Send + 'static,
     shadow: Tracking,
-}
-
-impl<C: Connect + Copy + Send + 'static> Draws<Sphere> for Walk<C> {
-    #[inline]
-    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
-        let particle = Particle::of(ParticleRule::Weighted);
-        draw_by(&particle, Some((&self.connect, self.shadow)), setup, rng)
-    }
+) -> impl Fn(&Setup<Sphere>, &Lookups, &mut Stream) -> Draw<[f64; 1]> + Send + Sync + 'static {
+    let particle = Particle::of(ParticleRule::Weighted);
+    move |setup, _, rng| draw_by(&particle, Some((&connect, shadow)), setup, rng)
 }
 
 #[derive(Clone, Copy)]

@@ -6,7 +6,7 @@
 //! ```
 
 use super::target::{DECOMPOSITION, LOCAL_MAJORANT};
-use super::{About, Draws, Mutant};
+use super::{About, Mutant, with};
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
@@ -15,9 +15,10 @@ use crate::rng::Stream;
 
 /// The family.
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let decomposition = |name, bug, check, faulty: Decomposition| {
+    let wrong = |name, bug, check, faulty: Decomposition| {
         let about = About { name, bug, target: DECOMPOSITION, check };
-        Mutant::new(about, faulty, Decomposition { whole: false, passes: false })
+        let right = Decomposition { whole: false, passes: false };
+        Mutant::new(about, with(faulty, decomposition), with(right, decomposition))
     };
     let about = About {
         name: "local-majorant-overshoot",
@@ -26,24 +27,23 @@ pub fn mutants() -> Vec<Mutant<Transmittance>> {
         check: "mean",
     };
     vec![
-        decomposition(
+        wrong(
             "decomposition-whole",
             "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂",
             "mean",
             Decomposition { whole: true, passes: false },
         ),
-        decomposition(
+        wrong(
             "decomposition-passes",
             "a draw without a residual collision is 1, wherever the control's flight ended",
             "atoms",
             Decomposition { whole: false, passes: true },
         ),
-        Mutant::new(about, LocalMajorant { overshoots: true }, LocalMajorant { overshoots: false }),
+        Mutant::new(about, with(true, local_majorant), with(false, local_majorant)),
     ]
 }
 
-/// Decomposition tracking, see `estimators/transmittance/decomposition.rs`.
-#[derive(Clone, Copy)]
+/// What goes wrong in decomposition tracking.
 struct Decomposition {
     /// Collides with all of σ_t.
     whole: bool,
@@ -51,67 +51,59 @@ struct Decomposition {
     passes: bool,
 }
 
-impl Draws<Transmittance> for Decomposition {
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let support = setup.mesh.support();
-        let control = setup.control.extinction(support.from);
-        let (depth, _) = (-rng.ln_uniform(), rng.word());
-        let flown = depth.times_plus(1.0 / control, support.from);
-        let subtracted = if self.whole { 0.0 } else { control };
-        let mut cursor = setup.sampling.begin();
-        let mut lookups = 0;
-        loop {
+/// See `estimators/transmittance/decomposition.rs`.
+fn decomposition(
+    bug: &Decomposition,
+    setup: &Setup<Transmittance>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let support = setup.mesh.support();
+    let control = setup.control.extinction(support.from);
+    let (depth, _) = (-rng.ln_uniform(), rng.word());
+    let flown = depth.times_plus(1.0 / control, support.from);
+    let subtracted = if bug.whole { 0.0 } else { control };
+    let mut cursor = setup.sampling.begin();
+    let mut lookups = 0;
+    loop {
+        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
+        if flown <= cursor.t {
+            break;
+        }
+        lookups += 1;
+        if number < (medium.extinction(cursor.t) - subtracted) * (1.0 / sampling) {
+            return Draw::free([0.0], lookups);
+        }
+    }
+    let stopped = flown < support.to && !bug.passes;
+    Draw::free([f64::from(u8::from(!stopped))], lookups)
+}
+
+/// Local majorants, see `estimators/transmittance/local_majorant.rs`; who overshoots does not go back to the
+/// boundary.
+fn local_majorant(
+    overshoots: &bool,
+    setup: &Setup<Transmittance>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let mut lookups = 0;
+    let mut came_to = setup.mesh.support().from;
+    for (ends, path) in setup.sampling.stretches() {
+        let mut t = if *overshoots { came_to.max(ends[0]) } else { ends[0] };
+        while t < ends[1] {
             let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { break };
-            if flown <= cursor.t {
+            t = depth.times_plus(path, t);
+            if !t.below(ends[1]) {
                 break;
             }
             lookups += 1;
-            if number < (medium.extinction(cursor.t) - subtracted) * (1.0 / sampling) {
+            if number < medium.extinction(t) * path {
                 return Draw::free([0.0], lookups);
             }
         }
-        let stopped = flown < support.to && !self.passes;
-        Draw::free([f64::from(u8::from(!stopped))], lookups)
+        came_to = t;
     }
-}
-
-/// Local majorants, see `estimators/transmittance/local_majorant.rs`.
-#[derive(Clone, Copy)]
-struct LocalMajorant {
-    /// Does not go back to the boundary.
-    overshoots: bool,
-}
-
-impl Draws<Transmittance> for LocalMajorant {
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let mut lookups = 0;
-        let mut came_to = setup.mesh.support().from;
-        for (ends, path) in setup.sampling.stretches() {
-            let mut t = if self.overshoots { came_to.max(ends[0]) } else { ends[0] };
-            while t < ends[1] {
-                let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-                t = depth.times_plus(path, t);
-                if !t.below(ends[1]) {
-                    break;
-                }
-                lookups += 1;
-                if number < medium.extinction(t) * path {
-                    return Draw::free([0.0], lookups);
-                }
-            }
-            came_to = t;
-        }
-        Draw::free([1.0], lookups)
-    }
+    Draw::free([1.0], lookups)
 }

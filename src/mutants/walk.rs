@@ -10,7 +10,7 @@
 //! fault makes of its weight.
 
 use super::fault::{Fault, Memory, RIGHT};
-use super::{About, Draws, Mutant, Target};
+use super::{About, Mutant, Target, with};
 use crate::estimators::rules::Collision;
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
@@ -18,104 +18,72 @@ use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem, Transmittance};
 use crate::rng::Stream;
 
-/// A product estimator with a fault.
-#[derive(Clone, Copy)]
-pub struct Product<R> {
-    /// What happens at a collision.
-    pub rule: R,
-    /// The fault.
-    pub fault: Fault,
-}
-
-impl<R: Collision> Draws<Transmittance> for Product<R> {
-    fn replays(&self) -> bool {
-        self.fault.replays
-    }
-
-    fn prepare(&self, setup: Setup<Transmittance>) -> Setup<Transmittance> {
-        self.fault.prepared(setup)
-    }
-
-    #[inline]
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let Self { rule, fault } = self;
-        let mut cursor = setup.sampling.begin();
-        let mut weight = setup.control_transmittance;
-        let mut books = Books::open(weight);
-        let mut memory = Memory::new(setup.mesh.support(), weight, rng);
-        loop {
-            memory.from = cursor.t;
-            let depth = (fault.flight)(&mut memory, rng);
-            let number = R::DECIDES.then(|| (fault.number)(&mut memory, rng));
-            let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
-            let extinction = (fault.look)(&memory, medium, cursor.t);
-            let residual = extinction - (fault.control)(&memory, &setup.control, cursor.t);
-            memory.lookups += 1;
-            let ratio = (fault.ratio)(&setup.sampling, residual, sampling);
-            let outcome = (fault.outcome)(rule.outcome(ratio), ratio);
-            if outcome.survival < 1.0 {
-                let number = number.unwrap_or_else(|| (fault.number)(&mut memory, rng));
-                let killed = number >= outcome.survival;
-                if (fault.real)(&memory, killed) {
-                    let defect = books.defect(weight);
-                    return Draw { value: [0.0], lookups: memory.lookups, defect };
-                }
-            }
-            books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
-            memory.before = weight;
-            weight = (fault.weigh)(&memory, weight, outcome.weight);
-            if let Some(value) = (fault.stop)(&memory, weight, rng) {
+/// A draw of a product estimator with a fault.
+#[inline]
+pub fn draw_product<R: Collision>(
+    (rule, fault): &(R, Fault),
+    setup: &Setup<Transmittance>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let mut cursor = setup.sampling.begin();
+    let mut weight = setup.control_transmittance;
+    let mut books = Books::open(weight);
+    let mut memory = Memory::new(setup.mesh.support(), weight, rng);
+    loop {
+        memory.from = cursor.t;
+        let depth = (fault.flight)(&mut memory, rng);
+        let number = R::DECIDES.then(|| (fault.number)(&mut memory, rng));
+        let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
+        let extinction = (fault.look)(&memory, medium, cursor.t);
+        let residual = extinction - (fault.control)(&memory, &setup.control, cursor.t);
+        memory.lookups += 1;
+        let ratio = (fault.ratio)(&setup.sampling, residual, sampling);
+        let outcome = (fault.outcome)(rule.outcome(ratio), ratio);
+        if outcome.survival < 1.0 {
+            let number = number.unwrap_or_else(|| (fault.number)(&mut memory, rng));
+            let killed = number >= outcome.survival;
+            if (fault.real)(&memory, killed) {
                 let defect = books.defect(weight);
-                return Draw { value: [value], lookups: memory.lookups, defect };
+                return Draw { value: [0.0], lookups: memory.lookups, defect };
             }
         }
-        let value = (fault.end)(&mut memory, &setup.control, weight);
-        Draw { value: [value], lookups: memory.lookups, defect: books.defect(value) }
-    }
-}
-
-/// Woodcock tracking of the free flight with a fault.
-#[derive(Clone, Copy)]
-pub struct Flight {
-    /// The fault.
-    pub fault: Fault,
-}
-
-impl Draws<FreeFlight> for Flight {
-    fn prepare(&self, setup: Setup<FreeFlight>) -> Setup<FreeFlight> {
-        self.fault.prepared(setup)
-    }
-
-    #[inline]
-    fn draw(
-        &self,
-        setup: &Setup<FreeFlight>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
-        let fault = &self.fault;
-        let ray = setup.problem.medium().span();
-        let mut cursor = setup.sampling.begin();
-        let mut memory = Memory::new(setup.mesh.support(), 1.0, rng);
-        loop {
-            memory.from = cursor.t;
-            let depth = (fault.flight)(&mut memory, rng);
-            let number = (fault.number)(&mut memory, rng);
-            let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
-            memory.lookups += 1;
-            let real = number < (fault.look)(&memory, medium, cursor.t) * (1.0 / sampling);
-            if (fault.real)(&memory, real) || (fault.stop)(&memory, 1.0, rng).is_some() {
-                return Draw::free([(fault.distance)(ray, cursor.t)], memory.lookups);
-            }
+        books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
+        memory.before = weight;
+        weight = (fault.weigh)(&memory, weight, outcome.weight);
+        if let Some(value) = (fault.stop)(&memory, weight, rng) {
+            let defect = books.defect(weight);
+            return Draw { value: [value], lookups: memory.lookups, defect };
         }
-        let _ = (fault.end)(&mut memory, &setup.control, 1.0);
-        Draw::free([(fault.escape)(&memory, ray)], memory.lookups)
     }
+    let value = (fault.end)(&mut memory, &setup.control, weight);
+    Draw { value: [value], lookups: memory.lookups, defect: books.defect(value) }
+}
+
+/// A draw of Woodcock tracking of the free flight with a fault.
+#[inline]
+fn draw_flight(
+    fault: &Fault,
+    setup: &Setup<FreeFlight>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let ray = setup.problem.medium().span();
+    let mut cursor = setup.sampling.begin();
+    let mut memory = Memory::new(setup.mesh.support(), 1.0, rng);
+    loop {
+        memory.from = cursor.t;
+        let depth = (fault.flight)(&mut memory, rng);
+        let number = (fault.number)(&mut memory, rng);
+        let Some(sampling) = (fault.fly)(&setup.sampling, &mut cursor, depth) else { break };
+        memory.lookups += 1;
+        let real = number < (fault.look)(&memory, medium, cursor.t) * (1.0 / sampling);
+        if (fault.real)(&memory, real) || (fault.stop)(&memory, 1.0, rng).is_some() {
+            return Draw::free([(fault.distance)(ray, cursor.t)], memory.lookups);
+        }
+    }
+    let _ = (fault.end)(&mut memory, &setup.control, 1.0);
+    Draw::free([(fault.escape)(&memory, ray)], memory.lookups)
 }
 
 /// A product estimator's mutant.
@@ -128,7 +96,8 @@ pub fn product<R: Collision>(
     fault: Fault,
 ) -> Mutant<Transmittance> {
     let about = About { name, bug, target, check };
-    Mutant::new(about, Product { rule, fault }, Product { rule, fault: RIGHT })
+    let (faulty, honest) = (with((rule, fault), draw_product), with((rule, RIGHT), draw_product));
+    Mutant::new(about, faulty, honest).on_faulty_setup(fault)
 }
 
 /// A free-flight sampler's mutant.
@@ -140,5 +109,5 @@ pub fn flight(
     fault: Fault,
 ) -> Mutant<FreeFlight> {
     let about = About { name, bug, target, check };
-    Mutant::new(about, Flight { fault }, Flight { fault: RIGHT })
+    Mutant::new(about, with(fault, draw_flight), with(RIGHT, draw_flight)).on_faulty_setup(fault)
 }
