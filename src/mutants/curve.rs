@@ -9,7 +9,7 @@
 //! variances, and no covariances.
 
 use super::target::{CURVE, CURVE_CONTROL};
-use super::{About, Mutant, Target, with};
+use super::{About, Mutant, with};
 use crate::estimators::walk::Books;
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
@@ -21,29 +21,17 @@ use crate::rng::{Stream, exponential};
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<TransmittanceCurve>> {
-    fn on(target: Target, name: &'static str, check: &'static str, slip: Slip, bug: &'static str) -> Mutant<TransmittanceCurve> {
-        Mutant::new(About { name, bug, target, check }, with(slip, curve), with(Slip::None, curve))
-    }
-    let fresh = About {
-        name: "curve-of-fresh-walks",
-        bug: "every distance has a walk of its own",
-        target: CURVE,
-        check: "covariance",
-    };
+    let by = |slip| with(slip, |&slip, setup, medium, rng| curve(slip, setup, medium, rng));
+    let of = |name, bug, target, check, slip| Mutant::new(About { name, bug, target, check }, by(slip), by(Slip::None));
+    let fresh = About { name: "curve-of-fresh-walks", bug: "every distance has a walk of its own", target: CURVE, check: "covariance" };
     vec![
-        on(CURVE, "curve-reversed", "curve", Slip::Reversed,
-            "σ_t(S − t) is looked up for σ_t(t)"),
-        on(CURVE, "curve-collision-too-early", "mean", Slip::TooEarly,
-            "the first collision beyond a distance counts before it"),
-        on(CURVE, "curve-shifted", "mean", Slip::Shifted,
-            "every value is that of the distance before, and the first is 1"),
-        on(CURVE_CONTROL, "curve-control-whole", "mean", Slip::WholeControl,
-            "T_c is that of the whole ray at every distance"),
-        on(CURVE_CONTROL, "curve-control-to-collision", "mean", Slip::ControlToCollision,
-            "between collisions the curve is flat: T_c is taken at the last collision before s"),
-        on(CURVE_CONTROL, "curve-log2", "lookups", Slip::Log2,
-            "log2 for ln in the flight"),
-        Mutant::new(fresh, fresh_walks, with(Slip::None, curve)),
+        of("curve-reversed", "σ_t(S − t) is looked up for σ_t(t)", CURVE, "curve", Slip::Reversed),
+        of("curve-collision-too-early", "the first collision beyond a distance counts before it", CURVE, "mean", Slip::TooEarly),
+        of("curve-shifted", "every value is that of the distance before, and the first is 1", CURVE, "mean", Slip::Shifted),
+        of("curve-control-whole", "T_c is that of the whole ray at every distance", CURVE_CONTROL, "mean", Slip::WholeControl),
+        of("curve-control-to-collision", "between collisions the curve is flat: T_c is taken at the last collision before s", CURVE_CONTROL, "mean", Slip::ControlToCollision),
+        of("curve-log2", "log2 for ln in the flight", CURVE_CONTROL, "lookups", Slip::Log2),
+        Mutant::new(fresh, fresh_walks, by(Slip::None)),
     ]
 }
 
@@ -61,12 +49,11 @@ enum Slip {
 
 /// The double particle model's curve, see `estimators/transmittance_curve/double.rs`.
 fn curve(
-    slip: &Slip,
+    slip: Slip,
     setup: &Setup<TransmittanceCurve>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    let slip = *slip;
     let support = setup.mesh.support();
     let distances = setup.problem.ascending();
     let mut values = Values { at: [0.0; MOST], count: distances.len() };
@@ -123,7 +110,7 @@ fn fresh_walks(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    let walk = |rng: &mut Stream| curve(&Slip::None, setup, medium, rng);
+    let walk = |rng: &mut Stream| curve(Slip::None, setup, medium, rng);
     let mut draw = walk(rng);
     for k in 0..draw.value.count - 1 {
         let fresh = walk(rng);

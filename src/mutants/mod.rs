@@ -19,16 +19,15 @@ pub mod decisions;
 pub mod fault;
 pub mod flight;
 pub mod free_flight;
-pub mod furnace;
-pub mod infinite_medium;
-pub mod lambertian;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
 pub mod rules;
+pub mod scattering;
 pub mod scores;
 pub mod single_scattering;
 pub mod slab;
+pub mod space;
 pub mod sphere;
 pub mod streams;
 pub mod target;
@@ -128,75 +127,31 @@ pub trait Mutable: Estimated {
     fn mutants() -> Vec<Mutant<Self>>;
 }
 
-impl Mutable for Transmittance {
-    fn mutants() -> Vec<Mutant<Self>> {
-        let families = [
-            control::mutants(),
-            lookups::mutants(),
-            flight::mutants(),
-            weights::mutants(),
-            rules::mutants(),
-            decisions::mutants(),
-            scores::mutants(),
-            tracking::mutants(),
-            precision::mutants(),
-        ];
-        families.into_iter().flatten().collect()
-    }
+macro_rules! mutable {
+    ($($Problem:ident: $($family:expr),*;)*) => {
+        $(
+            impl Mutable for $Problem {
+                fn mutants() -> Vec<Mutant<Self>> {
+                    [$($family),*].into_iter().flatten().collect()
+                }
+            }
+        )*
+    };
 }
 
-impl Mutable for FreeFlight {
-    fn mutants() -> Vec<Mutant<Self>> {
-        free_flight::mutants().into_iter().chain(precision::flights()).collect()
-    }
-}
-
-impl Mutable for TransmittanceCurve {
-    fn mutants() -> Vec<Mutant<Self>> {
-        curve::mutants()
-    }
-}
-
-impl Mutable for Rod {
-    fn mutants() -> Vec<Mutant<Self>> {
-        rod::mutants()
-    }
-}
-
-impl Mutable for SingleScattering {
-    fn mutants() -> Vec<Mutant<Self>> {
-        single_scattering::mutants()
-    }
-}
-
-impl Mutable for Furnace {
-    fn mutants() -> Vec<Mutant<Self>> {
-        furnace::mutants()
-    }
-}
-
-impl Mutable for Lambertian {
-    fn mutants() -> Vec<Mutant<Self>> {
-        lambertian::mutants()
-    }
-}
-
-impl Mutable for InfiniteMedium {
-    fn mutants() -> Vec<Mutant<Self>> {
-        infinite_medium::mutants()
-    }
-}
-
-impl Mutable for Slab {
-    fn mutants() -> Vec<Mutant<Self>> {
-        slab::mutants()
-    }
-}
-
-impl Mutable for Sphere {
-    fn mutants() -> Vec<Mutant<Self>> {
-        sphere::mutants()
-    }
+mutable! {
+    Transmittance: control::mutants(), lookups::mutants(), flight::mutants(), weights::mutants(),
+        rules::mutants(), decisions::mutants(), scores::mutants(), tracking::mutants(),
+        precision::mutants();
+    FreeFlight: free_flight::mutants(), precision::flights();
+    TransmittanceCurve: curve::mutants();
+    Rod: rod::mutants();
+    SingleScattering: single_scattering::mutants();
+    Furnace: space::in_furnace();
+    Lambertian: space::under_light();
+    InfiniteMedium: space::in_infinite_medium();
+    Slab: slab::mutants();
+    Sphere: sphere::mutants();
 }
 
 /// Every mutant of every problem, without the wrong streams.

@@ -22,117 +22,56 @@ use crate::rng::{Stream, unit};
 const RATIO: (Weight, Fault) = (Weight, RIGHT);
 
 /// The family.
+#[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let of_next_flight = |name, bug, faulty| {
-        let about = About { name, bug, target: NEXT_FLIGHT, check: "mean" };
-        Mutant::new(about, with(faulty, next_flight), with(NextFlight::Right, next_flight))
+    let next_flight = Scores { share: |v| v, first: true, end: |_, _| 0.0 };
+    let mis = Scores { share: |v| v / (1.0 + v), first: true, end: |_, last| last };
+    let of = |name, bug, target, right: Scores, wrong: Scores| {
+        Mutant::new(About { name, bug, target, check: "mean" }, with(wrong, scored), with(right, scored))
     };
-    let of_mis = |name, bug, faulty| {
-        let about = About { name, bug, target: MIS, check: "mean" };
-        Mutant::new(about, with(faulty, mis), with(Mis::Right, mis))
-    };
-    let ratio = |name, bug, target, check| About { name, bug, target, check };
-    let marching = "three steps of ray marching with a random offset, passed off as fair";
-    let mean = "the mean of two walks is one draw";
+    let right = || with(RATIO, draw_product);
+    let marching = About { name: "ray-marching", bug: "three steps of ray marching with a random offset, passed off as fair", target: DENSE, check: "mean" };
+    let mean = About { name: "two-walks-averaged", bug: "the mean of two walks is one draw", target: BELOW, check: "variance" };
     vec![
-        of_next_flight(
-            "next-flight-without-first",
-            "the chance to fly from the beginning straight to the end is left out",
-            NextFlight::WithoutFirst,
-        ),
-        of_next_flight(
-            "next-flight-counted-twice",
-            "a walk that reaches the end adds its weight to what it has already scored",
-            NextFlight::CountedTwice,
-        ),
-        of_mis(
-            "mis-without-flight",
-            "a flight that reaches the end does not score its own share",
-            Mis::WithoutFlight,
-        ),
-        of_mis(
-            "mis-unweighted",
-            "next flight and flight count in full, unweighted",
-            Mis::Unweighted,
-        ),
-        Mutant::new(
-            ratio("ray-marching", marching, DENSE, "mean"),
-            ray_marching,
-            with(RATIO, draw_product),
-        ),
-        Mutant::new(
-            ratio("two-walks-averaged", mean, BELOW, "variance"),
-            averaged,
-            with(RATIO, draw_product),
-        ),
+        of("next-flight-without-first", "the chance to fly from the beginning straight to the end is left out", NEXT_FLIGHT, next_flight, Scores { first: false, ..next_flight }),
+        of("next-flight-counted-twice", "a walk that reaches the end adds its weight to what it has already scored", NEXT_FLIGHT, next_flight, Scores { end: |weight, _| weight, ..next_flight }),
+        of("mis-without-flight", "a flight that reaches the end does not score its own share", MIS, mis, Scores { end: |_, _| 0.0, ..mis }),
+        of("mis-unweighted", "next flight and flight count in full, unweighted", MIS, mis, Scores { share: |v| v, ..mis }),
+        Mutant::new(marching, ray_marching, right()),
+        Mutant::new(mean, averaged, right()),
     ]
 }
 
-/// What goes wrong in the next-flight estimator.
-#[derive(Clone, Copy, PartialEq)]
-enum NextFlight {
-    Right,
-    WithoutFirst,
-    CountedTwice,
+/// What walks score on their way, see `estimators/transmittance/next_flight.rs` and `unidirectional_mis.rs`.
+#[derive(Clone, Copy)]
+struct Scores {
+    /// The share of v that counts where a flight begins.
+    share: fn(f64) -> f64,
+    /// Whether the first flight counts.
+    first: bool,
+    /// What a walk that reaches the end adds, from its weight and its last score.
+    end: fn(f64, f64) -> f64,
 }
 
-/// See `estimators/transmittance/next_flight.rs`.
-fn next_flight(
-    bug: &NextFlight,
+fn scored(
+    scores: &Scores,
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 1]> {
     let end = setup.mesh.support().to;
     let mut cursor = setup.sampling.begin();
-    let mut weight = 1.0;
-    let mut lookups = 0;
-    let first = Lane::exp(-setup.sampling.value(cursor.t) * (end - cursor.t));
-    let mut score = if *bug == NextFlight::WithoutFirst { 0.0 } else { first };
-    while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
-        weight *= 1.0 - medium.extinction(cursor.t) * (1.0 / sampling);
-        lookups += 1;
-        score += weight * Lane::exp(-sampling * (end - cursor.t));
-    }
-    if *bug == NextFlight::CountedTwice {
-        score += weight;
-    }
-    Draw::free([score], lookups)
-}
-
-/// What goes wrong in unidirectional MIS.
-#[derive(Clone, Copy, PartialEq)]
-enum Mis {
-    Right,
-    WithoutFlight,
-    Unweighted,
-}
-
-/// See `estimators/transmittance/unidirectional_mis.rs`.
-fn mis(
-    bug: &Mis,
-    setup: &Setup<Transmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<[f64; 1]> {
-    let end = setup.mesh.support().to;
-    let mut cursor = setup.sampling.begin();
-    let mut weight = 1.0;
-    let mut lookups = 0;
-    let share = |sampling: f64, t: f64| {
-        let v = Lane::exp(-sampling * (end - t));
-        if *bug == Mis::Unweighted { v } else { v / (1.0 + v) }
-    };
+    let (mut weight, mut lookups) = (1.0, 0);
+    let share = |sampling: f64, t: f64| (scores.share)(Lane::exp(-sampling * (end - t)));
     let mut last = share(setup.sampling.value(cursor.t), cursor.t);
-    let mut score = last;
+    let mut score = if scores.first { last } else { 0.0 };
     while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
         weight *= 1.0 - medium.extinction(cursor.t) * (1.0 / sampling);
         lookups += 1;
         last = weight * share(sampling, cursor.t);
         score += last;
     }
-    let flown = if *bug == Mis::WithoutFlight { 0.0 } else { last };
-    Draw::free([score + flown], lookups)
+    Draw::free([score + (scores.end)(weight, last)], lookups)
 }
 
 /// `X = exp(−h Σⱼ σ_t((j + u) h))`.

@@ -27,61 +27,32 @@ pub struct StreamMutant {
 }
 
 /// The family.
+#[rustfmt::skip] // one mutant, one entry
 pub const MUTANTS: &[StreamMutant] = &[
-    StreamMutant {
-        name: "stream-one-seed",
-        bug: "every block has the same streams",
-        check: "streams",
-        streams: |address| block(address, 0),
-    },
-    StreamMutant {
-        name: "stream-pairs",
-        bug: "two neighbouring blocks share their streams",
-        check: "streams",
-        streams: |address| block(address, address.block / 2),
-    },
-    StreamMutant {
-        name: "stream-recycled",
-        bug: "after four blocks the streams begin anew",
-        check: "streams",
-        streams: |address| block(address, address.block % 4),
-    },
-    StreamMutant {
-        name: "stream-few-seeds",
-        bug: "the block is hashed to four bits: sixteen sets of streams in no order",
-        check: "streams",
-        streams: |address| block(address, hashed(address.block) >> 60),
-    },
-    StreamMutant {
-        name: "stream-overlap",
-        bug: "a lane's blocks are parts of one long stream, 512 numbers apart, and use more than that",
-        check: "generator",
-        streams: |address| advanced(address, 512),
-    },
-    StreamMutant {
-        name: "stream-creeping",
-        bug: "each block's stream is the one before it without its first number",
-        check: "generator",
-        streams: |address| advanced(address, 1),
-    },
-    StreamMutant {
-        name: "stream-one-lane",
-        bug: "all lanes of a block have the same stream",
-        check: "generator",
-        streams: |address| Streams { lanes: [address.stream(); LANES], ..address.streams() },
-    },
-    StreamMutant {
-        name: "stream-lanes-shift",
-        bug: "each lane has the stream of its neighbour in the block before",
-        check: "generator",
-        streams: |address| {
-            let lane =
-                |lane: usize| Address { block: 0, lane: address.block + lane as u64, ..address };
-            let lanes = std::array::from_fn(|l| lane(l).stream());
-            Streams { lanes, ..address.streams() }
-        },
-    },
+    wrong("stream-one-seed", "every block has the same streams", "streams", |address| block(address, 0)),
+    wrong("stream-pairs", "two neighbouring blocks share their streams", "streams", |address| block(address, address.block / 2)),
+    wrong("stream-recycled", "after four blocks the streams begin anew", "streams", |address| block(address, address.block % 4)),
+    wrong("stream-few-seeds", "the block is hashed to four bits: sixteen sets of streams in no order", "streams", |address| block(address, hashed(address.block) >> 60)),
+    wrong("stream-overlap", "a lane's blocks are parts of one long stream, 512 numbers apart, and use more than that", "generator", |address| advanced(address, 512)),
+    wrong("stream-creeping", "each block's stream is the one before it without its first number", "generator", |address| advanced(address, 1)),
+    wrong("stream-one-lane", "all lanes of a block have the same stream", "generator", |address| Streams { lanes: [address.stream(); LANES], ..address.streams() }),
+    wrong("stream-lanes-shift", "each lane has the stream of its neighbour in the block before", "generator", shifted),
 ];
+
+const fn wrong(
+    name: &'static str,
+    bug: &'static str,
+    check: &'static str,
+    streams: fn(Address) -> Streams,
+) -> StreamMutant {
+    StreamMutant { name, bug, check, streams }
+}
+
+/// Lane l of block b has the stream of block 0 and lane b + l.
+fn shifted(address: Address) -> Streams {
+    let lane = |lane: usize| Address { block: 0, lane: address.block + lane as u64, ..address };
+    Streams { lanes: std::array::from_fn(|l| lane(l).stream()), ..address.streams() }
+}
 
 /// The streams of another block.
 fn block(address: Address, block: u64) -> Streams {

@@ -1,6 +1,6 @@
 //! Where mutants are shown: experiments of the built-in suite.
 //!
-//! Most stand on the magnets, cases made for this: an asymmetric medium, dense at both ends, and
+//! Most stand on the cases called `magnet`, made for this: an asymmetric medium, dense at both ends, and
 //! estimators for every regime of `r = (σ_t − σ_c)/σ̂`.
 
 /// One experiment of a case of the built-in suite.
@@ -20,40 +20,41 @@ const fn on(case: &'static str, index: usize, estimator: &'static str) -> Target
     Target { case, index, estimator, swept: None }
 }
 
-const fn magnet(index: usize, estimator: &'static str) -> Target {
+/// In the case that was made for mutants.
+const fn transmittance(index: usize, estimator: &'static str) -> Target {
     on("transmittance/magnet", index, estimator)
 }
 
 /// `σ̂ = 1.2`, a majorant.
-pub const WOODCOCK: Target = magnet(0, "woodcock");
+pub const WOODCOCK: Target = transmittance(0, "woodcock");
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-pub const BELOW: Target = magnet(1, "ratio");
+pub const BELOW: Target = transmittance(1, "ratio");
 /// `σ̂ = 30`: 90 lookups a draw, a relative standard deviation of a quarter.
-pub const DENSE: Target = magnet(2, "ratio");
+pub const DENSE: Target = transmittance(2, "ratio");
 /// A linear σ̂.
-pub const LINEAR: Target = magnet(3, "ratio");
+pub const LINEAR: Target = transmittance(3, "ratio");
 /// A piecewise-constant σ̂.
-pub const STEPS: Target = magnet(4, "ratio");
+pub const STEPS: Target = transmittance(4, "ratio");
 /// A control through five points, `σ̂ = 0.5`.
-pub const EXPLORERS: Target = magnet(5, "double");
+pub const EXPLORERS: Target = transmittance(5, "double");
 /// `σ_c = 0.9`, `σ̂ = 1`, `−0.5 ≤ r ≤ 0.2`.
-pub const NEGATIVE: Target = magnet(6, "residual-ratio");
+pub const NEGATIVE: Target = transmittance(6, "residual-ratio");
 /// `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-pub const TERMINATING: Target = magnet(7, "single (terminating)");
+pub const TERMINATING: Target = transmittance(7, "single (terminating)");
 /// `σ_c = 0.55`, `σ̂ = 0.22`, `−0.7 ≤ r ≤ 2.5`.
-pub const CLAMPED: Target = magnet(8, "single (clamped)");
+pub const CLAMPED: Target = transmittance(8, "single (clamped)");
 /// `a = 0.7`, `σ̂ = 0.6`, `0.67 ≤ r ≤ 1.83`.
-pub const NON_TERMINATING: Target = magnet(9, "single (non-terminating, a=0.7)");
+pub const NON_TERMINATING: Target = transmittance(9, "single (non-terminating, a=0.7)");
 /// `a = 0.7`, `σ_c = 0.55`, `σ̂ = 0.4`, `−0.4 ≤ r ≤ 1.4`.
-pub const ADAPTIVE: Target = magnet(10, "single (adaptive, a=0.7)");
+pub const ADAPTIVE: Target = transmittance(10, "single (adaptive, a=0.7)");
 /// `σ_c = 0.3`, `σ̂ = 0.9`.
-pub const DECOMPOSITION: Target = magnet(11, "decomposition");
+pub const DECOMPOSITION: Target = transmittance(11, "decomposition");
 /// Three segments.
-pub const LOCAL_MAJORANT: Target = magnet(12, "local-majorant");
+pub const LOCAL_MAJORANT: Target = transmittance(12, "local-majorant");
 /// `σ̂ = 1`.
-pub const NEXT_FLIGHT: Target = magnet(13, "next-flight");
+pub const NEXT_FLIGHT: Target = transmittance(13, "next-flight");
 /// `σ̂ = 1`.
-pub const MIS: Target = magnet(14, "unidirectional-mis");
+pub const MIS: Target = transmittance(14, "unidirectional-mis");
 /// An optical depth of 110, nearly all of it in the control.
 pub const DEEP: Target = on("transmittance/deep", 0, "residual-ratio");
 /// `r = 1` and `r = 0` exactly, albedo 0.

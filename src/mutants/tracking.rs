@@ -14,32 +14,18 @@ use crate::problems::Transmittance;
 use crate::rng::Stream;
 
 /// The family.
+#[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<Transmittance>> {
-    let wrong = |name, bug, check, faulty: Decomposition| {
-        let about = About { name, bug, target: DECOMPOSITION, check };
-        let right = Decomposition { whole: false, passes: false };
-        Mutant::new(about, with(faulty, decomposition), with(right, decomposition))
+    let by = |whole, passes| with(Decomposition { whole, passes }, decomposition);
+    let of = |name, bug, check, whole, passes| {
+        Mutant::new(About { name, bug, target: DECOMPOSITION, check }, by(whole, passes), by(false, false))
     };
-    let about = About {
-        name: "local-majorant-overshoot",
-        bug: "a flight beyond a segment's end goes on from where it came to, not from the boundary",
-        target: LOCAL_MAJORANT,
-        check: "mean",
-    };
+    let local = |overshoots| with(overshoots, |&overshoots, setup, medium, rng| local_majorant(overshoots, setup, medium, rng));
+    let overshoot = About { name: "local-majorant-overshoot", bug: "a flight beyond a segment's end goes on from where it came to, not from the boundary", target: LOCAL_MAJORANT, check: "mean" };
     vec![
-        wrong(
-            "decomposition-whole",
-            "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂",
-            "mean",
-            Decomposition { whole: true, passes: false },
-        ),
-        wrong(
-            "decomposition-passes",
-            "a draw without a residual collision is 1, wherever the control's flight ended",
-            "atoms",
-            Decomposition { whole: false, passes: true },
-        ),
-        Mutant::new(about, with(true, local_majorant), with(false, local_majorant)),
+        of("decomposition-whole", "the chance of a real collision is σ_t/σ̂, not (σ_t − σ_c)/σ̂", "mean", true, false),
+        of("decomposition-passes", "a draw without a residual collision is 1, wherever the control's flight ended", "atoms", false, true),
+        Mutant::new(overshoot, local(true), local(false)),
     ]
 }
 
@@ -83,7 +69,7 @@ fn decomposition(
 /// Local majorants, see `estimators/transmittance/local_majorant.rs`; who overshoots does not go back to the
 /// boundary.
 fn local_majorant(
-    overshoots: &bool,
+    overshoots: bool,
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
@@ -91,7 +77,7 @@ fn local_majorant(
     let mut lookups = 0;
     let mut came_to = setup.mesh.support().from;
     for (ends, path) in setup.sampling.stretches() {
-        let mut t = if *overshoots { came_to.max(ends[0]) } else { ends[0] };
+        let mut t = if overshoots { came_to.max(ends[0]) } else { ends[0] };
         while t < ends[1] {
             let (depth, number) = (-rng.ln_uniform(), rng.uniform());
             t = depth.times_plus(path, t);
