@@ -81,6 +81,6 @@ struct WithoutAlbedo;
 
 impl Connect for WithoutAlbedo {
     fn weight(&self, sphere: &Sphere, at: &Scattering) -> f64 {
-        at.weight / sphere.scene().albedo.even().unwrap_or(1.0)
+        at.weight / sphere.scene.albedo.even().unwrap_or(1.0)
     }
 }

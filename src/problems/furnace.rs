@@ -29,32 +29,18 @@ use super::{Problem, Scene};
 use crate::catalogue::Settings;
 use crate::geometry::{Point, Ray};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Medium};
 
 /// The radiance along a ray into a furnace.
 #[derive(Clone)]
 pub struct Furnace {
-    scene: Scene,
-    entry: Point,
-    direction: Point,
-    medium: Medium,
-}
-
-impl Furnace {
     /// The medium in space.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
+    pub scene: Scene,
     /// Where the ray enters the bounds, or begins within them.
-    pub fn entry(&self) -> Point {
-        self.entry
-    }
-
+    pub entry: Point,
     /// The direction of the ray.
-    pub fn direction(&self) -> Point {
-        self.direction
-    }
+    pub direction: Point,
+    medium: Medium,
 }
 
 impl Problem for Furnace {
@@ -75,15 +61,5 @@ impl Problem for Furnace {
         Some(Self { scene, entry, direction: ray.direction, medium: body?.medium() })
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
-    }
-
-    fn volume(&self) -> Option<&Volume> {
-        Some(&*self.scene.volume)
-    }
-
-    fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
-    }
+    super::in_space!();
 }

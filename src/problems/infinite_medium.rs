@@ -26,7 +26,7 @@ use super::{Albedo, Problem, Scene};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Bounds, Point};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Medium};
 use crate::phase::Phase;
 
 pub use super::rod::Values;
@@ -37,31 +37,19 @@ const MOST_RADII: usize = 8;
 /// A point source in a homogeneous medium without end.
 #[derive(Clone)]
 pub struct InfiniteMedium {
-    scene: Scene,
+    /// The medium in space.
+    pub scene: Scene,
     medium: Medium,
-    extinction: f64,
-    radii: Vec<f64>,
+    /// σ_t.
+    pub extinction: f64,
+    /// The distances within which collisions are counted.
+    pub radii: Vec<f64>,
 }
 
 impl InfiniteMedium {
-    /// The medium in space.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// σ_t.
-    pub fn extinction(&self) -> f64 {
-        self.extinction
-    }
-
     /// a.
     pub fn albedo(&self) -> f64 {
         self.scene.albedo.even().unwrap_or(0.0)
-    }
-
-    /// The distances within which collisions are counted.
-    pub fn radii(&self) -> &[f64] {
-        &self.radii
     }
 }
 
@@ -107,15 +95,5 @@ impl Problem for InfiniteMedium {
         Some(Self { scene, medium: body?.medium(), extinction, radii })
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
-    }
-
-    fn volume(&self) -> Option<&Volume> {
-        Some(&*self.scene.volume)
-    }
-
-    fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
-    }
+    super::in_space!();
 }

@@ -40,7 +40,7 @@ use super::{Problem, Scene};
 use crate::catalogue::Settings;
 use crate::geometry::{Bounds, Point};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Medium};
 use crate::numeric::Known;
 
 pub use super::rod::Values;
@@ -48,17 +48,13 @@ pub use super::rod::Values;
 /// A body under light from all sides.
 #[derive(Clone)]
 pub struct Lambertian {
-    scene: Scene,
+    /// The medium in space.
+    pub scene: Scene,
     medium: Medium,
     content: OnceLock<Option<Known>>,
 }
 
 impl Lambertian {
-    /// The medium in space.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
     /// The boundary.
     pub fn bounds(&self) -> Bounds {
         self.scene.volume.bounds()
@@ -122,17 +118,7 @@ impl Problem for Lambertian {
         Some(Self { scene, medium: body?.medium(), content: OnceLock::new() })
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
-    }
-
-    fn volume(&self) -> Option<&Volume> {
-        Some(&*self.scene.volume)
-    }
-
-    fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
-    }
+    super::in_space!();
 }
 
 #[cfg(test)]

@@ -102,6 +102,24 @@ pub trait Problem: Send + Sync + Sized + 'static {
     }
 }
 
+/// What problems have in common whose particles walk through a `scene`.
+macro_rules! in_space {
+    () => {
+        fn medium(&self) -> &Medium {
+            &self.medium
+        }
+
+        fn volume(&self) -> Option<&crate::media::Volume> {
+            Some(&*self.scene.volume)
+        }
+
+        fn with_albedo(&self, albedo: f64) -> Option<Self> {
+            Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
+        }
+    };
+}
+use in_space;
+
 /// The values of one draw, at most N.
 #[derive(Debug, Clone, Copy)]
 pub struct Values<const N: usize> {

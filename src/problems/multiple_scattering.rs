@@ -19,8 +19,10 @@ use crate::media::{Body, Medium, Volume};
 
 /// Multiple scattering of a sky along a ray.
 pub struct MultipleScattering {
-    scene: Scene,
-    sky: Sky,
+    /// The medium in space.
+    pub scene: Scene,
+    /// The light from around it.
+    pub sky: Sky,
     ray: Ray,
     medium: Medium,
 }
@@ -32,16 +34,6 @@ impl MultipleScattering {
         let profile = scene.volume.along(&ray, support);
         let medium = Medium::new(profile, ray.span(), support);
         Self { scene, sky, ray, medium }
-    }
-
-    /// The medium in space.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The light from around it.
-    pub fn sky(&self) -> &Sky {
-        &self.sky
     }
 
     /// Where the ray enters the bounds, and its direction; `None` where it misses them.

@@ -79,10 +79,14 @@ impl Seen {
 /// A rod.
 pub struct Rod {
     medium: Medium,
-    albedo: Piecewise,
-    forward: Piecewise,
-    channels: Vec<Seen>,
-    parts: usize,
+    /// a, as a function of the distance.
+    pub albedo: Piecewise,
+    /// `p_f`, as a function of the distance.
+    pub forward: Piecewise,
+    /// What the channels of a draw are about, the last two always reflectance and transmittance.
+    pub channels: Vec<Seen>,
+    /// How many parts of the rod have their flux as a channel: 0 or all of them.
+    pub parts: usize,
 }
 
 /// The values of one draw, one per channel.
@@ -101,11 +105,6 @@ impl Rod {
         Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
     }
 
-    /// How many parts of the rod have their flux as a channel: 0 or all of them.
-    pub fn parts(&self) -> usize {
-        self.parts
-    }
-
     /// The length of such a part.
     pub fn width(&self) -> f64 {
         self.medium.support().length() / self.parts.max(1) as f64
@@ -122,21 +121,6 @@ impl Rod {
     pub fn part(&self, t: f64) -> usize {
         let part = (t - self.begin()) / self.width();
         (part as usize).min(self.parts.saturating_sub(1))
-    }
-
-    /// a, as a function of the distance.
-    pub fn albedo(&self) -> &Piecewise {
-        &self.albedo
-    }
-
-    /// `p_f`, as a function of the distance.
-    pub fn forward(&self) -> &Piecewise {
-        &self.forward
-    }
-
-    /// What the channels of a draw are about, the last two always reflectance and transmittance.
-    pub fn channels(&self) -> &[Seen] {
-        &self.channels
     }
 }
 

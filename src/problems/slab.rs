@@ -52,24 +52,16 @@ pub struct Incidence {
 /// A slab.
 pub struct Slab {
     medium: Medium,
-    albedo: f64,
-    incidence: Incidence,
+    /// a.
+    pub albedo: f64,
+    /// Light and phase function.
+    pub incidence: Incidence,
 }
 
 impl Slab {
     /// A slab whose depth is the distance along a medium, with an albedo in `[0, 1]`.
     pub fn new(medium: Medium, albedo: f64, incidence: Incidence) -> Self {
         Self { medium, albedo, incidence }
-    }
-
-    /// a.
-    pub fn albedo(&self) -> f64 {
-        self.albedo
-    }
-
-    /// Light and phase function.
-    pub fn incidence(&self) -> &Incidence {
-        &self.incidence
     }
 }
 

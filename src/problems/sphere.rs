@@ -37,7 +37,7 @@ use super::{Problem, Scene};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Bounds, Point, Ray};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Medium};
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
 
@@ -64,41 +64,21 @@ pub enum Sought {
 /// A ball with a light and an eye.
 #[derive(Clone)]
 pub struct Sphere {
-    scene: Scene,
+    /// The medium in space.
+    pub scene: Scene,
     ray: Ray,
     medium: Medium,
-    centre: Point,
-    radius: f64,
-    light: Light,
-    sought: Sought,
+    /// The centre of the ball.
+    pub centre: Point,
+    /// R.
+    pub radius: f64,
+    /// Where light comes from.
+    pub light: Light,
+    /// What is sought.
+    pub sought: Sought,
 }
 
 impl Sphere {
-    /// The medium in space.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The centre of the ball.
-    pub fn centre(&self) -> Point {
-        self.centre
-    }
-
-    /// R.
-    pub fn radius(&self) -> f64 {
-        self.radius
-    }
-
-    /// Where light comes from.
-    pub fn light(&self) -> Light {
-        self.light
-    }
-
-    /// What is sought.
-    pub fn sought(&self) -> Sought {
-        self.sought
-    }
-
     /// σ_t as a function of the squared distance from the centre.
     pub fn extinction(&self, r2: f64) -> f64 {
         self.scene.volume.extinction_at(self.centre + Point([r2.sqrt(), 0.0, 0.0]))
@@ -229,17 +209,7 @@ impl Problem for Sphere {
         mistakes.is_empty().then_some(sphere)
     }
 
-    fn medium(&self) -> &Medium {
-        &self.medium
-    }
-
-    fn volume(&self) -> Option<&Volume> {
-        Some(&*self.scene.volume)
-    }
-
-    fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        Some(Self { scene: self.scene.with_albedo(albedo), ..self.clone() })
-    }
+    super::in_space!();
 }
 
 fn not_radial<T>(settings: &Settings) -> Option<T> {

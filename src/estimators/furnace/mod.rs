@@ -26,7 +26,7 @@ impl Sink for Energy {
 
 /// Whether a rule exists here, and its spread has a bound.
 pub(super) fn domain(setup: &Setup<Furnace>, particle: &Particle) -> Result<(), Refusal> {
-    let scene = setup.problem.scene();
+    let scene = &setup.problem.scene;
     space::realisable(setup, scene, particle)?;
     space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
 }
@@ -36,7 +36,7 @@ pub(super) fn predict(setup: &Setup<Furnace>, particle: &Particle) -> Prediction
     let walks = setup
         .space
         .as_ref()
-        .map(|majorants| space::walks(setup.problem.scene(), majorants, particle));
+        .map(|majorants| space::walks(&setup.problem.scene, majorants, particle));
     let bound = walks.and_then(|walks| walks.energy_variance());
     // Without a bound the walk is refused, or forced: then only the truth is kept.
     let depth = walks.map_or(0.0, |walks| walks.depth);
@@ -72,9 +72,9 @@ fn draw_by(
         // Without σ̂ there is nothing to draw; such an experiment is refused.
         return Draw::free([f64::NAN], 0);
     };
-    let start = Start { place: furnace.entry(), direction: furnace.direction(), weight: 1.0 };
+    let start = Start { place: furnace.entry, direction: furnace.direction, weight: 1.0 };
     let mut energy = Energy::default();
-    let lookups = walk(furnace.scene(), majorants, start, &mut energy);
+    let lookups = walk(&furnace.scene, majorants, start, &mut energy);
     Draw::free([energy.0], lookups)
 }
 

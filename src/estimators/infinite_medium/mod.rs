@@ -46,7 +46,7 @@ fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
 
 /// `r`, one number.
 fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
-    Some(setup.problem.extinction() / setup.space.as_deref()?.single_value()?)
+    Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
 }
 
 /// Whether a rule exists here, its walks end, and no weight grows.
@@ -87,21 +87,21 @@ pub(super) fn domain(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Resu
 /// What theory says, channel by channel.
 pub(super) fn predict(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Prediction {
     let problem = &setup.problem;
-    let (sigma, albedo) = (problem.extinction(), problem.albedo());
+    let (sigma, albedo) = (problem.extinction, problem.albedo());
     let unknown = |name: String, truth: Known| {
         let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
         Channel { name, moments: None, by_pilots: true, ..certain }
     };
     let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
     let mut channels: Vec<Channel> = problem
-        .radii()
+        .radii
         .iter()
         .map(|&radius| {
             let truth = infinite::collisions_within(albedo, sigma * radius);
             unknown(format!("collisions within {radius}"), truth)
         })
         .collect();
-    let cosine = problem.scene().phase.moment(1);
+    let cosine = problem.scene.phase.moment(1);
     let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
     channels.push(unknown("squared distance".to_owned(), rounded(square)));
     let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
@@ -144,7 +144,7 @@ pub(super) fn draw(
 ) -> Draw<Values> {
     let (mut wander, start) = begin(setup, rng);
     let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
-    let scene = setup.problem.scene();
+    let scene = &setup.problem.scene;
     let lookups = space::walk(particle, scene, majorants, start, &mut wander, rng);
     Draw::free(wander.values, lookups)
 }
@@ -157,14 +157,14 @@ pub fn draw_with(
 ) -> Draw<Values> {
     let (mut wander, start) = begin(setup, rng);
     let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
-    let scene = setup.problem.scene();
+    let scene = &setup.problem.scene;
     let lookups = space::walk_by(steps, scene, majorants, start, &mut wander, rng);
     Draw::free(wander.values, lookups)
 }
 
 #[inline(always)]
 fn begin<'a>(setup: &'a Setup<InfiniteMedium>, rng: &mut Stream) -> (Wander<'a>, Start) {
-    let radii = setup.problem.radii();
+    let radii = &setup.problem.radii;
     let values = Values { at: [0.0; MOST], count: radii.len() + 2 };
     let cosine = 2.0 * rng.uniform() - 1.0;
     let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());

@@ -30,7 +30,7 @@ impl Seen {
         let Some(majorants) = setup.space.as_deref() else {
             return Self { energy: false, white: false, tentative: false };
         };
-        let scene = setup.problem.scene();
+        let scene = &setup.problem.scene;
         let walks = space::walks(scene, majorants, particle);
         // Where a = 0 and r = 1 nothing is left of a particle: that is an end even for this rule.
         let goes_on = *particle == Particle::of(ParticleRule::NonTerminating)
@@ -92,13 +92,13 @@ impl Stay {
 
 /// `∫σ_t dV`, sharp enough to be drawn against.
 fn held(setup: &Setup<Lambertian>) -> Option<Known> {
-    let held = setup.problem.content(|| content::content(&*setup.problem.scene().volume));
+    let held = setup.problem.content(|| content::content(&*setup.problem.scene.volume));
     held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
 }
 
 /// Whether a rule exists here, and anything is known of it.
 pub(super) fn domain(setup: &Setup<Lambertian>, particle: &Particle) -> Result<(), Refusal> {
-    let scene = setup.problem.scene();
+    let scene = &setup.problem.scene;
     space::realisable(setup, scene, particle)?;
     let seen = Seen::of(setup, particle);
     if seen.white && held(setup).is_none() {
@@ -119,7 +119,7 @@ pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Predict
     let (problem, seen) = (&setup.problem, Seen::of(setup, particle));
     let mut channels = Vec::new();
     if let Some(majorants) = setup.space.as_deref() {
-        let walks = space::walks(problem.scene(), majorants, particle);
+        let walks = space::walks(&problem.scene, majorants, particle);
         let bound = walks.energy_variance().filter(|_| seen.energy);
         let named = |bound| Channel {
             name: "energy".to_owned(),
@@ -165,7 +165,7 @@ pub(super) fn draw(
 ) -> Draw<Values> {
     let Some(majorants) = setup.space.as_deref() else { return NOTHING };
     let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, lambertian));
-    let scene = setup.problem.scene();
+    let scene = &setup.problem.scene;
     let lookups = space::walk(particle, scene, majorants, start, &mut stay, rng);
     Draw::free(stay.values(Seen::of(setup, particle)), lookups)
 }
@@ -179,7 +179,7 @@ pub fn draw_with(
 ) -> Draw<Values> {
     let Some(majorants) = setup.space.as_deref() else { return NOTHING };
     let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, cosine));
-    let lookups = space::walk_by(steps, setup.problem.scene(), majorants, start, &mut stay, rng);
+    let lookups = space::walk_by(steps, &setup.problem.scene, majorants, start, &mut stay, rng);
     Draw::free(stay.values(Seen::of(setup, particle)), lookups)
 }
 

@@ -28,7 +28,7 @@ pub(super) fn domain(
     setup: &Setup<MultipleScattering>,
     particle: &Particle,
 ) -> Result<(), Refusal> {
-    space::realisable(setup, setup.problem.scene(), particle)
+    space::realisable(setup, &setup.problem.scene, particle)
 }
 
 /// Theory knows what is seen beside the volume, and nothing else.
@@ -58,8 +58,8 @@ pub(super) fn draw(
         return Draw::free([problem.background()], 0);
     };
     let start = Start { place, direction, weight: 1.0 };
-    let mut gathered = Gathered { sky: problem.sky(), radiance: 0.0 };
-    let lookups = space::walk(particle, problem.scene(), majorants, start, &mut gathered, rng);
+    let mut gathered = Gathered { sky: &problem.sky, radiance: 0.0 };
+    let lookups = space::walk(particle, &problem.scene, majorants, start, &mut gathered, rng);
     Draw::free([gathered.radiance], lookups)
 }
 

@@ -19,11 +19,11 @@ fn realisable(setup: &Setup<Rod>, rule: ParticleRule) -> Result<(), Refusal> {
     setup.require_coverage()?;
     setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
     if !rule.needs().is_empty() {
-        let albedo = setup.problem.albedo();
+        let albedo = &setup.problem.albedo;
         let limit = |t: f64| rule.limits(albedo.value(t))[1];
         setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
     }
-    if setup.problem.parts() > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
+    if setup.problem.parts > 0 && setup.sampling.corner_values().any(|value| value <= 0.0) {
         let needs = "σ̂ > 0 on the whole rod to see its flux";
         return Err(Refusal::mismatch(needs, "σ̂ = 0 somewhere"));
     }

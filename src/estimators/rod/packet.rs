@@ -71,7 +71,7 @@ impl Task for Walks<'_, '_> {
                 // Beyond both ends there is no field to look at.
                 let t = Lane::select(inside, sampling.spread(way), begin);
                 let ratio = medium.extinction(t) * path;
-                let albedo = rod.albedo().value(t);
+                let albedo = rod.albedo.value(t);
                 let taken = weight * ratio * (one - albedo);
                 absorbed = Lane::select(inside, absorbed + taken, absorbed);
                 parts.score(t, inside, weight, &mut flux);
@@ -94,7 +94,7 @@ impl Task for Walks<'_, '_> {
                 }
                 places.step();
                 let direction = numbers.uniform_where(is_scattered);
-                let turns = is_scattered & !direction.below(rod.forward().value(t));
+                let turns = is_scattered & !direction.below(rod.forward.value(t));
                 is_forward = (is_forward ^ turns) | !goes_on;
                 let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
                 weight = Lane::select(goes_on, weight * factor, one);
@@ -124,7 +124,7 @@ impl<L: Lane> Parts<L> {
     #[inline(always)]
     fn of(rod: &Rod, path: L) -> Self {
         let (begin, width) = (rod.begin(), rod.width());
-        Self { count: rod.parts(), begin, width, score: path * (1.0 / width) }
+        Self { count: rod.parts, begin, width, score: path * (1.0 / width) }
     }
 
     /// Scores where the walks are, as [`Rod::part`] finds them.
@@ -182,7 +182,7 @@ impl Ends {
     #[allow(clippy::cast_possible_truncation)] // one bit
     fn collect(&self, places: &mut Places, ended: u64, rod: &Rod, buffer: &mut DrawBuffer) -> u64 {
         places.fill(ended, |Place { lane, draw, steps }| {
-            let values = self.fate(lane).values(rod.channels());
+            let values = self.fate(lane).values(&rod.channels);
             for (channel, value) in buffer.values.iter_mut().zip(values.as_ref()) {
                 channel[draw] = *value;
             }

@@ -73,7 +73,7 @@ impl Estimator<Rod> for Roulette {
 
     fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {
         let is_score = |seen: &Seen| matches!(seen, Seen::Absorbed | Seen::Flux(_));
-        if setup.problem.channels().iter().any(is_score) {
+        if setup.problem.channels.iter().any(is_score) {
             return Err(Refusal::mismatch(
                 "channels whose draws are at most 1",
                 "what is scored on the way has no bound",

@@ -101,7 +101,7 @@ pub fn draw(
     rng: &mut Stream,
 ) -> Draw<Values> {
     let rod = &*setup.problem;
-    let (sees_flux, parts_per_length) = (rod.parts() > 0, 1.0 / rod.width());
+    let (sees_flux, parts_per_length) = (rod.parts > 0, 1.0 / rod.width());
     let mut cursor = setup.sampling.begin();
     let mut is_forward = true;
     let mut fate =
@@ -121,7 +121,7 @@ pub fn draw(
         lookups += 1;
         let path = 1.0 / sampling;
         let ratio = medium.extinction(cursor.t) * path;
-        let albedo = rod.albedo().value(cursor.t);
+        let albedo = rod.albedo.value(cursor.t);
         fate.absorbed += fate.weight * ratio * (1.0 - albedo);
         if sees_flux {
             fate.flux[rod.part(cursor.t)] += fate.weight * (path * parts_per_length);
@@ -133,7 +133,7 @@ pub fn draw(
                 fate.weight *= odds.scatter_weight;
                 fate.order += 1;
                 let direction = steps.direction(rng, number);
-                is_forward ^= steps.turns(direction, rod.forward().value(cursor.t));
+                is_forward ^= steps.turns(direction, rod.forward.value(cursor.t));
             }
             Event::Absorbed => break,
         }
@@ -142,7 +142,7 @@ pub fn draw(
             None => break,
         }
     }
-    Draw::free(fate.values(rod.channels()), lookups)
+    Draw::free(fate.values(&rod.channels), lookups)
 }
 
 #[cfg(test)]

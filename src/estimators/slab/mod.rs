@@ -22,11 +22,11 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
     let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
     let ratio =
         |t: f64, sigma: f64| if sigma == 0.0 { 0.0 } else { sigma / setup.sampling.value(t) };
-    let incidence = *setup.problem.incidence();
-    let kinks = rule.kinks(setup.problem.albedo());
+    let incidence = setup.problem.incidence;
+    let kinks = rule.kinks(setup.problem.albedo);
     Walk {
         incidence,
-        albedo: setup.problem.albedo(),
+        albedo: setup.problem.albedo,
         rule,
         pieces: Pieces::new(&setup.mesh, &setup.sampling, &kinks, &[incidence.light]),
         largest_ratio: cut.largest(ratio).map_or(0.0, |(_, ratio)| ratio),
@@ -38,10 +38,10 @@ fn walk_of(setup: &Setup<Slab>, rule: ParticleRule) -> Walk {
 /// The exact answer; `None` where theory does not resolve it.
 fn truth(setup: &Setup<Slab>) -> Option<Answer> {
     let slab = &setup.problem;
-    if !slab::resolves(&slab.incidence().phase) {
+    if !slab::resolves(&slab.incidence.phase) {
         return None;
     }
-    let answer = slab::cached(slab.incidence(), setup.mesh.optical_depth(), slab.albedo())?;
+    let answer = slab::cached(&slab.incidence, setup.mesh.optical_depth(), slab.albedo)?;
     let is_sharp = |known: &crate::numeric::Known| known.error <= BLURRED * known.value;
     [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
 }
@@ -51,7 +51,7 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
     setup.require_coverage()?;
     setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
     if !rule.needs().is_empty() {
-        let limit = rule.limits(setup.problem.albedo())[1];
+        let limit = rule.limits(setup.problem.albedo)[1];
         setup.require_ratio_at_most(limit, rule.needs())?;
     }
     if truth(setup).is_none() {
@@ -59,7 +59,7 @@ fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
                      (a > 0, |g| ≤ 0.93, a moderate τ)";
         let slab = &setup.problem;
         let depth = slab.medium().optical_depth(setup.mesh.support()).value;
-        let (albedo, phase) = (slab.albedo(), slab.incidence().phase.label());
+        let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
         let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
         return Err(Refusal::mismatch(needs, found));
     }

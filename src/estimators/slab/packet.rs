@@ -57,11 +57,11 @@ impl Task for Walks<'_, '_> {
         let Self { setup, sampling, rule, medium, request } = self;
         let Request { streams, count, buffer } = request;
         let slab = &*setup.problem;
-        let incidence = slab.incidence();
+        let incidence = &slab.incidence;
         let begin = f64x8::splat(simd, sampling.from);
         let (end, path) = (begin.each(sampling.to), begin.each(1.0 / sampling.value));
         let (zero, one) = (begin.each(0.0), begin.each(1.0));
-        let albedo = begin.each(slab.albedo());
+        let albedo = begin.each(slab.albedo);
         buffer.make_room(count);
         for (pack, lanes) in streams.packs().iter().enumerate() {
             let mut numbers = lanes.awake(simd);

@@ -72,7 +72,7 @@ pub fn draw(
     rng: &mut Stream,
 ) -> Draw<[f64; 2]> {
     let slab = &*setup.problem;
-    let incidence = slab.incidence();
+    let incidence = &slab.incidence;
     let mut cosine = match incidence.light {
         Light::Collimated(cosine) => cosine,
         Light::Diffuse => steps.diffuse(rng),
@@ -94,7 +94,7 @@ pub fn draw(
             return Draw::free(value, lookups);
         };
         lookups += 1;
-        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), slab.albedo());
+        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), slab.albedo);
         match odds.decide(number) {
             Event::Transmitted => weight *= odds.transmit_weight,
             Event::Scattered => {

@@ -107,7 +107,7 @@ impl<'a> Seeker<'a> {
         if weight == 0.0 {
             return 0;
         }
-        let (direction, share, light) = match self.sphere.light() {
+        let (direction, share, light) = match self.sphere.light {
             Light::Environment => {
                 let cosine = 2.0 * rng.uniform() - 1.0;
                 let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
@@ -115,25 +115,25 @@ impl<'a> Seeker<'a> {
             }
             Light::Distant(direction) => (direction, 1.0, f64::INFINITY),
             Light::BlackSphere(core) => {
-                let to_centre = self.sphere.centre() - place;
+                let to_centre = self.sphere.centre - place;
                 let distance = to_centre.norm();
                 let cosine = 1.0 - rng.uniform() * cone(core, distance);
                 let axis = to_centre * (1.0 / distance);
                 let direction = frame::turned(axis, cosine, rng.uniform());
                 // A direction at the edge may miss by rounding: it ends at the point of the edge.
-                let light = meets(place, direction, self.sphere.centre(), core)
-                    .unwrap_or(distance * cosine);
+                let light =
+                    meets(place, direction, self.sphere.centre, core).unwrap_or(distance * cosine);
                 (direction, connect.share(core, distance), light)
             }
         };
         let ray = Ray { origin: place, direction, length: f64::INFINITY };
-        let within = self.sphere.scene().volume.bounds().clip(&ray);
+        let within = self.sphere.scene.volume.bounds().clip(&ray);
         let inside = connect.reach(within, light);
         if inside.is_empty() {
             self.found += weight * share;
             return 0;
         }
-        let volume = &self.sphere.scene().volume;
+        let volume = &self.sphere.scene.volume;
         let (through, lookups) = connection::transmittance(&**volume, &ray, inside, shadow, rng);
         self.found += weight * share * through;
         lookups
@@ -148,18 +148,18 @@ impl Sink for Seeker<'_> {
     }
 
     fn escaped(&mut self, at: Point, _: Point, weight: f64, order: u32) {
-        let is_light = match self.sphere.light() {
+        let is_light = match self.sphere.light {
             Light::Environment => true,
             Light::Distant(_) => false,
             Light::BlackSphere(core) => {
-                let middle = 0.5 * (core + self.sphere.radius());
-                (at - self.sphere.centre()).norm() < middle
+                let middle = 0.5 * (core + self.sphere.radius);
+                (at - self.sphere.centre).norm() < middle
             }
         };
         let counts = match self.connect {
             None => true,
             Some((connect, _)) => {
-                let is_point = self.sphere.sought() == Sought::MeanIntensity;
+                let is_point = self.sphere.sought == Sought::MeanIntensity;
                 connect.counts(order + u32::from(is_point))
             }
         };

@@ -43,23 +43,23 @@ fn blur(answer: &Answer) -> f64 {
 
 /// The answer with its error; `None` where the equation is not solved.
 fn answer(sphere: &Sphere) -> Option<Answer> {
-    if sphere.majorant() * sphere.radius() > DEEPEST {
+    if sphere.majorant() * sphere.radius > DEEPEST {
         return None;
     }
-    let (core, lights) = match sphere.light() {
+    let (core, lights) = match sphere.light {
         Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
         Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
     };
-    let asked = match sphere.sought() {
+    let asked = match sphere.sought {
         Sought::Radiance => Asked::Radiance { offset: sphere.offset(), from: sphere.begins() },
         Sought::MeanIntensity => Asked::Mean(sphere.distance()),
     };
     let scene = Scene {
-        radius: sphere.radius(),
+        radius: sphere.radius,
         core,
-        albedo: sphere.scene().albedo.even()?,
+        albedo: sphere.scene.albedo.even()?,
         lights,
-        is_distant: matches!(sphere.light(), Light::Distant(_)),
+        is_distant: matches!(sphere.light, Light::Distant(_)),
         asked,
     };
     cached(&scene, &|r2| sphere.extinction(r2))
@@ -67,7 +67,7 @@ fn answer(sphere: &Sphere) -> Option<Answer> {
 
 /// Why there is no truth to judge by.
 fn unknown(sphere: &Sphere) -> Refusal {
-    let depth = sphere.majorant() * sphere.radius();
+    let depth = sphere.majorant() * sphere.radius;
     if depth > DEEPEST {
         let found = format!("it may reach {}", rounded(depth));
         return Refusal::mismatch("σ_t R ≤ 30, up to which Peierls' equation is solved", found);
@@ -86,8 +86,8 @@ fn unknown(sphere: &Sphere) -> Refusal {
 /// Whether a rule exists here, its spread has a bound, and there is a truth to judge it by.
 fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
     let sphere = &setup.problem;
-    space::realisable(setup, sphere.scene(), particle)?;
-    let walks = space::walks(sphere.scene(), space::majorants(setup)?, particle);
+    space::realisable(setup, &sphere.scene, particle)?;
+    let walks = space::walks(&sphere.scene, space::majorants(setup)?, particle);
     if !walks.never_grows() {
         let needs = "σ̂ ≥ σ_t, so that theory bounds the variance";
         let found = format!("σ_t may reach {:.6} times σ̂", walks.ratio());
@@ -105,7 +105,7 @@ fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal>
 ///
 /// The violated inequality, or that the light cannot be met.
 fn domain(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
-    if matches!(setup.problem.light(), Light::Distant(_)) {
+    if matches!(setup.problem.light, Light::Distant(_)) {
         let needs = "a light that a walk can meet";
         return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
     }
@@ -124,7 +124,7 @@ fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
 
 /// The same on any shadow ray through a ball.
 fn gain_in(sphere: &Sphere, shadow: Tracking) -> f64 {
-    gain(sphere.majorant(), 2.0 * sphere.radius(), shadow)
+    gain(sphere.majorant(), 2.0 * sphere.radius, shadow)
 }
 
 /// Whether shadow rays are unbiased and end, beside what the walk needs.
@@ -136,7 +136,7 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
     realisable(setup, particle)?;
     let sphere = &setup.problem;
     if let Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } = shadow {
-        let collisions = 2.0 * sampling * sphere.radius();
+        let collisions = 2.0 * sampling * sphere.radius;
         if collisions.is_nan() || collisions > MOST_COLLISIONS {
             let needs = "a shadow's σ̂ of at most 1e4 collisions across the ball";
             return Err(Refusal::mismatch(needs, format!("there would be {collisions:e}")));
@@ -173,7 +173,7 @@ fn prediction(value: Known, square: f64) -> Prediction {
 /// weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
 fn predict(setup: &Setup<Sphere>, particle: &Particle) -> Prediction {
     let sphere = &setup.problem;
-    if sphere.light() == Light::Environment && sphere.scene().albedo.even() == Some(1.0) {
+    if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
         let prediction = Prediction::single(space::energy_channel(0.0, 0.0), CountLaw::always(0.0));
         return Prediction { lookups: None, ..prediction };
     }
@@ -249,20 +249,20 @@ pub fn draw_by(
     let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
     let mut seeker = Seeker::new(sphere, connect);
     let (place, mut lookups) = (sphere.entry(), 0);
-    let direction = match sphere.sought() {
+    let direction = match sphere.sought {
         Sought::Radiance => sphere.direction(),
         Sought::MeanIntensity => {
             lookups += seeker.look_around(place, rng);
             frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
         }
     };
-    let core = match sphere.light() {
-        Light::BlackSphere(radius) => Some((sphere.centre(), radius)),
+    let core = match sphere.light {
+        Light::BlackSphere(radius) => Some((sphere.centre, radius)),
         Light::Environment | Light::Distant(_) => None,
     };
     let steps = Stopped { particle, core };
     let start = Start { place, direction, weight: 1.0 };
-    lookups += space::walk_by(&steps, sphere.scene(), majorants, start, &mut seeker, rng);
+    lookups += space::walk_by(&steps, &sphere.scene, majorants, start, &mut seeker, rng);
     Draw::free([seeker.found()], lookups)
 }
 

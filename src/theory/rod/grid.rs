@@ -108,18 +108,18 @@ impl<'a> Walk<'a> {
         sampling: Option<&'a Piecewise>,
         rule: ParticleRule,
     ) -> Option<Self> {
-        let mut cuts = rod.albedo().knots().to_vec();
-        cuts.extend(rod.forward().knots());
+        let mut cuts = rod.albedo.knots().to_vec();
+        cuts.extend(rod.forward.knots());
         if let Some(sampling) = sampling {
             cuts.extend(sampling.knots());
         }
         let from = mesh.support().from;
-        cuts.extend((1..rod.parts()).map(|part| from + rod.width() * part as f64));
+        cuts.extend((1..rod.parts).map(|part| from + rod.width() * part as f64));
         let cut = mesh.refined(&cuts, &|_, _| Vec::new());
         let mut kinks = Vec::new();
         if let Some(sampling) = sampling {
             for kink in 0..rule.kinks(1.0).len() {
-                let ratio = |t: f64| rule.kinks(rod.albedo().value(t))[kink];
+                let ratio = |t: f64| rule.kinks(rod.albedo.value(t))[kink];
                 kinks.extend(cut.roots(|t, sigma| sigma - ratio(t) * sampling.value(t)));
             }
         }
@@ -153,7 +153,7 @@ impl<'a> Walk<'a> {
     }
 
     fn at(&self, t: f64, extinction: f64) -> Step {
-        let (albedo, forward) = (self.rod.albedo().value(t), self.rod.forward().value(t));
+        let (albedo, forward) = (self.rod.albedo.value(t), self.rod.forward.value(t));
         let sampling = self.sampling.map_or(extinction, |sampling| sampling.value(t));
         // Where both vanish there are no collisions, and any finite ratio will do.
         let ratio = match self.sampling {

@@ -34,10 +34,10 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let support = mesh.support();
     let depth = rod.medium().optical_depth(support);
     let share = |field: &Piecewise| one_value(field, support);
-    let closed = share(rod.albedo()).zip(share(rod.forward()));
+    let closed = share(&rod.albedo).zip(share(&rod.forward));
     let closed = closed.map(|(albedo, forward)| closed::leaving(depth, albedo, forward));
     let needed = |seen: &&Seen| closed.is_none() || !has_closed_form(**seen);
-    let open: Vec<Seen> = rod.channels().iter().filter(needed).copied().collect();
+    let open: Vec<Seen> = rod.channels.iter().filter(needed).copied().collect();
     let mut solved = Vec::new();
     if !open.is_empty() {
         let walk = Walk::new(mesh, rod, None, ParticleRule::Analog)?;
@@ -47,7 +47,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
         solved = numbers?;
     }
     let mut solved = solved.into_iter();
-    let known = rod.channels().iter().map(|seen| match (closed, seen) {
+    let known = rod.channels.iter().map(|seen| match (closed, seen) {
         (Some([r, _]), Seen::Reflected) => Some(r),
         (Some([_, t]), Seen::Transmitted) => Some(t),
         (Some([r, t]), Seen::Absorbed) => {
@@ -62,7 +62,7 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
 
 /// The same, not a number where it is unknown.
 fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
-    truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels().len()])
+    truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels.len()])
 }
 
 fn has_closed_form(seen: Seen) -> bool {
@@ -112,7 +112,7 @@ pub fn has_variance(
 /// `E[X^k]` of each channel with its error, where the moment is next to its divergence; infinite where
 /// grids do not tell.
 fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
-    let channels = walk.rod.channels();
+    let channels = &walk.rod.channels;
     let numbers = moments::next_to_divergence(walk, &|grid| {
         channels.iter().map(|&seen| moments::power(grid, seen, k)).collect()
     });
@@ -138,13 +138,13 @@ pub fn predict(
         let tails = raw.map_or(Tails::LIGHT, tails);
         Channel { name: seen.name(), ..Channel::unbiased(truth, moments, tails) }
     };
-    let channels = rod.channels().iter().zip(&truth).enumerate().map(channel);
+    let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
         lookups: found.as_ref().map(Found::lookups),
         covariances: found
             .as_ref()
-            .map_or_else(Vec::new, |found| covariances(rod.channels(), &truth, found)),
+            .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
         ..Prediction::default()
     }
 }
@@ -152,7 +152,7 @@ pub fn predict(
 /// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let channels = rod.channels().iter().zip(truth).map(|(seen, truth)| Channel {
+    let channels = rod.channels.iter().zip(truth).map(|(seen, truth)| Channel {
         name: seen.name(),
         most_variance: Some(truth.value * (1.0 - truth.value)),
         ..Channel::unbiased(truth, None, Tails::LIGHT)
@@ -184,7 +184,7 @@ impl Found {
         }
         // The first exists wherever the second does; the third is of no use without the fourth.
         let existences = [Existence::Finite, second, fourth, fourth, eighth];
-        let channels = walk.rod.channels();
+        let channels = &walk.rod.channels;
         let is_finite = |i: &usize| existences[*i] == Existence::Finite;
         let powers: Vec<i32> = (0..POWERS.len()).filter(is_finite).map(|i| POWERS[i]).collect();
         // Next to its divergence a moment has no answer on coarse grids, and takes none from others.
