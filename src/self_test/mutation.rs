@@ -62,11 +62,23 @@ pub fn named_checks() -> Vec<&'static str> {
 ///
 /// A built-in case that cannot be read.
 pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
+    of(seed, &|_| true)
+}
+
+/// Draws and judges the mutants of some names, and their twins.
+///
+/// # Errors
+///
+/// A built-in case that cannot be read.
+pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, CaseError> {
     let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
     let options = Options { seed, ..Options::default() };
     let levels = Plan::new(&cases, &options).levels;
     let bench = Bench { cases: &cases, options, levels };
-    let abouts = mutants::all();
+    let abouts: Vec<About> =
+        mutants::all().into_iter().filter(|about| is_wanted(about.name)).collect();
+    let of_streams: Vec<&StreamMutant> =
+        streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name)).collect();
     let mut targets: HashMap<(&str, usize), Target> = HashMap::new();
     for target in abouts.iter().map(|about| about.target).chain([streams::TARGET]) {
         targets.insert((target.case, target.index), target);
@@ -79,7 +91,7 @@ pub fn all(seed: u64) -> Result<Vec<Caught>, CaseError> {
         .map(|about| bench.estimator(about, passes(&about.target).unwrap_or(false)))
         .collect();
     let twin = passes(&streams::TARGET).unwrap_or(false);
-    caught.par_extend(streams::MUTANTS.par_iter().map(|mutant| bench.streams(mutant, twin)));
+    caught.par_extend(of_streams.into_par_iter().map(|mutant| bench.streams(mutant, twin)));
     Ok(caught)
 }
 

@@ -4,16 +4,10 @@
 //! makes the z-scores of its kind large together, long before a single one fails; one that is too
 //! large makes them small, which no single check would ever see.
 
-use crate::common::{ALPHA, judged, none, options, shipped};
+use crate::common::{ALPHA, none, shipped_record};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use trueflight::harness::record::{Finding, Record, Row, Verdict};
 use trueflight::stats::normal;
-
-/// Draws per experiment; `TRUEFLIGHT_DRAWS` asks for another number, for long campaigns.
-fn draws() -> u64 {
-    let wished = std::env::var("TRUEFLIGHT_DRAWS").ok();
-    wished.map_or(50_000, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
-}
 
 /// The band holds all but a thousandth: half of it on either side.
 const OUTSIDE: f64 = 1e-3;
@@ -73,8 +67,7 @@ fn judge(kind: &str, scores: &[(String, f64)]) -> Vec<String> {
 
 #[test]
 fn z_scores_of_all_cases_have_mean_square_one() {
-    let record = judged(&shipped(), &options(1, draws()));
-    let experiments = experiments(&record);
+    let experiments = experiments(shipped_record());
     let scores = |z: fn(&Row) -> Option<f64>, wanted: fn(&Row) -> bool| {
         let rows = experiments.iter().filter(|(_, row)| wanted(row));
         let scores = rows.filter_map(|(case, row)| {

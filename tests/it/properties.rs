@@ -252,8 +252,18 @@ fn finite_or_refused(planned: &Planned, most: f64) -> Result<(), TestCaseError> 
 
 #[test]
 fn predictions_are_finite_or_refused() {
+    predictions(40);
+}
+
+#[test]
+#[ignore = "long: 400 random cases, 15 s of two cores"]
+fn predictions_of_many_cases_are_finite_or_refused() {
+    predictions(400);
+}
+
+fn predictions(count: u32) {
     let inputs = (field(), estimators(), sized(-9.0, 9.0), any::<bool>());
-    always(400, &inputs, |(field, estimators, sampling, flies)| {
+    always(count, &inputs, |(field, estimators, sampling, flies)| {
         let problem = if flies { "free-flight" } else { "transmittance" };
         let estimators = if flies { "{ woodcock = {} }, { inversion = {} }" } else { &estimators };
         let text = format!(

@@ -68,6 +68,7 @@ fn what_is_mostly_skipped_is_broken_and_says_where() {
 }
 
 #[test]
+#[ignore = "long: thousands of parameters, 10 s of a core"]
 fn rods_and_collision_sums_keep_their_stated_errors_over_thousands_of_parameters() {
     let long = PAGES.iter().filter(|(name, _)| ["rods", "collided"].contains(name));
     let rows: Vec<Row> = long.flat_map(|(_, rows)| rows(Effort::Full, 3)).collect();
@@ -94,6 +95,7 @@ fn weights_that_would_overflow_are_refused() {
 }
 
 #[test]
+#[ignore = "long: the short form again, 30 s of a core"]
 fn another_seed_holds_too() {
     let found = all(Effort::Quick, 2, &|_| {});
     let broken: Vec<&Row> = found.rows.iter().filter(|row| !row.holds()).collect();

@@ -5,6 +5,7 @@ pub mod mutated;
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use fearless_simd::Level;
 use trueflight::catalogue::Settings;
@@ -89,6 +90,20 @@ pub fn shipped() -> Vec<Case> {
         let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
         panic!("{}", shown.join("\n\n"))
     })
+}
+
+/// Draws per experiment of [`shipped_record`]; `TRUEFLIGHT_DRAWS` asks for another number, for long
+/// campaigns.
+fn shipped_draws() -> u64 {
+    let wished = std::env::var("TRUEFLIGHT_DRAWS").ok();
+    wished.map_or(50_000, |text| text.parse().expect("TRUEFLIGHT_DRAWS is a whole number"))
+}
+
+/// All shipped cases, drawn from seed 1 and judged once for all tests.
+pub fn shipped_record() -> &'static Record {
+    static RECORD: LazyLock<Record> =
+        LazyLock::new(|| judged(&shipped(), &options(1, shipped_draws())));
+    &RECORD
 }
 
 /// `found` against `expected` to a relative tolerance, as a message if they differ.
