@@ -8,7 +8,7 @@ use trueflight::harness::baseline::{Baseline, fingerprint};
 use trueflight::harness::baseline::{Comparison, Rules, compare};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
-use trueflight::report::changes;
+use trueflight::report::diff;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]
@@ -87,14 +87,14 @@ impl Baselines {
     /// What is wrong with a comparison that was asked for and says nothing.
     pub fn complaint(&self, record: &Record) -> Option<anyhow::Error> {
         let (comparison, (_, path, _)) = record.comparison.as_ref().zip(self.stored.as_ref())?;
-        if let Some(nothing) = changes::nothing(comparison) {
+        if let Some(nothing) = diff::nothing(comparison) {
             return Some(anyhow!(
                 "{}: {nothing}; run the cases of the baseline, or make it anew with --save-baseline",
                 path.display()
             ));
         }
         let wanted = self.time_tolerance.filter(|_| comparison.rules.asks_for_times())?;
-        let no_times = changes::no_times(comparison)?;
+        let no_times = diff::no_times(comparison)?;
         Some(anyhow!(
             "--time-tolerance {wanted}: {no_times}; draw more with --draws --fixed-draws, or leave the \
              option out"

@@ -129,7 +129,7 @@ impl Baselines {
     /// What is wrong with a comparison that was asked for and says nothing.
     fn complaint(&self, bench: &Bench) -> Option<anyhow::Error> {
         let (comparison, (_, path, _)) = bench.comparison.as_ref().zip(self.stored.as_ref())?;
-        let nothing = page::changes::nothing(comparison)?;
+        let nothing = page::diff::nothing(comparison)?;
         Some(anyhow!(
             "{}: {nothing}; time the cases of the baseline, or make it anew with --save-baseline",
             path.display()

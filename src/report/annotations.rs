@@ -8,8 +8,8 @@ use std::fmt::Write;
 
 use crate::harness::baseline::Comparison;
 use crate::harness::record::{Record, Verdict};
-use crate::report::changes;
-use crate::report::troubles::{Trouble, troubles};
+use crate::report::diff;
+use crate::report::failures::{Failure, failing};
 
 /// How many of a kind GitHub shows.
 const MOST: usize = 10;
@@ -17,7 +17,7 @@ const MOST: usize = 10;
 /// The commands, one to a line; empty where all is well.
 #[must_use]
 pub fn text(record: &Record) -> String {
-    let of = |verdict| troubles(record, verdict).into_iter().map(move |t| of_trouble(verdict, &t));
+    let of = |verdict| failing(record, verdict).into_iter().map(move |t| of_failure(verdict, &t));
     let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));
     let lines = at_most("error", errors.collect()).into_iter();
     let lines = lines.chain(at_most("warning", of(Verdict::Inconclusive).collect()));
@@ -43,29 +43,29 @@ fn at_most(command: &str, annotations: Vec<String>) -> Vec<String> {
 /// What became worse than in a stored run.
 fn of_changes(comparison: &Comparison) -> Vec<String> {
     let title = property(&format!("worse than baseline {}", comparison.name));
-    let worse = changes::all(comparison).into_iter().filter(|change| change.is_worse);
+    let worse = diff::all(comparison).into_iter().filter(|change| change.is_worse);
     let worse = worse.map(|change| {
         let said = format!("{}\nrepeat: {}", change.line(), change.command);
         format!("title={title}::{}", message(&said))
     });
-    let nothing = changes::nothing(comparison).map(|nothing| {
+    let nothing = diff::nothing(comparison).map(|nothing| {
         let title = property(&format!("baseline {}", comparison.name));
         format!("title={title}::{}", message(&nothing))
     });
     worse.chain(nothing).collect()
 }
 
-fn of_trouble(verdict: Verdict, trouble: &Trouble) -> String {
-    let (case, row) = (trouble.case, trouble.row);
-    let title = format!("{} {}: {}", verdict.word(), case.name, trouble.experiment());
+fn of_failure(verdict: Verdict, failure: &Failure) -> String {
+    let (case, row) = (failure.case, failure.row);
+    let title = format!("{} {}: {}", verdict.word(), case.name, failure.experiment());
     let mut properties = format!("title={}", property(&title));
     if !case.path.is_empty() {
         let path = case.path.strip_prefix("./").unwrap_or(&case.path);
         let _ = write!(properties, ",file={}", property(path));
     }
-    let mut said = format!("{} ({})", trouble.reason(), trouble.place());
-    if !trouble.check().is_empty() {
-        said = format!("{}: {said}", trouble.check());
+    let mut said = format!("{} ({})", failure.reason(), failure.place());
+    if !failure.check().is_empty() {
+        said = format!("{}: {said}", failure.check());
     }
     if !row.command.is_empty() {
         said = format!("{said}\nrepeat: {}", row.command);

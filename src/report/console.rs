@@ -14,7 +14,7 @@ use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::labels::Labels;
 use crate::report::number::{count, short};
 use crate::report::totals;
-use layout::{Field, Grid, Paint, end_elided, wrapped};
+use layout::{Field, Grid, Paint, end_elided};
 
 /// What the table is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,21 +81,15 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
 
 /// What parentheses mean, where there are any.
 fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
-    for line in wrapped(totals::NOT_NORMAL, pen.width).iter().filter(|_| marks) {
-        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, line));
+    if marks {
+        pen.say(text, Paint::Dim, totals::NOT_NORMAL);
     }
 }
 
 /// Writes a case; answers whether a z is marked.
 fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
-    let name = end_elided(&case.name, pen.width);
-    let room = pen.width.saturating_sub(layout::width(&name) + 2);
-    let title = if room > 8 { end_elided(&case.title, room) } else { String::new() };
-    let _ = writeln!(text, "{}  {title}", pen.paint(Paint::Bold, &name));
-    let facts = facts(case, view).join(" · ");
-    for line in wrapped(&facts, pen.width) {
-        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
-    }
+    pen.heading(text, &case.name, &case.title);
+    pen.say(text, Paint::Dim, &facts(case, view).join(" · "));
     grid(text, pen, case, Labels::of(case), view)
 }
 
@@ -184,13 +178,6 @@ fn footnotes(
         let at = if places.is_empty() { places } else { format!(" ({places})") };
         let word = if status.is_empty() { "note" } else { &status };
         let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
-        for (i, line) in wrapped(&note, pen.width - 4).into_iter().enumerate() {
-            // The word is coloured after the text is wrapped, for colours have no width.
-            let line = match line.strip_prefix(word).filter(|_| i == 0) {
-                Some(rest) => format!("{}{rest}", pen.paint(views::status(row, view).paint, word)),
-                None => line,
-            };
-            let _ = writeln!(text, "{}{line}", if i == 0 { "  " } else { "    " });
-        }
+        pen.note(text, &note, (word, views::status(row, view).paint));
     }
 }

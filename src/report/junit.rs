@@ -13,9 +13,9 @@ use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use crate::harness::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
-use crate::report::changes;
+use crate::report::diff;
+use crate::report::failures::{self, Failure};
 use crate::report::number::exact;
-use crate::report::troubles::{self, Trouble};
 
 /// What an inconclusive experiment is for JUnit.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -73,7 +73,7 @@ fn suite(
         let time = time.map_or(Duration::ZERO, duration);
         whole = whole.saturating_add(time);
         let status = status(case, row, results.seed, inconclusive);
-        let mut test = TestCase::new(troubles::experiment(case, row), status);
+        let mut test = TestCase::new(failures::experiment(case, row), status);
         test.set_classname(&*case.name).set_time(time);
         suite.add_test_case(test);
     }
@@ -85,9 +85,9 @@ fn suite(
 /// compared and what was left out is its output.
 fn changed(comparison: &Comparison) -> TestSuite {
     let mut suite = TestSuite::new(format!("baseline {}", comparison.name));
-    suite.set_system_out(changes::remarks(comparison).join("\n"));
-    let all = changes::all(comparison);
-    if let Some(nothing) = changes::nothing(comparison) {
+    suite.set_system_out(diff::remarks(comparison).join("\n"));
+    let all = diff::all(comparison);
+    if let Some(nothing) = diff::nothing(comparison) {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
         status.set_type("nothing").set_message(nothing);
         suite.add_test_case(TestCase::new("something was compared", status));
@@ -120,7 +120,7 @@ fn status(case: &CaseRecord, row: &Row, seed: u64, inconclusive: Inconclusive) -
     status.set_message(&*row.reason);
     if matches!(verdict, Verdict::Fail | Verdict::Inconclusive) {
         let details: Vec<String> =
-            troubles::of_row(case, row, seed).iter().map(Trouble::details).collect();
+            failures::of_row(case, row, seed).iter().map(Failure::details).collect();
         status.set_description(details.join("\n"));
     }
     status

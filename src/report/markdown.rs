@@ -5,10 +5,10 @@ use std::fmt::Write;
 
 use crate::harness::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
-use crate::report::changes;
+use crate::report::diff;
+use crate::report::failures::{Failure, failing};
 use crate::report::number::range;
 use crate::report::totals;
-use crate::report::troubles::{Trouble, troubles};
 
 /// A job's summary may have a mebibyte: beyond so many rows the file only counts.
 const MOST: usize = 50;
@@ -24,7 +24,7 @@ pub fn text(record: &Record) -> String {
     let counts = if counts.is_empty() { "no experiments".to_owned() } else { counts.join(" · ") };
     let _ = writeln!(text, "{counts}\n");
     for (verdict, title) in [(Verdict::Fail, "Failing"), (Verdict::Inconclusive, "Inconclusive")] {
-        section(&mut text, title, &troubles(record, verdict));
+        section(&mut text, title, &failing(record, verdict));
     }
     if let Some(comparison) = &record.comparison {
         changed(&mut text, comparison);
@@ -45,26 +45,26 @@ pub fn text(record: &Record) -> String {
     text
 }
 
-fn section(text: &mut String, title: &str, troubles: &[Trouble]) {
-    if troubles.is_empty() {
+fn section(text: &mut String, title: &str, failures: &[Failure]) {
+    if failures.is_empty() {
         return;
     }
     let _ = writeln!(text, "### {title}\n\n| case | experiment | check | where | why |");
     text.push_str("|---|---|---|---|---|\n");
-    for trouble in troubles.iter().take(MOST) {
+    for failure in failures.iter().take(MOST) {
         let cells = [
-            trouble.case.name.clone(),
-            trouble.experiment(),
-            trouble.check().to_owned(),
-            trouble.place(),
-            trouble.reason().to_owned(),
+            failure.case.name.clone(),
+            failure.experiment(),
+            failure.check().to_owned(),
+            failure.place(),
+            failure.reason().to_owned(),
         ];
         let _ = writeln!(text, "| {} |", cells.map(|cell| inert(&cell)).join(" | "));
     }
-    more(text, troubles.len());
+    more(text, failures.len());
     let mut commands: Vec<&str> = Vec::new();
-    for trouble in troubles.iter().take(MOST) {
-        let command = trouble.row.command.as_str();
+    for failure in failures.iter().take(MOST) {
+        let command = failure.row.command.as_str();
         if !command.is_empty() && !commands.contains(&command) {
             commands.push(command);
         }
@@ -78,7 +78,7 @@ fn section(text: &mut String, title: &str, troubles: &[Trouble]) {
 /// What changed since a stored run.
 fn changed(text: &mut String, comparison: &Comparison) {
     let _ = writeln!(text, "### Since baseline {}\n", inert(&comparison.name));
-    let all = changes::all(comparison);
+    let all = diff::all(comparison);
     for change in all.iter().take(MOST) {
         let word = if change.is_worse { "**regression**" } else { "improvement" };
         let _ = writeln!(text, "- {word} {}", inert(&change.line()));
@@ -87,7 +87,7 @@ fn changed(text: &mut String, comparison: &Comparison) {
     if !all.is_empty() {
         text.push('\n');
     }
-    let remarks: Vec<String> = changes::remarks(comparison).iter().map(|r| inert(r)).collect();
+    let remarks: Vec<String> = diff::remarks(comparison).iter().map(|r| inert(r)).collect();
     let _ = writeln!(text, "{}\n", remarks.join(" · "));
 }
 

@@ -2,13 +2,16 @@
 
 use std::fmt::Write;
 
-use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
+use crate::report::console::layout::{Field, Grid, Paint, Pen};
 use crate::report::number::{count, exact, short};
 use crate::report::rows::table as csv;
 use crate::report::{Artifact, ReportError};
 use crate::self_test::calibration::Rate;
 use crate::self_test::streams::ALPHA;
 use crate::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
+
+/// What is said of a promise.
+const KEPT: [&str; 2] = ["kept", "BROKEN"];
 
 /// The tables for the screen.
 #[must_use]
@@ -32,28 +35,19 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
         format!("calibration: {runs} independent runs of {scalars} scalars and {laws} laws");
     let _ = writeln!(text, "{} · {} draws", pen.paint(Paint::Bold, &title), count(*draws));
     let rates: Vec<&Rate> = rates(calibration).collect();
-    let column = |head, field: fn(&Rate) -> String| Column {
-        head,
-        right: true,
-        rank: 0,
-        fields: rates.iter().map(|rate| Field::plain(field(rate))).collect(),
-    };
-    let kept = rates.iter().map(|rate| {
-        let (word, paint) =
-            if rate.is_kept { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
-        Field { text: word.to_owned(), paint }
-    });
-    let mut grid = Grid {
-        columns: vec![
-            Column { right: false, ..column("what", |rate| rate.what.clone()) },
-            column("count", |rate| rate.count.to_string()),
-            column("of", |rate| rate.trials.to_string()),
-            column("rate", |rate| short(share(rate), 2)),
-            column("at least", |rate| short(rate.limits[0], 2)),
-            column("at most (99 %)", |rate| short(rate.limits[1], 2)),
-            column("promised", |rate| short(rate.promise, 2)),
+    let mut grid = Grid::of(
+        &rates,
+        &[
+            ("what", false, 0, |rate| rate.what.clone()),
+            ("count", true, 0, |rate| rate.count.to_string()),
+            ("of", true, 0, |rate| rate.trials.to_string()),
+            ("rate", true, 0, |rate| short(share(rate), 2)),
+            ("at least", true, 0, |rate| short(rate.limits[0], 2)),
+            ("at most (99 %)", true, 0, |rate| short(rate.limits[1], 2)),
+            ("promised", true, 0, |rate| short(rate.promise, 2)),
         ],
-    };
+    );
+    let kept = rates.iter().map(|rate| Field::judged(rate.is_kept, KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
@@ -65,9 +59,7 @@ fn promises(text: &mut String, pen: Pen, calibration: &Calibration) {
     if !uniform.is_empty() {
         let said =
             format!("p-values against the uniform law, Anderson–Darling p: {}", uniform.join(", "));
-        for line in wrapped(&said, pen.width) {
-            let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
-        }
+        pen.say(text, Paint::Dim, &said);
     }
     text.push('\n');
 }
@@ -79,26 +71,17 @@ fn streams(text: &mut String, pen: Pen, streams: &[StreamVerdicts]) {
         "foreign draws: {failed} of {judged} verdicts on correct streams of hard laws fail"
     );
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let column = |head, right, field: fn(&StreamVerdicts) -> String| Column {
-        head,
-        right,
-        rank: 0,
-        fields: streams.iter().map(|verdicts| Field::plain(field(verdicts))).collect(),
-    };
-    let kept = streams.iter().map(|verdicts| {
-        let (word, paint) =
-            if verdicts.is_kept() { ("kept", Paint::Green) } else { ("BROKEN", Paint::Red) };
-        Field { text: word.to_owned(), paint }
-    });
-    let mut grid = Grid {
-        columns: vec![
-            column("law", false, |verdicts| verdicts.law.clone()),
-            column("known", false, |verdicts| verdicts.known.clone()),
-            column("pass", true, |verdicts| verdicts.passed.to_string()),
-            column("fail", true, |verdicts| verdicts.failed.to_string()),
-            column("inconclusive", true, |verdicts| verdicts.inconclusive.to_string()),
+    let mut grid = Grid::of(
+        streams,
+        &[
+            ("law", false, 0, |verdicts| verdicts.law.clone()),
+            ("known", false, 0, |verdicts| verdicts.known.clone()),
+            ("pass", true, 0, |verdicts| verdicts.passed.to_string()),
+            ("fail", true, 0, |verdicts| verdicts.failed.to_string()),
+            ("inconclusive", true, 0, |verdicts| verdicts.inconclusive.to_string()),
         ],
-    };
+    );
+    let kept = streams.iter().map(|verdicts| Field::judged(verdicts.is_kept(), KEPT));
     grid.push("", kept.collect());
     grid.fit(pen.width);
     let _ = writeln!(text, "{}", grid.render(pen));
@@ -118,30 +101,27 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let caught = mutants.iter().filter(|mutant| mutant.is_right()).count();
     let title = format!("mutants: {caught} of {} caught, each honest twin passes", mutants.len());
     let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &title));
-    let column = |head, right, field: &dyn Fn(&Caught) -> Field| Column {
-        head,
-        right,
-        rank: 0,
-        fields: mutants.iter().map(field).collect(),
-    };
-    let draws = |mutant: &Caught| match mutant.draws {
-        Some(draws) if mutant.twin_passes => Field::plain(count(draws)),
-        Some(_) => Field { text: "THE TWIN FAILS".to_owned(), paint: Paint::Red },
-        None => Field { text: "ESCAPES".to_owned(), paint: Paint::Red },
-    };
     let others = |mutant: &Caught| {
         let others = mutant.failed.iter().filter(|name| *name != mutant.check);
-        Field::plain(others.map(String::as_str).collect::<Vec<_>>().join(", "))
+        others.map(String::as_str).collect::<Vec<_>>().join(", ")
     };
-    let mut grid = Grid {
-        columns: vec![
-            column("mutant", false, &|mutant| Field::plain(mutant.name.to_owned())),
-            Column { rank: 1, ..column("on", false, &|mutant| Field::plain(place(mutant))) },
-            column("caught by", false, &|mutant| Field::plain(mutant.check.to_owned())),
-            column("draws", true, &draws),
-            Column { rank: 2, ..column("also by", false, &others) },
+    let mut grid = Grid::of(
+        mutants,
+        &[
+            ("mutant", false, 0, |mutant| mutant.name.to_owned()),
+            ("on", false, 1, place),
+            ("caught by", false, 0, |mutant| mutant.check.to_owned()),
+            ("draws", true, 0, |mutant| mutant.draws.map(count).unwrap_or_default()),
+            ("also by", false, 2, others),
         ],
-    };
+    );
+    for (field, mutant) in grid.columns[3].fields.iter_mut().zip(mutants) {
+        match mutant.draws {
+            Some(_) if mutant.twin_passes => {}
+            Some(_) => *field = Field::judged(false, ["", "THE TWIN FAILS"]),
+            None => *field = Field::judged(false, ["", "ESCAPES"]),
+        }
+    }
     grid.fit(pen.width);
     let _ = writeln!(text, "{}", grid.render(pen));
 }

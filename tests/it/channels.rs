@@ -7,7 +7,7 @@ use trueflight::harness::{Options, Plan, curves, verdict};
 use trueflight::media::{Control, Piecewise};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
-use trueflight::report::troubles::experiment;
+use trueflight::report::failures::experiment;
 use trueflight::theory::product::Product;
 use trueflight::theory::{Mesh, Prediction, curve};
 

@@ -2,20 +2,18 @@
 
 use std::fmt::Write;
 
-use super::changes;
+use super::diff;
 use crate::bench::record::{Bench, BenchCase, BenchRow, Times};
 use crate::bench::spread::Spread;
-use crate::report::console::layout::{self, Column, Field, Grid, Paint, Pen, end_elided, wrapped};
+use crate::report::console::layout::{Column, Grid, Paint, Pen, Spec, end_elided, wrapped};
+use crate::report::console::views::swept_apart;
 use crate::report::labels::Labels;
 use crate::report::number::{count, fixed, short, time};
 
 /// The heading of σ̂; constant ones have as many digits as tell them apart.
 const SAMPLING: &str = "σ\u{302}";
 
-/// A column: its heading, whether it is of numbers, its rank, its text.
-type Spec = (&'static str, bool, u8, fn(&BenchRow) -> String);
-
-const COLUMNS: &[Spec] = &[
+const COLUMNS: &[Spec<BenchRow>] = &[
     ("estimator", false, 0, |row| row.estimator.clone()),
     (SAMPLING, true, 1, |row| row.sampling_kind.clone()),
     ("control", false, 5, |row| row.control.clone()),
@@ -62,30 +60,23 @@ pub fn table(bench: &Bench, pen: Pen) -> String {
 }
 
 fn block(text: &mut String, pen: Pen, case: &BenchCase) {
-    let name = end_elided(&case.name, pen.width);
-    let room = pen.width.saturating_sub(layout::width(&name) + 2);
-    let title = if room > 8 { end_elided(&case.title, room) } else { String::new() };
-    let _ = writeln!(text, "{}  {title}", pen.paint(Paint::Bold, &name));
+    pen.heading(text, &case.name, &case.title);
     let facts = format!("{} · {}", case.problem, case.medium);
     let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &end_elided(&facts, pen.width)));
     let labels = labels(case);
-    let mut columns: Vec<Column> = Vec::new();
-    for &(head, right, rank, cell) in COLUMNS {
-        let cell = |row: &BenchRow| match row.sampling.filter(|_| head == SAMPLING) {
-            Some(sampling) => labels.text(sampling),
-            None => cell(row),
-        };
-        let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
-        columns.push(Column { head, right, rank, fields });
-        if head == SAMPLING
-            && let Some(head) = swept_apart(case)
-        {
-            let cell = |row: &BenchRow| row.swept.map(|x| labels.text(x)).unwrap_or_default();
-            let fields = case.rows.iter().map(|row| Field::plain(cell(row))).collect();
-            columns.push(Column { head, right: true, rank: 1, fields });
+    let mut grid = Grid::of(&case.rows, COLUMNS);
+    let sampling = grid.columns.iter_mut().find(|column| column.head == SAMPLING);
+    for (field, row) in
+        sampling.into_iter().flat_map(|column| column.fields.iter_mut().zip(&case.rows))
+    {
+        if let Some(sampling) = row.sampling {
+            field.text = labels.text(sampling);
         }
     }
-    let mut grid = Grid { columns };
+    if let Some(head) = swept_apart(case.swept.as_deref()) {
+        let text = |row: &BenchRow| row.swept.map(|x| labels.text(x)).unwrap_or_default();
+        grid.columns.insert(2, Column::of(&case.rows, (head, true, 1), text));
+    }
     grid.fit(pen.width);
     text.push_str(&grid.render(pen));
     notes(text, pen, case);
@@ -94,17 +85,6 @@ fn block(text: &mut String, pen: Pen, case: &BenchCase) {
 /// σ̂ and swept values of a case.
 pub(super) fn labels(case: &BenchCase) -> Labels {
     Labels::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
-}
-
-/// The heading of the swept quantity where it is not the sampling extinction itself.
-fn swept_apart(case: &BenchCase) -> Option<&'static str> {
-    match case.swept.as_deref()? {
-        "sampling" => None,
-        "sampling-scale" => Some("σ\u{302} scale"),
-        "albedo" => Some("albedo"),
-        "points" => Some("points"),
-        _ => Some("swept"),
-    }
 }
 
 /// Why numbers are missing: each reason once, with the rows it is about.
@@ -126,9 +106,7 @@ fn notes(text: &mut String, pen: Pen, case: &BenchCase) {
             if places.is_empty() { String::new() } else { format!(" ({})", places.join(", ")) };
         let word = if row.is_refused { "refused" } else { "note" };
         let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
-        for (i, line) in wrapped(&note, pen.width - 4).into_iter().enumerate() {
-            let _ = writeln!(text, "{}{line}", if i == 0 { "  " } else { "    " });
-        }
+        pen.note(text, &note, ("", Paint::Plain));
     }
 }
 
@@ -157,12 +135,10 @@ fn closing(text: &mut String, pen: Pen, bench: &Bench) {
             format!("median speedup over the plain loop {median}, from {least} to {most}"),
         );
     }
-    for line in wrapped(&facts.join(" · "), pen.width) {
-        let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
-    }
+    pen.say(text, Paint::Dim, &facts.join(" · "));
     let Some(comparison) = &bench.comparison else { return };
     text.push('\n');
-    for (is_worse, line) in changes::all(comparison) {
+    for (is_worse, line) in diff::all(comparison) {
         let (word, paint) =
             if is_worse { ("REGRESSION", Paint::Red) } else { ("improvement", Paint::Green) };
         for (i, line) in wrapped(&line, pen.width.saturating_sub(14)).into_iter().enumerate() {
@@ -170,9 +146,7 @@ fn closing(text: &mut String, pen: Pen, bench: &Bench) {
             let _ = writeln!(text, "  {head} {line}");
         }
     }
-    for remark in changes::remarks(comparison) {
-        for line in wrapped(&remark, pen.width) {
-            let _ = writeln!(text, "{}", pen.paint(Paint::Dim, &line));
-        }
+    for remark in diff::remarks(comparison) {
+        pen.say(text, Paint::Dim, &remark);
     }
 }

@@ -6,8 +6,8 @@
 //! CASE.svg, .png   the same as a log-log plot
 //! ```
 
-pub mod changes;
 pub mod console;
+pub mod diff;
 pub mod error_csv;
 pub mod plot;
 pub mod rows;

@@ -1,5 +1,7 @@
 //! Columns that fit a screen: alignment, elision, wrapping and colour. Knows nothing of records.
 
+use std::fmt::Write;
+
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Between two columns.
@@ -48,6 +50,34 @@ impl Pen {
         };
         if self.colour { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
     }
+
+    /// Adds what is said in lines as wide as the screen.
+    pub fn say(self, text: &mut String, paint: Paint, what: &str) {
+        for line in wrapped(what, self.width) {
+            let _ = writeln!(text, "{}", self.paint(paint, &line));
+        }
+    }
+
+    /// Adds what is said, moved in, with its first word painted; of several lines the later ones are
+    /// moved in further.
+    pub fn note(self, text: &mut String, what: &str, (word, paint): (&str, Paint)) {
+        for (i, line) in wrapped(what, self.width - 4).into_iter().enumerate() {
+            // The word is coloured after the text is wrapped, for colours have no width.
+            let line = match line.strip_prefix(word).filter(|_| i == 0) {
+                Some(rest) => format!("{}{rest}", self.paint(paint, word)),
+                None => line,
+            };
+            let _ = writeln!(text, "{}{line}", if i == 0 { "  " } else { "    " });
+        }
+    }
+
+    /// Adds a name with its title, on one line.
+    pub fn heading(self, text: &mut String, name: &str, title: &str) {
+        let name = end_elided(name, self.width);
+        let room = self.width.saturating_sub(width(&name) + 2);
+        let title = if room > 8 { end_elided(title, room) } else { String::new() };
+        let _ = writeln!(text, "{}  {title}", self.paint(Paint::Bold, &name));
+    }
 }
 
 /// One field of a table.
@@ -65,7 +95,17 @@ impl Field {
     pub fn plain(text: String) -> Self {
         Self { text, paint: Paint::Plain }
     }
+
+    /// A word in green or red.
+    #[must_use]
+    pub fn judged(is_good: bool, [good, bad]: [&str; 2]) -> Self {
+        let (text, paint) = if is_good { (good, Paint::Green) } else { (bad, Paint::Red) };
+        Self { text: text.to_owned(), paint }
+    }
 }
+
+/// A column of rows: its heading, whether it is of numbers, its rank, its text.
+pub type Spec<T> = (&'static str, bool, u8, fn(&T) -> String);
 
 /// A column of a table.
 #[derive(Debug, Clone)]
@@ -81,6 +121,16 @@ pub struct Column {
 }
 
 impl Column {
+    /// A column whose fields are the rows' texts.
+    pub fn of<'a, T: 'a>(
+        rows: impl IntoIterator<Item = &'a T>,
+        (head, right, rank): (&'static str, bool, u8),
+        text: impl Fn(&'a T) -> String,
+    ) -> Self {
+        let fields = rows.into_iter().map(|row| Field::plain(text(row))).collect();
+        Self { head, right, rank, fields }
+    }
+
     fn width(&self) -> usize {
         let fields = self.fields.iter().map(|field| width(&field.text)).max().unwrap_or(0);
         fields.max(width(self.head))
@@ -102,6 +152,14 @@ pub struct Grid {
 }
 
 impl Grid {
+    /// A table of rows.
+    #[must_use]
+    pub fn of<T>(rows: &[T], specs: &[Spec<T>]) -> Self {
+        let column =
+            |&(head, right, rank, text): &Spec<T>| Column::of(rows, (head, right, rank), text);
+        Self { columns: specs.iter().map(column).collect() }
+    }
+
     /// The width of its lines.
     #[must_use]
     pub fn width(&self) -> usize {

@@ -2,12 +2,11 @@
 
 use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
-use crate::report::console::layout::{Column, Field, Paint};
+use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;
 use crate::report::number::{count, fixed, short, signed};
 
-/// A column: its heading, whether it is of numbers, its rank, its text.
-type Spec = (&'static str, bool, u8, fn(&Row) -> String);
+type Spec = layout::Spec<Row>;
 
 const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
 /// What the gate took; the columns beside it are of the fixed draws.
@@ -64,10 +63,7 @@ const PLAN: &[Spec] = &[
 /// The columns that name the rows of a case, empty ones and all.
 #[must_use]
 pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
-    let column = |(head, right, rank): (&'static str, bool, u8), text: &dyn Fn(&Row) -> String| {
-        let fields = case.rows.iter().map(|row| Field::plain(text(row))).collect();
-        Column { head, right, rank, fields }
-    };
+    let column = |what, text: &dyn Fn(&Row) -> String| Column::of(&case.rows, what, text);
     let sampling = |row: &Row| match row.sampling {
         Some(sampling) => labels.text(sampling),
         None => row.sampling_kind.clone(),
@@ -76,7 +72,7 @@ pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
         column(("estimator", false, 0), &|row| row.estimator.clone()),
         column(("σ\u{302}", true, 1), &sampling),
     ];
-    if let Some(head) = swept_apart(case) {
+    if let Some(head) = swept_apart(case.sweep.as_ref().map(|sweep| &*sweep.what)) {
         let swept = |row: &Row| row.swept.map(|x| labels.text(x)).unwrap_or_default();
         columns.push(column((head, true, 1), &swept));
     }
@@ -105,11 +101,7 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
         View::Moments => MOMENTS,
         View::Plan => PLAN,
     });
-    let column = |(head, right, rank, text): Spec| {
-        let fields = case.rows.iter().map(|row| Field::plain(text(row))).collect();
-        Column { head, right, rank, fields }
-    };
-    let mut columns: Vec<Column> = specs.into_iter().map(column).collect();
+    let mut columns = Grid::of(&case.rows, &specs).columns;
     let head = if view == View::Run { "verdict" } else { "status" };
     let fields = case.rows.iter().map(|row| status(row, view)).collect();
     columns.push(Column { head, right: false, rank: 0, fields });
@@ -117,8 +109,8 @@ pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
 }
 
 /// The heading of the swept quantity where it is not the sampling extinction itself.
-fn swept_apart(case: &CaseRecord) -> Option<&'static str> {
-    match case.sweep.as_ref()?.what.as_str() {
+pub(in crate::report) fn swept_apart(swept: Option<&str>) -> Option<&'static str> {
+    match swept? {
         "sampling" => None,
         "sampling-scale" => Some("σ\u{302} scale"),
         "albedo" => Some("albedo"),
@@ -147,7 +139,8 @@ pub fn places(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
     }
     let mut parts = Vec::new();
     if !swept.is_empty() {
-        let name = swept_apart(case).unwrap_or("σ\u{302}");
+        let what = case.sweep.as_ref().map(|sweep| &*sweep.what);
+        let name = swept_apart(what).unwrap_or("σ\u{302}");
         parts.push(format!("{name} {}", swept.join(", ")));
     }
     if !channels.is_empty() {

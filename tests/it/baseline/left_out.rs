@@ -9,7 +9,7 @@ use tempfile::TempDir;
 use trueflight::harness::baseline::LeftOut;
 use trueflight::harness::baseline::{Baseline, Entry};
 use trueflight::harness::baseline::{Rules, compare};
-use trueflight::report::changes;
+use trueflight::report::diff;
 
 use super::{CASE, RULES, baseline, command, said};
 
@@ -114,7 +114,7 @@ fn what_is_left_out_is_said_with_its_reason() {
         let found = left(&stored, &run);
         assert_eq!([found.compared, found.times], counts, "{words}");
         assert_eq!(list(&found.left_out), std::slice::from_ref(&id), "{words}");
-        let remarks = changes::remarks(&found);
+        let remarks = diff::remarks(&found);
         let said =
             |remark: &String| remark.contains(words) && remark.ends_with(&format!("(1): {id}"));
         assert!(remarks.iter().any(said), "{words}: {remarks:?}");

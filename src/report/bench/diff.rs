@@ -2,7 +2,7 @@
 
 use crate::bench::compare::{Change, Comparison};
 use crate::bench::spread::Spread;
-use crate::report::changes::listed;
+use crate::report::diff::listed;
 use crate::report::number::{fixed, short};
 
 /// What was compared, and how.

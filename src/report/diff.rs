@@ -6,7 +6,7 @@ use crate::report::number::{fixed, short};
 
 /// Something that changed.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Told<'a> {
+pub struct Difference<'a> {
     /// Whether it became worse.
     pub is_worse: bool,
     /// The experiment.
@@ -17,7 +17,7 @@ pub struct Told<'a> {
     pub command: &'a str,
 }
 
-impl Told<'_> {
+impl Difference<'_> {
     /// Everything on one line, but for the command.
     #[must_use]
     pub fn line(&self) -> String {
@@ -117,21 +117,21 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
 
 /// What changed: what became worse first.
 #[must_use]
-pub fn all(comparison: &Comparison) -> Vec<Told<'_>> {
-    let mut told: Vec<Told> = comparison.drifts.iter().map(drift).collect();
+pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
+    let mut told: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
     let tolerance = comparison.rules.time_tolerance;
     told.extend(comparison.changes.iter().map(|one| change(one, tolerance)));
     told.sort_by_key(|told| !told.is_worse);
     told
 }
 
-fn drift(drift: &Drift) -> Told<'_> {
+fn drift(drift: &Drift) -> Difference<'_> {
     let Drift { id, check, ln_e, limit, command } = drift;
     let what = format!("{check}: ln E = {ln_e:.1} ≥ {limit:.1} of all runs together");
-    Told { is_worse: true, experiment: id, what, command }
+    Difference { is_worse: true, experiment: id, what, command }
 }
 
-fn change(change: &Change, tolerance: f64) -> Told<'_> {
+fn change(change: &Change, tolerance: f64) -> Difference<'_> {
     let (what, unit) = match change.quantity {
         Quantity::Variance => ("variance", ""),
         Quantity::Lookups => ("lookups per draw", ""),
@@ -147,7 +147,7 @@ fn change(change: &Change, tolerance: f64) -> Told<'_> {
     };
     let (before, now) = (value(change.before), value(change.now));
     let ratio = fixed(change.ratio, 4);
-    Told {
+    Difference {
         is_worse: change.is_regression,
         experiment: &change.id,
         what: format!("{what} {before} → {now}, ratio {ratio} {interval}"),

@@ -8,7 +8,7 @@ use crate::report::number::{short, signed};
 
 /// A finding that is not as it should be, with what it belongs to.
 #[derive(Debug, Clone, Copy)]
-pub struct Trouble<'a> {
+pub struct Failure<'a> {
     /// The case.
     pub case: &'a CaseRecord,
     /// The experiment and channel.
@@ -19,12 +19,12 @@ pub struct Trouble<'a> {
     pub seed: u64,
 }
 
-/// The troubles of all rows with this verdict. What concerns an experiment as a whole stands in all
+/// The failures of all rows with this verdict. What concerns an experiment as a whole stands in all
 /// of its rows and is said once.
 #[must_use]
-pub fn troubles(record: &Record, verdict: Verdict) -> Vec<Trouble<'_>> {
+pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
     let seed = record.results.seed;
-    let mut troubles = Vec::new();
+    let mut failures = Vec::new();
     for case in &record.results.cases {
         for (i, row) in case.rows.iter().enumerate() {
             if row.verdict != Some(verdict) {
@@ -32,24 +32,24 @@ pub fn troubles(record: &Record, verdict: Verdict) -> Vec<Trouble<'_>> {
             }
             let is_first = i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream;
             let findings = of_row(case, row, seed);
-            troubles.extend(findings.into_iter().filter(|trouble| {
-                is_first || trouble.finding.is_none_or(|finding| !finding.channel.is_empty())
+            failures.extend(findings.into_iter().filter(|failure| {
+                is_first || failure.finding.is_none_or(|finding| !finding.channel.is_empty())
             }));
         }
     }
-    troubles
+    failures
 }
 
 /// The findings that gave a row its verdict.
 #[must_use]
-pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Trouble<'a>> {
+pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Failure<'a>> {
     let guilty = row.findings.iter().filter(|finding| Some(finding.verdict) == row.verdict);
-    let mut troubles: Vec<Trouble> =
-        guilty.map(|finding| Trouble { case, row, finding: Some(finding), seed }).collect();
-    if troubles.is_empty() {
-        troubles.push(Trouble { case, row, finding: None, seed });
+    let mut failures: Vec<Failure> =
+        guilty.map(|finding| Failure { case, row, finding: Some(finding), seed }).collect();
+    if failures.is_empty() {
+        failures.push(Failure { case, row, finding: None, seed });
     }
-    troubles
+    failures
 }
 
 /// What an experiment is called within its case: `ratio, σ̂ 0.5, control mean, T(5)`.
@@ -80,7 +80,7 @@ fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
     parts.join(", ")
 }
 
-impl<'a> Trouble<'a> {
+impl<'a> Failure<'a> {
     /// What it is about; without a channel where that is the experiment as a whole.
     #[must_use]
     pub fn experiment(&self) -> String {
