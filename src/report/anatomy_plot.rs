@@ -8,14 +8,12 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::harness::record::{Anatomy, CaseRecord, Record};
-use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::figure::{Figure, LEFT};
 use crate::report::plots::legend::{self, Entry};
-use crate::report::plots::sheet::Align;
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, Report, ReportError};
 
-const LEFT: f64 = 92.0;
 const RIGHT: f64 = 940.0;
 const LEGEND: f64 = 968.0;
 
@@ -36,16 +34,10 @@ impl Report for AnatomyPlot {
 }
 
 fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
-    let face = Typeface::load().map_err(|error| ReportError::Draw {
-        figure: case.name.clone(),
-        message: error.to_string(),
-    })?;
-    let mut sheet = Sheet::new(1200.0, 900.0);
     let words = [&case.name, &case.medium, &anatomy.estimator].map(String::as_str).join("  ·  ");
-    for (y, text, size, colour) in [(30.0, &case.title, 20.0, DARK), (57.0, &words, 13.0, GREY)] {
-        let text = fit(&face, text, size, 1090.0);
-        sheet.text([LEFT, y], text, size, colour, Align::Start);
-    }
+    let size = [1200.0, 900.0];
+    let Figure { face, mut sheet, .. } =
+        Figure::new(&case.name, size, 1090.0, [&case.title, &words])?;
     let upper = medium(&mut sheet, anatomy);
     legend::draw(&face, &mut sheet, [LEGEND, 116.0], &upper, 220.0);
     let lower = transmittance(&mut sheet, anatomy);

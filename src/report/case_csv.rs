@@ -4,8 +4,9 @@
 //! threads on any machine.
 
 use crate::harness::record::{Anatomy, CaseRecord, Record, Row, Sweep};
+use crate::report::columns::table;
 use crate::report::number::exact;
-use crate::report::rows::{JoinedRow, columns, joined, table};
+use crate::report::rows::{JoinedRow, TIMED, columns, joined};
 use crate::report::{Artifact, Report, ReportError, case_path};
 
 /// The rows, the theory's curves and the profiles of each case.
@@ -40,14 +41,15 @@ fn case_rows<'a>(
     case: &CaseRecord,
     rows: impl Iterator<Item = &'a JoinedRow<'a>>,
 ) -> Result<String, ReportError> {
-    let untimed = columns().filter(|column| !column.timed);
+    let mut untimed = columns();
+    untimed.retain(|column| !TIMED.contains(&column.name));
     let bars: [Bar; 2] = [
         ("variance_deviation", |row| row.variance_deviation),
         ("lookups_deviation", |row| row.lookups_deviation),
     ];
-    let header = untimed.clone().map(|column| column.name).chain(bars.map(|(name, _)| name));
+    let header = untimed.iter().map(|column| column.name).chain(bars.map(|(name, _)| name));
     let lines = rows.map(|joined| {
-        let fields = untimed.clone().map(|column| (column.cell)(joined).csv());
+        let fields = untimed.iter().map(|column| (column.cell)(joined).csv());
         fields.chain(bars.map(|(_, value)| value(joined.row).map(exact).unwrap_or_default()))
     });
     table(&case.name, header, lines)

@@ -14,88 +14,65 @@
 //!
 //! What concerns an experiment as a whole stands once, with its first channel.
 
-use std::path::PathBuf;
-
-use crate::harness::record::{Finding, Record, Row};
-use crate::report::number::exact;
-use crate::report::rows::{joined, table};
+use crate::harness::record::{Finding, GateFinding, Record};
+use crate::report::columns::{self, Column, columns};
+use crate::report::rows::{JoinedRow, joined};
 use crate::report::{Artifact, Report, ReportError};
 
 /// One row per answer.
 pub struct ChecksCsv;
 
-const HEADER: [&str; 25] = [
-    "case",
-    "estimator",
-    "sampling",
-    "sampling_kind",
-    "control",
-    "swept",
-    "check",
-    "what",
-    "channel",
-    "verdict",
-    "reason",
-    "tolerance",
-    "variance_of_y",
-    "planned",
-    "draws",
-    "needed",
-    "mean_of_y",
-    "ln_e",
-    "ln_e_limit",
-    "ln_p_above",
-    "ln_p_below",
-    "ln_p_limit",
-    "z",
-    "p",
-    "block",
-];
+/// An answer with the row that it belongs to.
+struct Answer<'a> {
+    of: JoinedRow<'a>,
+    found: &'a Finding,
+}
+
+impl Answer<'_> {
+    fn gate<T>(&self, number: fn(GateFinding) -> T) -> Option<T> {
+        self.found.gate.map(number)
+    }
+}
+
+/// The columns of the file.
+fn columns<'a>() -> Vec<Column<Answer<'a>>> {
+    columns! {
+        "case" = |answer| &answer.of.case.name;
+        "estimator" = |answer| &answer.of.row.estimator;
+        "sampling" = |answer| answer.of.row.sampling;
+        "sampling_kind" = |answer| &answer.of.row.sampling_kind;
+        "control" = |answer| &answer.of.row.control;
+        "swept" = |answer| answer.of.row.swept;
+        "check" = |answer| &answer.found.check;
+        "what" = |answer| &answer.found.what;
+        "channel" = |answer| &answer.found.channel;
+        "verdict" = |answer| answer.found.verdict.word();
+        "reason" = |answer| &answer.found.reason;
+        "tolerance" = |answer| answer.gate(|gate| gate.tolerance);
+        "variance_of_y" = |answer| answer.gate(|gate| gate.variance);
+        "planned" = |answer| answer.gate(|gate| gate.planned);
+        "draws" = |answer| answer.gate(|gate| gate.draws);
+        "needed" = |answer| answer.gate(|gate| gate.needed).flatten();
+        "mean_of_y" = |answer| answer.gate(|gate| gate.mean);
+        "ln_e" = |answer| answer.gate(|gate| gate.ln_e);
+        "ln_e_limit" = |answer| answer.gate(|gate| gate.ln_e_limit);
+        "ln_p_above" = |answer| answer.gate(|gate| gate.ln_p[0]);
+        "ln_p_below" = |answer| answer.gate(|gate| gate.ln_p[1]);
+        "ln_p_limit" = |answer| answer.gate(|gate| gate.ln_p_limit);
+        "z" = |answer| answer.found.z;
+        "p" = |answer| answer.found.p;
+        "block" = |answer| answer.found.block;
+    }
+}
 
 impl Report for ChecksCsv {
     fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
         let rows = joined(record);
-        let mut lines = Vec::new();
-        for (i, joined) in rows.iter().enumerate() {
-            let is_first = i == 0 || rows[i - 1].row.stream != joined.row.stream;
-            let own = |found: &&Finding| is_first || !found.channel.is_empty();
-            let found = joined.row.findings.iter().filter(own);
-            lines.extend(found.map(|found| line(&joined.case.name, joined.row, found)));
-        }
-        let bytes = table("checks.csv", HEADER, lines)?.into_bytes();
-        Ok(vec![Artifact { path: PathBuf::from("checks.csv"), bytes }])
+        let answers = rows.iter().enumerate().flat_map(|(i, &of)| {
+            let is_first = i == 0 || rows[i - 1].row.stream != of.row.stream;
+            let own = move |found: &&Finding| is_first || !found.channel.is_empty();
+            of.row.findings.iter().filter(own).map(move |found| Answer { of, found })
+        });
+        Ok(vec![columns::artifact("checks.csv", &columns(), answers)?])
     }
-}
-
-fn line(case: &str, row: &Row, found: &Finding) -> [String; 25] {
-    let number = |x: Option<f64>| x.map(exact).unwrap_or_default();
-    let count = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
-    let gate = found.gate;
-    [
-        case.to_owned(),
-        row.estimator.clone(),
-        number(row.sampling),
-        row.sampling_kind.clone(),
-        row.control.clone(),
-        number(row.swept),
-        found.check.clone(),
-        found.what.clone(),
-        found.channel.clone(),
-        found.verdict.word().to_owned(),
-        found.reason.clone(),
-        number(gate.map(|gate| gate.tolerance)),
-        number(gate.map(|gate| gate.variance)),
-        number(gate.map(|gate| gate.planned)),
-        count(gate.map(|gate| gate.draws)),
-        number(gate.and_then(|gate| gate.needed)),
-        number(gate.map(|gate| gate.mean)),
-        number(gate.map(|gate| gate.ln_e)),
-        number(gate.map(|gate| gate.ln_e_limit)),
-        number(gate.map(|gate| gate.ln_p[0])),
-        number(gate.map(|gate| gate.ln_p[1])),
-        number(gate.map(|gate| gate.ln_p_limit)),
-        number(found.z),
-        number(found.p),
-        count(found.block),
-    ]
 }

@@ -8,6 +8,7 @@ pub mod annotations;
 pub mod bench;
 pub mod case_csv;
 pub mod checks_csv;
+pub mod columns;
 pub mod console;
 pub mod diff;
 pub mod failures;

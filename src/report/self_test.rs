@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use crate::report::columns::{self, Column, columns};
 use crate::report::console::layout::{Field, Grid, Paint, Pen};
-use crate::report::number::{count, exact, short};
-use crate::report::rows::table as csv;
+use crate::report::number::{count, short};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::calibration::Rate;
 use crate::self_test::streams::ALPHA;
@@ -132,50 +132,56 @@ fn place(mutant: &Caught) -> String {
     format!("{case}: {}", mutant.estimator)
 }
 
+/// The columns of promised rates.
+fn of_rates<'a>() -> Vec<Column<&'a Rate>> {
+    columns! {
+        "what" = |rate| &rate.what;
+        "count" = |rate| rate.count;
+        "trials" = |rate| rate.trials;
+        "low_99" = |rate| rate.limits[0];
+        "high_99" = |rate| rate.limits[1];
+        "promise" = |rate| rate.promise;
+        "kept" = |rate| rate.is_kept;
+    }
+}
+
+/// The columns of foreign streams.
+fn of_streams<'a>() -> Vec<Column<&'a StreamVerdicts>> {
+    columns! {
+        "law" = |verdicts| &verdicts.law;
+        "known" = |verdicts| &verdicts.known;
+        "streams" = |verdicts| verdicts.streams;
+        "pass" = |verdicts| verdicts.passed;
+        "fail" = |verdicts| verdicts.failed;
+        "inconclusive" = |verdicts| verdicts.inconclusive;
+        "promise" = |_verdicts| ALPHA;
+        "kept" = |verdicts| verdicts.is_kept();
+    }
+}
+
+/// The columns of mutants.
+fn of_mutants<'a>() -> Vec<Column<&'a Caught>> {
+    columns! {
+        "mutant" = |mutant| mutant.name;
+        "bug" = |mutant| mutant.bug;
+        "case" = |mutant| mutant.case;
+        "estimator" = |mutant| mutant.estimator;
+        "check" = |mutant| mutant.check;
+        "draws" = |mutant| mutant.draws;
+        "failed" = |mutant| mutant.failed.join(" ");
+        "twin_passes" = |mutant| mutant.twin_passes;
+    }
+}
+
 /// The tables as CSV files.
 ///
 /// # Errors
 ///
 /// Where the encoder gives up.
 pub fn artifacts(found: &SelfTest) -> Result<Vec<Artifact>, ReportError> {
-    let rates = rates(&found.calibration).map(|rate| {
-        let [low, high] = rate.limits.map(exact);
-        let (count, trials) = (rate.count.to_string(), rate.trials.to_string());
-        vec![
-            rate.what.clone(),
-            count,
-            trials,
-            low,
-            high,
-            exact(rate.promise),
-            rate.is_kept.to_string(),
-        ]
-    });
-    let header = ["what", "count", "trials", "low_99", "high_99", "promise", "kept"];
-    let calibration = csv("the calibration", header, rates)?;
-    let rows = found.streams.iter().map(|verdicts| {
-        let counts = [verdicts.streams, verdicts.passed, verdicts.failed, verdicts.inconclusive];
-        let mut row = vec![verdicts.law.clone(), verdicts.known.clone()];
-        row.extend(counts.map(|count| count.to_string()));
-        row.extend([exact(ALPHA), verdicts.is_kept().to_string()]);
-        row
-    });
-    let header = ["law", "known", "streams", "pass", "fail", "inconclusive", "promise", "kept"];
-    let streams = csv("the streams", header, rows)?;
-    let rows = found.mutants.iter().map(|mutant| {
-        let draws = mutant.draws.map(|draws| draws.to_string()).unwrap_or_default();
-        let words = [mutant.name, mutant.bug, mutant.case, mutant.estimator, mutant.check];
-        let mut row: Vec<String> = words.map(str::to_owned).to_vec();
-        row.extend([draws, mutant.failed.join(" "), mutant.twin_passes.to_string()]);
-        row
-    });
-    let header = ["mutant", "bug", "case", "estimator", "check", "draws", "failed", "twin_passes"];
-    let mutants = csv("the mutants", header, rows)?;
-    let artifact =
-        |path: &str, text: String| Artifact { path: path.into(), bytes: text.into_bytes() };
     Ok(vec![
-        artifact("self-test/calibration.csv", calibration),
-        artifact("self-test/foreign-streams.csv", streams),
-        artifact("self-test/mutants.csv", mutants),
+        columns::artifact("self-test/calibration.csv", &of_rates(), rates(&found.calibration))?,
+        columns::artifact("self-test/foreign-streams.csv", &of_streams(), &found.streams)?,
+        columns::artifact("self-test/mutants.csv", &of_mutants(), &found.mutants)?,
     ])
 }

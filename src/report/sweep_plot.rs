@@ -5,11 +5,10 @@ use plotters::style::Color;
 
 use crate::harness::record::{CaseRecord, CurvePoint, Record, Row, Sweep};
 use crate::report::number::{count, short};
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::legend::{self, LINE};
+use crate::report::plots::figure::{Figure, Foot, LEFT};
+use crate::report::plots::legend;
 use crate::report::plots::series::{Series, collect};
-use crate::report::plots::sheet::Align;
-use crate::report::plots::style::{DARK, GREY, Marker, ink};
+use crate::report::plots::style::{Marker, ink};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, Report, ReportError};
 
@@ -17,7 +16,6 @@ const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;
 const PANEL: [f64; 2] = [490.0, 290.0];
 const PITCH: [f64; 2] = [600.0, 374.0];
-const LEFT: f64 = 92.0;
 
 /// Four panels for each case with a sweep.
 pub struct SweepPlot;
@@ -73,40 +71,27 @@ const QUANTITIES: [Quantity; 3] = [
 ];
 
 fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
-    let face = Typeface::load().map_err(|error| ReportError::Draw {
-        figure: case.name.clone(),
-        message: error.to_string(),
-    })?;
     let series = collect(case, sweep);
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];
     notes.extend(z_panel::legend_of_hollow(&series));
     notes.extend(series.iter().filter_map(Series::note));
-    let span = WIDTH - LEFT - 18.0;
-    let below = TOP + 2.0 * PITCH[1];
-    let legend = legend::height(&face, &entries, span);
-    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0 - 6.0);
-    let mut title = |y: f64, text: &str, size: f64, colour| {
-        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
-    };
-    title(30.0, &case.title, 20.0, DARK);
-    title(57.0, &subtitle(case, seed), 13.0, GREY);
+    let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
+    let titles = [&*case.title, &subtitle(case, seed)];
+    let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
+    figure.sheet.height -= 6.0;
+    let Figure { face, sheet, .. } = &mut figure;
     let x = x_axis(sweep, &series);
     for (i, quantity) in QUANTITIES.iter().enumerate() {
         let panel = place(i, &x, y_axis(quantity, &series));
-        draw(&mut sheet, &panel, quantity, &series);
-        if i == 2 && optima(&mut sheet, &panel, &series) {
+        draw(sheet, &panel, quantity, &series);
+        if i == 2 && optima(sheet, &panel, &series) {
             let key = [(Some(Marker::Star), "predicted optimum".to_owned())];
-            legend::keys(&face, &mut sheet, [panel.right, panel.top - 15.0], &key);
+            legend::keys(face, sheet, [panel.right, panel.top - 15.0], &key);
         }
     }
-    z_panel::draw(&face, &mut sheet, place(3, &x, x.clone()), &series, sweep);
-    legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
-    for (i, note) in notes.iter().enumerate() {
-        let at = [LEFT, below + legend + i as f64 * 19.0 - LINE / 2.0 + 4.0];
-        sheet.text(at, fit(&face, note, 12.5, span), 12.5, GREY, Align::Start);
-    }
-    Ok(sheet)
+    z_panel::draw(face, sheet, place(3, &x, x.clone()), &series, sweep);
+    Ok(figure.close(&foot))
 }
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {

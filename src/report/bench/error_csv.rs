@@ -1,53 +1,48 @@
 //! `CASE.error.csv`: the measured error of each experiment and channel against its price.
 
-use crate::bench::record::BenchCase;
-use crate::report::number::exact;
-use crate::report::rows::table;
-use crate::report::{Artifact, ReportError, case_path};
+use crate::bench::record::{BenchCase, BenchRow, CurvePoint};
+use crate::report::columns::{self, Cell, Column, columns};
+use crate::report::{Artifact, ReportError};
 
-const HEADER: [&str; 14] = [
-    "estimator",
-    "sampling",
-    "control",
-    "channel",
-    "swept",
-    "draws",
-    "lookups",
-    "seconds",
-    "plain_seconds",
-    "error",
-    "relative_error",
-    "relative_error_least",
-    "relative_error_most",
-    "predicted_relative_error",
-];
+/// A point of a curve with its price.
+struct Priced<'a> {
+    row: &'a BenchRow,
+    point: CurvePoint,
+    seconds: f64,
+    plain_seconds: f64,
+}
+
+/// The columns of the file.
+fn columns<'a>() -> Vec<Column<Priced<'a>>> {
+    columns! {
+        "estimator" = |of| &of.row.estimator;
+        "sampling" = |of| of.row.sampling.map_or_else(|| Cell::from(&of.row.sampling_kind), Cell::from);
+        "control" = |of| &of.row.control;
+        "channel" = |of| &of.row.channel;
+        "swept" = |of| of.row.swept;
+        "draws" = |of| of.point.draws;
+        "lookups" = |of| of.point.lookups;
+        "seconds" = |of| of.seconds;
+        "plain_seconds" = |of| of.plain_seconds;
+        "error" = |of| of.point.error;
+        "relative_error" = |of| of.point.relative;
+        "relative_error_least" = |of| of.point.least;
+        "relative_error_most" = |of| of.point.most;
+        "predicted_relative_error" = |of| of.point.predicted;
+    }
+}
 
 /// One line per row of the case and point of its curve.
 pub(super) fn artifact(case: &BenchCase) -> Result<Artifact, ReportError> {
-    let mut lines = Vec::new();
-    for row in &case.rows {
-        let Some(times) = &row.times else { continue };
+    let timed = case.rows.iter().filter_map(|row| Some((row, row.times.as_ref()?)));
+    let points = timed.flat_map(|(row, times)| {
         let priced = row.curve.iter().zip(&times.seconds).zip(&times.plain_seconds);
-        for ((point, &seconds), &plain_seconds) in priced {
-            let known = |x: Option<f64>| x.map(exact).unwrap_or_default();
-            lines.push([
-                row.estimator.clone(),
-                row.sampling.map_or_else(|| row.sampling_kind.clone(), exact),
-                row.control.clone(),
-                row.channel.clone(),
-                known(row.swept),
-                point.draws.to_string(),
-                exact(point.lookups),
-                exact(seconds),
-                exact(plain_seconds),
-                exact(point.error),
-                exact(point.relative),
-                exact(point.least),
-                exact(point.most),
-                known(point.predicted),
-            ]);
-        }
-    }
-    let text = table(&case.name, HEADER, lines)?;
-    Ok(Artifact { path: case_path(&case.name, "error.csv"), bytes: text.into_bytes() })
+        priced.map(move |((&point, &seconds), &plain_seconds)| Priced {
+            row,
+            point,
+            seconds,
+            plain_seconds,
+        })
+    });
+    columns::artifact(&format!("{}.error.csv", case.name), &columns(), points)
 }

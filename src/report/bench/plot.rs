@@ -8,15 +8,13 @@ use plotters::style::{Color, RGBAColor};
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
 use crate::report::labels::Labels;
 use crate::report::number::count;
-use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::legend::{self, Entry, LINE};
-use crate::report::plots::sheet::Align;
-use crate::report::plots::style::{DARK, GREY, Style};
+use crate::report::plots::figure::{Figure, Foot, LEFT};
+use crate::report::plots::legend::Entry;
+use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};
 
 const WIDTH: f64 = 1200.0;
-const LEFT: f64 = 92.0;
 const TOP: f64 = 104.0;
 const PANEL: [f64; 2] = [490.0, 400.0];
 const PITCH: f64 = 600.0;
@@ -38,10 +36,6 @@ pub(super) fn artifacts(bench: &Bench, case: &BenchCase) -> Result<Vec<Artifact>
 }
 
 fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
-    let face = Typeface::load().map_err(|error| ReportError::Draw {
-        figure: case.name.clone(),
-        message: error.to_string(),
-    })?;
     let shown = case.rows.iter().filter(|row| row.is_shown);
     let labels = super::console::labels(case);
     let series: Vec<Series> = shown
@@ -51,22 +45,13 @@ fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
         .collect();
     let entries: Vec<Entry> = series.iter().map(Series::entry).collect();
     let notes = notes(case);
-    let (span, below) = (WIDTH - LEFT - 18.0, TOP + PANEL[1] + 84.0);
-    let legend = legend::height(&face, &entries, span);
-    let mut sheet = Sheet::new(WIDTH, below + legend + notes.len() as f64 * 19.0);
-    let words = subtitle(bench, case);
-    for (y, text, size, colour) in [(30.0, &case.title, 20.0, DARK), (57.0, &words, 13.0, GREY)] {
-        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
-    }
+    let foot = Foot { top: TOP + PANEL[1] + 84.0, entries: &entries, notes: &notes };
+    let titles = [&*case.title, &subtitle(bench, case)];
+    let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
     let time = format!("{} time [s]", bench.conditions.clock.word());
-    in_time(&mut sheet, &series, &time);
-    in_lookups(&mut sheet, &series);
-    legend::draw(&face, &mut sheet, [LEFT, below - 8.0], &entries, span);
-    for (i, note) in notes.iter().enumerate() {
-        let at = [LEFT, below + legend + i as f64 * 19.0 - LINE / 2.0 + 4.0];
-        sheet.text(at, fit(&face, note, 12.5, span), 12.5, GREY, Align::Start);
-    }
-    Ok(sheet)
+    in_time(&mut figure.sheet, &series, &time);
+    in_lookups(&mut figure.sheet, &series);
+    Ok(figure.close(&foot))
 }
 
 fn subtitle(bench: &Bench, case: &BenchCase) -> String {

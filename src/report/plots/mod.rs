@@ -4,6 +4,7 @@
 //! the sheet is then painted twice: as SVG and as PNG. The two therefore show the same drawing.
 
 pub mod axis;
+pub mod figure;
 pub mod font;
 pub mod legend;
 pub mod paint;

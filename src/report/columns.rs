@@ -1,0 +1,159 @@
+//! Columns that CSV and JSON share: a number has one name everywhere.
+
+use serde::ser::{Serialize, Serializer};
+
+use crate::report::number::exact;
+use crate::report::{Artifact, ReportError};
+
+/// What stands in one field.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// Words; empty where there are none.
+    Text(String),
+    /// A word of a fixed list, if there is one.
+    Word(Option<&'static str>),
+    /// A number, if it is known.
+    Number(Option<f64>),
+    /// A count, if it is known.
+    Count(Option<u64>),
+    /// Numbers; empty where there are none.
+    List(Vec<f64>),
+}
+
+impl Cell {
+    /// The field in a CSV file; empty where unknown.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        match self {
+            Self::Text(text) => text.clone(),
+            Self::Word(word) => word.unwrap_or_default().to_owned(),
+            Self::Number(number) => number.map(exact).unwrap_or_default(),
+            Self::Count(count) => count.map(|n| n.to_string()).unwrap_or_default(),
+            Self::List(list) => list.iter().map(|&x| exact(x)).collect::<Vec<_>>().join(" "),
+        }
+    }
+}
+
+impl Serialize for Cell {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Self::Text(text) => serializer.serialize_str(text),
+            Self::Word(word) => word.serialize(serializer),
+            Self::Number(number) => number.serialize(serializer),
+            Self::Count(count) => count.serialize(serializer),
+            Self::List(list) => list.serialize(serializer),
+        }
+    }
+}
+
+macro_rules! cells {
+    ($($from:ty: |$x:ident| $cell:expr;)*) => {
+        $(impl From<$from> for Cell {
+            fn from($x: $from) -> Self {
+                $cell
+            }
+        })*
+    };
+}
+
+cells! {
+    &str: |text| Self::Text(text.to_owned());
+    &String: |text| Self::Text(text.clone());
+    String: |text| Self::Text(text);
+    Option<&'static str>: |word| Self::Word(word);
+    f64: |x| Self::Number(Some(x));
+    Option<f64>: |x| Self::Number(x);
+    u64: |n| Self::Count(Some(n));
+    usize: |n| Self::Count(Some(n as u64));
+    Option<u64>: |n| Self::Count(n);
+    bool: |is_so| Self::Text(is_so.to_string());
+    &Vec<f64>: |list| Self::List(list.clone());
+}
+
+/// A column: its name in files and what stands in it.
+pub struct Column<T> {
+    /// The name in the first line.
+    pub name: &'static str,
+    /// The field.
+    pub cell: fn(&T) -> Cell,
+}
+
+/// Lists columns, as in `"seed" = |row| row.seed;`.
+macro_rules! columns {
+    ($($name:literal = |$row:ident| $cell:expr;)*) => {
+        vec![$($crate::report::columns::Column {
+            name: $name,
+            cell: |$row| $crate::report::columns::Cell::from($cell),
+        }),*]
+    };
+}
+pub(in crate::report) use columns;
+
+/// Rows as CSV, with a first line of names; `name` is what an error speaks of.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn csv<T>(
+    name: &str,
+    columns: &[Column<T>],
+    rows: impl IntoIterator<Item = T>,
+) -> Result<String, ReportError> {
+    let line = |row: T| columns.iter().map(|column| (column.cell)(&row).csv()).collect::<Vec<_>>();
+    table(name, columns.iter().map(|column| column.name), rows.into_iter().map(line))
+}
+
+/// Rows as a JSON array of objects, one to a line. Unknown is `null`, and so is an infinite number,
+/// which JSON cannot write.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn json<T>(
+    columns: &[Column<T>],
+    rows: impl IntoIterator<Item = T>,
+) -> Result<String, ReportError> {
+    let object = |row: T| {
+        let mut bytes = Vec::new();
+        let fields = columns.iter().map(|column| (column.name, (column.cell)(&row)));
+        serde_json::Serializer::new(&mut bytes).collect_map(fields)?;
+        Ok::<_, serde_json::Error>(String::from_utf8_lossy(&bytes).into_owned())
+    };
+    let objects: Result<Vec<_>, _> = rows.into_iter().map(object).collect();
+    let objects = objects?.join(",\n");
+    Ok(if objects.is_empty() { "[]\n".to_owned() } else { format!("[\n{objects}\n]\n") })
+}
+
+/// A file of rows as CSV.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn artifact<T>(
+    path: &str,
+    columns: &[Column<T>],
+    rows: impl IntoIterator<Item = T>,
+) -> Result<Artifact, ReportError> {
+    Ok(Artifact { path: path.into(), bytes: csv(path, columns, rows)?.into_bytes() })
+}
+
+/// CSV text of a header and lines; `name` is what an error speaks of.
+pub(in crate::report) fn table<H, L, F>(
+    name: &str,
+    header: H,
+    lines: L,
+) -> Result<String, ReportError>
+where
+    H: IntoIterator<Item = &'static str>,
+    L: IntoIterator<Item = F>,
+    F: IntoIterator<Item = String>,
+{
+    let wrong = |source| ReportError::Csv { name: name.to_owned(), source };
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header).map_err(wrong)?;
+    for line in lines {
+        writer.write_record(line).map_err(wrong)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| wrong(error.into_error().into()))?;
+    Ok(String::from_utf8_lossy(&bytes).into_owned())
+}

@@ -1,0 +1,98 @@
+//! A figure: a sheet with its title, and the typeface that measures its words.
+
+use crate::report::ReportError;
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::legend::{self, Entry, LINE};
+use crate::report::plots::sheet::{Align, Sheet};
+use crate::report::plots::style::{DARK, GREY};
+
+/// The left edge of titles and panels.
+pub const LEFT: f64 = 92.0;
+
+/// A sheet with a title.
+pub struct Figure {
+    /// The typeface.
+    pub face: Typeface,
+    /// The sheet.
+    pub sheet: Sheet,
+    /// How wide words may be.
+    span: f64,
+}
+
+/// What stands below the panels: the series, and notes.
+pub struct Foot<'a> {
+    /// The sheet's `y` where it begins.
+    pub top: f64,
+    /// The series.
+    pub entries: &'a [Entry],
+    /// The notes, one to a line.
+    pub notes: &'a [String],
+}
+
+impl Figure {
+    /// A sheet of that size with a title and, below it, smaller words.
+    ///
+    /// # Errors
+    ///
+    /// Where there is no typeface.
+    pub fn new(
+        name: &str,
+        [width, height]: [f64; 2],
+        span: f64,
+        [title, words]: [&str; 2],
+    ) -> Result<Self, ReportError> {
+        let (face, mut sheet) = (typeface(name)?, Sheet::new(width, height));
+        for (y, text, size, colour) in [(30.0, title, 20.0, DARK), (57.0, words, 13.0, GREY)] {
+            sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
+        }
+        Ok(Self { face, sheet, span })
+    }
+
+    /// A sheet of that width with a title, as high as what stands below its panels needs.
+    ///
+    /// # Errors
+    ///
+    /// Where there is no typeface.
+    pub fn with_foot(
+        name: &str,
+        width: f64,
+        titles: [&str; 2],
+        foot: &Foot,
+    ) -> Result<Self, ReportError> {
+        let span = width - LEFT - 18.0;
+        let mut figure = Self::new(name, [width, 0.0], span, titles)?;
+        figure.sheet.height = foot.notes_at(&figure) + foot.notes.len() as f64 * 19.0;
+        Ok(figure)
+    }
+
+    /// Draws what stands below the panels.
+    pub fn close(mut self, foot: &Foot) -> Sheet {
+        let (notes_at, span) = (foot.notes_at(&self), self.span);
+        let Self { face, sheet, .. } = &mut self;
+        legend::draw(face, sheet, [LEFT, foot.top - 8.0], foot.entries, span);
+        for (i, note) in foot.notes.iter().enumerate() {
+            let at = [LEFT, notes_at + i as f64 * 19.0 - LINE / 2.0 + 4.0];
+            sheet.text(at, fit(face, note, 12.5, span), 12.5, GREY, Align::Start);
+        }
+        self.sheet
+    }
+}
+
+impl Foot<'_> {
+    /// The sheet's `y` where the notes begin.
+    fn notes_at(&self, figure: &Figure) -> f64 {
+        self.top + legend::height(&figure.face, self.entries, figure.span)
+    }
+}
+
+/// The typeface of a figure.
+///
+/// # Errors
+///
+/// Where it cannot be read.
+pub fn typeface(figure: &str) -> Result<Typeface, ReportError> {
+    Typeface::load().map_err(|error| ReportError::Draw {
+        figure: figure.to_owned(),
+        message: error.to_string(),
+    })
+}
