@@ -4,6 +4,8 @@
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
+#[cfg(test)]
+pub mod fixture;
 mod lists;
 pub mod page;
 pub mod settings;

@@ -167,11 +167,9 @@ impl Field for Radial {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::RefCell;
-    use std::path::Path;
-
     use super::*;
-    use crate::catalogue::{Entry, Node, Value};
+    use crate::catalogue::Value;
+    use crate::catalogue::fixture::{list, read};
 
     fn ball(coefficients: [f64; MOST]) -> Radial {
         Radial { centre: Point([1.0, 0.0, 2.0]), radius: 1.5, coefficients }
@@ -208,26 +206,15 @@ mod tests {
 
     #[test]
     fn wrong_settings_are_refused() {
-        let entry = |key: &str, value: Value| Entry {
-            key: key.into(),
-            key_span: 0..3,
-            node: Node { value, span: 5..6 },
-        };
-        let list = |numbers: &[f64]| {
-            let node = |&x: &f64| Node { value: Value::Number(x), span: 0..0 };
-            Value::Array(numbers.iter().map(node).collect())
-        };
         let read = |radius: f64, coefficients: &[f64]| {
-            let table = [
-                entry("centre", list(&[0.0; 3])),
-                entry("radius", Value::Number(radius)),
-                entry("coefficients", list(coefficients)),
+            let settings = [
+                ("centre", list(&[0.0; 3])),
+                ("radius", Value::Number(radius)),
+                ("coefficients", list(coefficients)),
             ];
-            let faults = RefCell::default();
-            let read = Radial::volume(&Settings::new(&table, Path::new("."), &faults));
-            (read.is_some(), faults.into_inner().into_iter().map(|fault| fault.message).collect())
+            read(settings, |settings| Radial::volume(settings).is_some())
         };
-        let fine: (bool, Vec<String>) = read(1.5, &[2.0, -2.0]);
+        let fine = read(1.5, &[2.0, -2.0]);
         assert_eq!(fine, (true, vec![]));
         // (1 − 2x)² touches zero inside.
         assert!(read(1.0, &[1.0, -4.0, 4.0]).0);

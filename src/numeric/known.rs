@@ -126,6 +126,15 @@ mod tests {
     }
 
     #[test]
+    fn a_span_is_cut_inside_only_and_once() {
+        let span = Span::new(0.0, 4.0);
+        assert_eq!(span.cut(vec![3.0, 4.0, 1.0, -1.0, 3.0]), [0.0, 1.0, 3.0, 4.0]);
+        assert_eq!(span.even_cuts(4.0), [1.0, 2.0, 3.0]);
+        assert!(span.even_cuts(1.0).is_empty());
+        assert!(Span::between(&[0.0, 2.0, 4.0]).eq(span.halves()));
+    }
+
+    #[test]
     fn transmittance_carries_the_error_of_its_depth() {
         let t = Known::new(2.0, 1e-9).exp_neg();
         assert!((t.value - 0.135_335_283_236_612_7).abs() < 1e-16);

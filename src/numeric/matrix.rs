@@ -205,6 +205,7 @@ mod tests {
                 assert!((inverse.at(i, j) - x / 3.0).abs() < 1e-15);
             }
         }
+        assert_eq!(of(0.5).series(&[1.0, 0.0]), Some(vec![inverse.at(0, 0), inverse.at(1, 0)]));
         // An eigenvalue of 1.02: the inverse exists, the series does not.
         assert_eq!(of(0.68).series_times(&one), None);
     }

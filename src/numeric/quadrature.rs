@@ -104,6 +104,8 @@ mod tests {
             let exact = 1.0 / f64::from(degree + 1);
             let value = rule.integrate(0.0, 1.0, |x| x.powi(degree.cast_signed()));
             assert!((value - exact).abs() < 1e-14, "{n} nodes: {value} against {exact}");
+            let total: f64 = rule.on(Span::new(1.0, 3.0)).map(|(t, weight)| weight * t).sum();
+            assert!((total - 4.0).abs() < 1e-13);
         }
     }
 

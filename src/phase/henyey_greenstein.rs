@@ -90,11 +90,9 @@ impl PhaseFunction for HenyeyGreenstein {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::RefCell;
-    use std::path::Path;
-
     use super::*;
-    use crate::catalogue::{Entry, Node, Value};
+    use crate::catalogue::Value;
+    use crate::catalogue::fixture::read;
 
     #[test]
     fn hand_worked_values() {
@@ -116,15 +114,8 @@ mod tests {
     #[test]
     fn a_mean_cosine_of_one_is_refused() {
         for g in [1.0, -1.0, 1.5] {
-            let node = Node { value: Value::Number(g), span: 5..6 };
-            let table = [Entry { key: "g".into(), key_span: 0..1, node }];
-            let faults = RefCell::default();
-            assert_eq!(
-                HenyeyGreenstein::read(&Settings::new(&table, Path::new("."), &faults)),
-                None
-            );
-            let faults = faults.into_inner();
-            assert_eq!(faults[0].message, format!("`g` is {g}"));
+            let found = read([("g", Value::Number(g))], HenyeyGreenstein::read);
+            assert_eq!(found, (None, vec![format!("`g` is {g}")]));
         }
     }
 }

@@ -72,7 +72,7 @@ impl Lambertian {
 
     /// The place on the boundary that two numbers find, evenly, and the normal there that points inward.
     #[inline(always)]
-    pub fn place(&self, u: f64, v: f64) -> (Point, Point) {
+    pub fn on_boundary(&self, u: f64, v: f64) -> (Point, Point) {
         match self.bounds() {
             Bounds::Sphere { centre, radius } => {
                 let outward =
@@ -146,7 +146,7 @@ mod tests {
     fn places_lie_on_the_sphere_and_look_inward() {
         let sphere = under_light(Arc::new(Eq21));
         for (u, v) in [(0.0, 0.3), (0.4, 0.9), (0.999, 0.0)] {
-            let (place, inward) = sphere.place(u, v);
+            let (place, inward) = sphere.on_boundary(u, v);
             assert!(((place - Point([0.0, 0.0, 10.0])).norm() - 10.0).abs() < 1e-13);
             assert!((place + inward * 10.0 - Point([0.0, 0.0, 10.0])).norm() < 1e-13);
         }
@@ -161,12 +161,12 @@ mod tests {
         let cuboid =
             under_light(Arc::new(crate::media::constant::Constant::new(1.0, Bounds::Box(within))));
         // Areas 6, 3, 2 twice: of 11 parts u takes six for x, three for y, two for z.
-        let (place, inward) = cuboid.place(1.0 / 11.0, 0.5);
+        let (place, inward) = cuboid.on_boundary(1.0 / 11.0, 0.5);
         assert_eq!((inward, place.0[0]), (Point([1.0, 0.0, 0.0]), 0.0));
         assert!((place.0[1] - 2.0 / 3.0).abs() < 1e-14 && place.0[2] == 1.5);
-        assert_eq!(cuboid.place(4.0 / 11.0, 0.5).1, Point([-1.0, 0.0, 0.0]));
-        assert_eq!(cuboid.place(6.5 / 11.0, 0.5).1, Point([0.0, 1.0, 0.0]));
-        assert_eq!(cuboid.place(8.5 / 11.0, 0.5).1, Point([0.0, -1.0, 0.0]));
-        assert_eq!(cuboid.place(10.5 / 11.0, 0.5).1, Point([0.0, 0.0, -1.0]));
+        assert_eq!(cuboid.on_boundary(4.0 / 11.0, 0.5).1, Point([-1.0, 0.0, 0.0]));
+        assert_eq!(cuboid.on_boundary(6.5 / 11.0, 0.5).1, Point([0.0, 1.0, 0.0]));
+        assert_eq!(cuboid.on_boundary(8.5 / 11.0, 0.5).1, Point([0.0, -1.0, 0.0]));
+        assert_eq!(cuboid.on_boundary(10.5 / 11.0, 0.5).1, Point([0.0, 0.0, -1.0]));
     }
 }

@@ -106,31 +106,17 @@ fn read_light(settings: &Settings) -> Option<Light> {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::RefCell;
-    use std::path::Path;
-
     use super::*;
-    use crate::catalogue::{Entry, Node, Value};
-
-    fn entry(key: &str, value: Value) -> Entry {
-        Entry { key: key.into(), key_span: 0..3, node: Node { value, span: 5..6 } }
-    }
-
-    fn light(table: &[Entry]) -> (Option<Light>, Vec<String>) {
-        let faults = RefCell::default();
-        let case = [entry("incidence", Value::Table(table.to_vec()))];
-        let read = read_light(&Settings::new(&case, Path::new("."), &faults));
-        (read, faults.into_inner().into_iter().map(|fault| fault.message).collect())
-    }
+    use crate::catalogue::Value;
+    use crate::catalogue::fixture::{read, table};
 
     #[test]
     fn light_comes_from_one_direction_or_from_all_sides() {
-        let collimated = |cosine: f64| {
-            let inner = Value::Table(vec![entry("cosine", Value::Number(cosine))]);
-            light(&[entry("collimated", inner)])
-        };
+        let light = |name, settings| read([("incidence", table([(name, settings)]))], read_light);
+        let collimated =
+            |cosine: f64| light("collimated", table([("cosine", Value::Number(cosine))]));
         assert_eq!(collimated(0.25), (Some(Light::Collimated(0.25)), vec![]));
-        assert_eq!(light(&[entry("diffuse", Value::Table(vec![]))]).0, Some(Light::Diffuse));
+        assert_eq!(light("diffuse", table([])).0, Some(Light::Diffuse));
         for cosine in [1.5, 0.0, -0.3] {
             assert_eq!(collimated(cosine), (None, vec![format!("`cosine` is {cosine}")]));
         }

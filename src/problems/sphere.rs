@@ -225,44 +225,33 @@ fn not_radial<T>(settings: &Settings) -> Option<T> {
 
 #[cfg(test)]
 mod tests {
-    use std::cell::RefCell;
-    use std::path::Path;
-
     use super::*;
-    use crate::catalogue::{Entry, Node, Value};
+    use crate::catalogue::Value;
+    use crate::catalogue::fixture::{list, read, table};
 
-    fn entry(key: &str, value: Value) -> Entry {
-        Entry { key: key.into(), key_span: 0..3, node: Node { value, span: 5..6 } }
-    }
-
-    fn light(name: &str, settings: Vec<Entry>) -> (Option<Light>, Vec<String>) {
-        let chosen = Value::Table(vec![entry(name, Value::Table(settings))]);
-        let (table, faults) = ([entry("light", chosen)], RefCell::default());
-        let read = read_light(&Settings::new(&table, Path::new("."), &faults));
-        (read, faults.into_inner().into_iter().map(|fault| fault.message).collect())
-    }
-
-    fn list(numbers: [f64; 3]) -> Value {
-        let node = |x: f64| Node { value: Value::Number(x), span: 0..0 };
-        Value::Array(numbers.map(node).into())
+    fn light<const N: usize>(
+        name: &str,
+        settings: [(&str, Value); N],
+    ) -> (Option<Light>, Vec<String>) {
+        read([("light", table([(name, table(settings))]))], read_light)
     }
 
     #[test]
     fn light_comes_from_all_sides_from_the_middle_or_from_afar() {
-        assert_eq!(light("environment", vec![]), (Some(Light::Environment), vec![]));
-        let radius = entry("radius", Value::Number(0.25));
-        assert_eq!(light("black-sphere", vec![radius]), (Some(Light::BlackSphere(0.25)), vec![]));
-        let far = light("distant", vec![entry("direction", list([0.0, 0.0, 4.0]))]).0;
+        assert_eq!(light("environment", []), (Some(Light::Environment), vec![]));
+        let radius = ("radius", Value::Number(0.25));
+        assert_eq!(light("black-sphere", [radius]), (Some(Light::BlackSphere(0.25)), vec![]));
+        let far = light("distant", [("direction", list(&[0.0, 0.0, 4.0]))]).0;
         assert_eq!(far, Some(Light::Distant(Point([0.0, 0.0, 1.0]))));
     }
 
     #[test]
     fn lights_without_size_direction_or_variance_are_refused() {
-        let nothing = light("black-sphere", vec![entry("radius", Value::Number(0.0))]);
+        let nothing = light("black-sphere", [("radius", Value::Number(0.0))]);
         assert_eq!(nothing, (None, vec!["`radius` is 0".to_owned()]));
-        let nowhere = light("distant", vec![entry("direction", list([0.0; 3]))]);
+        let nowhere = light("distant", [("direction", list(&[0.0; 3]))]);
         assert_eq!(nowhere, (None, vec!["the direction is the zero vector".to_owned()]));
-        let (point, faults) = light("point", vec![entry("position", list([0.0; 3]))]);
+        let (point, faults) = light("point", [("position", list(&[0.0; 3]))]);
         assert!(point.is_none() && faults[0].contains("infinite variance"), "{faults:?}");
     }
 }

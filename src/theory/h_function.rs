@@ -17,7 +17,6 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
 
-/// Halvings of the panels towards either end.
 /// The relative error.
 pub const ERROR: f64 = 1e-14;
 /// Halvings of the panels towards either end.

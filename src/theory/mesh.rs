@@ -220,18 +220,17 @@ impl Mesh {
         let t = self.nodes(span);
         let extinction = self.medium.extinctions(&t);
         let panel = Panel { span, t: &t, extinction: &extinction };
-        let middle = span.middle();
-        let room = halvings > 0 && self.panels.len() < MOST;
+        let room = halvings > 0 && self.panels.len() < MOST && span.contains_inside(span.middle());
         let tails =
             if self.adaptive { self.tails(&smooth(self, panel), parent) } else { Vec::new() };
         let rough = is_rough(&tails, parent);
-        if rough && !(room && span.contains_inside(middle)) {
+        if rough && !room {
             // What stays unresolved is an error of the integrals, and is said.
             let share = span.length() / self.support().length();
             let left = tails.iter().map(|tail| tail.size / tail.scale).fold(0.0, f64::max);
             self.error += share * left;
         }
-        if rough && room && span.contains_inside(middle) {
+        if rough && room {
             for half in span.halves() {
                 self.grow(half, halvings - 1, smooth, &tails);
             }

@@ -197,7 +197,7 @@ pub fn lambertian(u: f64) -> f64 {
 #[inline(always)]
 fn start(problem: &Lambertian, rng: &mut Stream, cosine: fn(f64) -> f64) -> Start {
     let (u, v) = (rng.uniform(), rng.uniform());
-    let (place, inward) = problem.place(u, v);
+    let (place, inward) = problem.on_boundary(u, v);
     let cosine = cosine(rng.uniform());
     Start { place, direction: frame::turned(inward, cosine, rng.uniform()), weight: 1.0 }
 }

@@ -58,25 +58,30 @@ impl Step {
     #[inline]
     pub fn after(&self, k: i32, worth: [f64; 2]) -> [f64; 2] {
         let [q, s] = self.moments(k);
+        let spread = self.spread(worth);
+        [q * worth[0] + s * spread[0], q * worth[1] + s * spread[1]]
+    }
+
+    /// What a particle that is scattered here is worth, by what it is worth afterwards.
+    #[inline]
+    pub fn spread(&self, [plus, minus]: [f64; 2]) -> [f64; 2] {
         let backward = 1.0 - self.forward;
-        let [plus, minus] = worth;
-        [
-            q * plus + s * (self.forward * plus + backward * minus),
-            q * minus + s * (self.forward * minus + backward * plus),
-        ]
+        [self.forward * plus + backward * minus, self.forward * minus + backward * plus]
     }
 
     /// A and B of the k-th moment.
     #[inline]
     pub fn rates(&self, k: i32) -> [f64; 2] {
-        let [q, s] = self.moments(k);
-        [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
+        self.rates_of(self.moments(k))
     }
 
     /// The same of the absolute values, which converge where the moment exists.
-    #[inline]
     fn absolute_rates(&self, k: i32) -> [f64; 2] {
-        let [q, s] = self.moments(k).map(f64::abs);
+        self.rates_of(self.moments(k).map(f64::abs))
+    }
+
+    #[inline]
+    fn rates_of(&self, [q, s]: [f64; 2]) -> [f64; 2] {
         [self.sampling * (1.0 - q - s * self.forward), self.sampling * s * (1.0 - self.forward)]
     }
 }

@@ -234,13 +234,8 @@ fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Worth> 
     let mut worth = grid.solve(rates, nothing, ends)?;
     for _ in 0..order {
         let source = |i: usize, step: &Step| {
-            let [plus, minus] = worth.middle(i);
             let scattered = step.sampling * step.moments(k)[1];
-            let backward = 1.0 - step.forward;
-            [
-                scattered * (step.forward * plus + backward * minus),
-                scattered * (step.forward * minus + backward * plus),
-            ]
+            step.spread(worth.middle(i)).map(|spread| scattered * spread)
         };
         worth = grid.solve(rates, source, [0.0; 2])?;
     }
