@@ -113,26 +113,19 @@ pub struct NoiseRay {
 /// up pays nothing for them.
 struct Octave {
     amplitude: f64,
-    line: OctaveLine,
+    track: Track,
+    seed: u32,
+    fade: Fade,
     cells: OnceLock<Cells>,
 }
 
 impl Octave {
     fn cells(&self, rule: &GaussLegendre, inside: Span) -> &Cells {
-        let line = &self.line;
         self.cells.get_or_init(|| {
-            Cells::cross(line.track, inside).summed(|_, cell, part| line.part(rule, cell, part))
+            Cells::cross(self.track, inside).summed(|_, cell, part| self.part(rule, cell, part))
         })
     }
-}
 
-struct OctaveLine {
-    track: Track,
-    seed: u32,
-    fade: Fade,
-}
-
-impl OctaveLine {
     /// The integral over part of a cell.
     fn part(&self, rule: &GaussLegendre, cell: Span, part: Span) -> f64 {
         let polynomial = Cell::around(self.track.at(cell.middle()), self.seed);
@@ -156,12 +149,11 @@ impl OpticalDepth for NoiseRay {
         let length = span.length();
         let (mut fbm, mut error) = (0.0, 0.0);
         for octave in &self.octaves {
-            let line = &octave.line;
-            let part = |_, cell, part| line.part(&self.rule, cell, part);
+            let part = |_, cell, part| octave.part(&self.rule, cell, part);
             let integral = octave.cells(&self.rule, self.inside).integrate(span, part);
             fbm += octave.amplitude * integral.value;
             // |∂ noise/∂pⱼ| < 3, and a coordinate is off by its rounding at most.
-            let ends = [line.track.start, line.track.at(span.to)];
+            let ends = [octave.track.start, octave.track.at(span.to)];
             let size: f64 = ends.as_flattened().iter().map(|x| x.abs()).sum();
             error += octave.amplitude * (integral.error + 3.0 * f64::EPSILON * size * length);
         }
@@ -255,9 +247,12 @@ impl Field for Noise {
         let rule = GaussLegendre::new(9);
         let track = track(ray, spectrum.frequency);
         let tracks = std::iter::successors(Some(track), |track| Some(track.doubled()));
-        let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| {
-            let line = OctaveLine { track, seed, fade: spectrum.fade };
-            Octave { amplitude, line, cells: OnceLock::new() }
+        let octaves = spectrum.amplitudes().zip(tracks).map(|((amplitude, seed), track)| Octave {
+            amplitude,
+            track,
+            seed,
+            fade: spectrum.fade,
+            cells: OnceLock::new(),
         });
         NoiseRay { spectrum, unit: self.unit, track, octaves: octaves.collect(), rule, inside }
     }
