@@ -35,27 +35,42 @@
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
 
+#[cfg(feature = "library")]
 pub mod bench;
 pub mod catalogue;
+#[cfg(feature = "library")]
 pub mod estimators;
+#[cfg(feature = "library")]
 pub mod files;
+#[cfg(feature = "library")]
 pub mod geometry;
+#[cfg(feature = "library")]
 pub mod harness;
 pub mod judge;
+#[cfg(feature = "library")]
 pub mod media;
+#[cfg(feature = "library")]
 pub mod mutants;
 pub mod numeric;
+#[cfg(feature = "library")]
 pub mod phase;
+#[cfg(feature = "library")]
 pub mod problems;
+#[cfg(feature = "library")]
 pub mod render;
+#[cfg(feature = "cli")]
 pub mod report;
+#[cfg(any(feature = "library", test))]
 pub mod rng;
+#[cfg(feature = "library")]
 pub mod self_test;
 pub mod stats;
+#[cfg(feature = "library")]
 pub mod stress;
+#[cfg(feature = "library")]
 pub mod theory;
 
 /// The examples of the README are compiled and run with the documentation's.
-#[cfg(doctest)]
+#[cfg(all(doctest, feature = "cli"))]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -4,8 +4,7 @@ use super::names::Names;
 use super::sweep::Variation;
 use crate::rng::{Address, name_hash};
 
-/// Draws per block, always.
-pub const BLOCK: u64 = 1 << 14;
+pub use crate::stats::verdict::BLOCK;
 
 /// Where order-free experiments of a case find their collisions, if these are as likely anywhere on
 /// the same stretches: whatever the estimator, the control and σ̂.

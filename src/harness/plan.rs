@@ -10,6 +10,8 @@
 
 use rayon::prelude::*;
 
+pub use crate::stats::verdict::MISS;
+
 use super::addresses;
 use super::case::Case;
 use super::checks::{self, Kind, Pilot, Question, Scalar, Subject};
@@ -26,8 +28,6 @@ pub use super::addresses::BLOCK;
 
 /// The share of the error rate that goes to tests of whole laws.
 const LAW_SHARE: f64 = 0.2;
-/// β, the chance that a check passes although the bias is as large as its tolerance.
-pub const MISS: f64 = 0.01;
 /// Draws that estimate a variance where theory has none.
 const PILOT_DRAWS: usize = 1 << 16;
 

@@ -4,6 +4,7 @@
 //! machine; `timing` and the `comparison` with a stored run are not, and are kept apart. Unknown is `None`, never zero. JSON writes infinite
 //! numbers as `null`: those of [`GateFinding`] may be.
 
+pub use crate::stats::verdict::{GateFinding, Verdict};
 use serde::Serialize;
 
 use super::baseline::comparison::Comparison;
@@ -224,36 +225,6 @@ pub struct Row {
     pub log_unit: Option<f64>,
 }
 
-/// What is said of an experiment, or of one check.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Verdict {
-    /// Agrees with theory, and a difference of the size that matters would have been seen.
-    Pass,
-    /// Differs from theory by more than chance allows.
-    Fail,
-    /// Not decided by the draws that were made.
-    Inconclusive,
-    /// It could fail, but was never promised to pass: known before the first draw.
-    Underpowered,
-    /// Not drawn: the estimator does not exist or is biased here.
-    Refused,
-}
-
-impl Verdict {
-    /// The word in tables and files.
-    #[must_use]
-    pub fn word(self) -> &'static str {
-        match self {
-            Self::Pass => "pass",
-            Self::Fail => "fail",
-            Self::Inconclusive => "inconclusive",
-            Self::Underpowered => "underpowered",
-            Self::Refused => "refused",
-        }
-    }
-}
-
 /// What one check found of one experiment.
 #[derive(Debug, Clone, Serialize)]
 pub struct Finding {
@@ -277,34 +248,6 @@ pub struct Finding {
     pub verdict: Verdict,
     /// Why, with the numbers.
     pub reason: String,
-}
-
-/// Where the gate stands with one scalar.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub struct GateFinding {
-    /// ε: the bias that a pass excludes.
-    pub tolerance: f64,
-    /// V: the variance of the scalar in theory; it may be infinite.
-    pub variance: f64,
-    /// The observed mean of the scalar, 0 when all is well.
-    pub mean: f64,
-    /// How many draws were planned, 27 V/ε²; infinite where none would do.
-    pub planned: f64,
-    /// How many draws it took to decide, or were made without a decision.
-    pub draws: u64,
-    /// ln E, the evidence against a correct scalar.
-    pub ln_e: f64,
-    /// The ln E at which it fails.
-    pub ln_e_limit: f64,
-    /// ln of the evidence against a bias of +ε and of −ε.
-    pub ln_p: [f64; 2],
-    /// The ln P at which it passes.
-    pub ln_p_limit: f64,
-    /// The draws that it would need, where more than were planned; infinite where none would do.
-    /// `None` only where the plan suffices: in JSON the finding's verdict tells the two apart.
-    pub needed: Option<f64>,
-    /// Whether it was decided.
-    pub is_decided: bool,
 }
 
 /// The part of a record that differs from run to run.

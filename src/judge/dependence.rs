@@ -2,7 +2,7 @@
 
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::{DRIFT, Reading};
-use crate::harness::record::Verdict;
+use crate::stats::verdict::Verdict;
 
 /// Whether the mean changes on the way: only where that says more than that it is off.
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {

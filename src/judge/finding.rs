@@ -3,9 +3,9 @@
 use super::grounds::{self, EFFECTIVE, Spread};
 use super::judgement::ScalarFinding;
 use super::scalar::Scalar;
-use crate::harness::plan::BLOCK;
-use crate::harness::record::{GateFinding, Verdict};
 use crate::stats::gate::{self, Decision, Design};
+use crate::stats::verdict::BLOCK;
+use crate::stats::verdict::{GateFinding, Verdict};
 
 impl Scalar {
     /// What was found.

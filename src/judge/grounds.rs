@@ -15,11 +15,11 @@
 //! No draws can show that unseen rare events do not carry the variance (Bahadur and Savage 1956), so
 //! `shown` is an assumption: draws may pass by it, and the verdict says which, but never fail.
 
-use crate::harness::plan::BLOCK;
 use crate::stats::Powers;
 use crate::stats::betting::{Aim, Bets};
 use crate::stats::capital::Capital;
 use crate::stats::gate::{Design, GateSums};
+use crate::stats::verdict::BLOCK;
 
 /// The share of a scalar's level that pays for a bound on its variance.
 const PILOT: f64 = 0.1;

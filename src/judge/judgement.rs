@@ -1,11 +1,10 @@
 //! What is said of another program's draws.
 
-use serde::Serialize;
-
-use crate::harness::record::{GateFinding, Verdict};
+use crate::stats::verdict::{GateFinding, Verdict};
 
 /// The verdict on a list of draws, with its numbers.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
@@ -69,8 +68,9 @@ pub struct Judgement {
 }
 
 /// Why reading stopped before the end.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
+#[cfg_attr(feature = "library", serde(rename_all = "kebab-case"))]
 pub enum Stop {
     /// All was decided, and the caller wanted no more.
     Decided,
@@ -79,7 +79,8 @@ pub enum Stop {
 }
 
 /// What the gate found of one scalar.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct ScalarFinding {
     /// `mean`, `variance` or `lookups`.
     pub check: String,
@@ -98,7 +99,8 @@ pub struct ScalarFinding {
 }
 
 /// Whether the mean is the same from beginning to end.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct DriftFinding {
     /// What is said of it.
     pub verdict: Verdict,
@@ -115,7 +117,8 @@ pub struct DriftFinding {
 }
 
 /// Whether draws depend on each other.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct IndependenceFinding {
     /// Why they do; empty where nothing was found.
     pub reason: String,

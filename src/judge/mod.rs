@@ -1,393 +1,44 @@
-//! Draws that another program wrote: numbers in a file or a pipe, read in constant memory.
+//! Draws that another program made: whether they are what they are claimed to be.
 //!
-//! ```text
-//! csv, txt       one number a line, or one column of a table separated by commas
-//! npy            float32 or float64 of either byte order, with one axis that is longer than 1
-//! f64, bin, raw  little-endian float64, nothing else
+//! A [`claim::Claim`] says what is known of a draw: its mean and, if known, its variance, kurtosis and range. A
+//! [`trial::Trial`] judges draws in memory, or in `files` of several formats. Without the feature
+//! `library` this room and [`crate::stats`] are all of the crate: enough for a test of somebody's estimator.
+//!
 //! ```
+//! use trueflight::judge::claim::{Claim, Given};
+//! use trueflight::judge::trial::{Trial, Wanted};
+//! use trueflight::stats::verdict::Verdict;
 //!
-//! NaN and ∞ are read as they are: the gate judges them. Whatever keeps a file from being a list of
-//! numbers is a [`ForeignError`]; nothing is skipped.
+//! // Draws of a fair coin, claimed to be 0.5 on average and to lie in [0, 1].
+//! let mut state = 1u64;
+//! let draws: Vec<f64> = (0..400_000)
+//!     .map(|_| {
+//!         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+//!         f64::from(u8::from(state >> 63 == 1))
+//!     })
+//!     .collect();
+//! let claim = Claim::new(&Given { truth: 0.5, range: Some([0.0, 1.0]), ..Given::default() })?;
+//! let trial = Trial::new(claim, Wanted::default(), Some(draws.len() as u64))?;
+//! assert_eq!(trial.judge_all(&draws).verdict, Verdict::Pass);
+//! # Ok::<(), trueflight::judge::claim::ClaimError>(())
+//! ```
 
 mod asks;
 pub mod claim;
-mod csv;
 mod dependence;
+#[cfg(feature = "library")]
+pub mod files;
 mod finding;
 mod grounds;
 pub mod judgement;
-mod lines;
-mod npy;
+#[cfg(feature = "library")]
 mod of_case;
-mod raw;
 mod reading;
 mod scalar;
 pub mod trial;
 mod verdict;
 
+#[cfg(feature = "library")]
+pub use files::{Column, Draws, ForeignError, Format, count};
+#[cfg(feature = "library")]
 pub use of_case::Choice;
-
-use std::convert::Infallible;
-use std::fs::File;
-use std::io::{self, Read};
-use std::path::Path;
-use std::str::FromStr;
-
-/// How numbers are written.
-#[derive(Debug, Clone, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum Format {
-    /// A table of text, columns separated by commas.
-    Csv {
-        /// Which column to read; a table of one column needs no choice.
-        column: Option<Column>,
-        /// Which column has the lookups of a draw, if any.
-        lookups: Option<Column>,
-    },
-    /// `NumPy`'s array file.
-    Npy,
-    /// Little-endian float64.
-    Raw,
-}
-
-/// A column of a table.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Column {
-    /// By its name in the first line.
-    Name(String),
-    /// By its place; the first is 0.
-    Index(usize),
-}
-
-impl FromStr for Column {
-    type Err = Infallible;
-
-    /// A whole number is a place, anything else a name.
-    fn from_str(text: &str) -> Result<Self, Infallible> {
-        Ok(text.parse().map_or_else(|_| Self::Name(text.to_owned()), Self::Index))
-    }
-}
-
-impl std::fmt::Display for Column {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Name(name) => write!(f, "column `{name}`"),
-            Self::Index(index) => write!(f, "column {index}, counted from 0,"),
-        }
-    }
-}
-
-impl Format {
-    /// The format that a file's ending stands for; `None` where it stands for none.
-    #[must_use]
-    pub fn of_path(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_str()?.to_ascii_lowercase();
-        match ending.as_str() {
-            "csv" | "txt" => Some(Self::Csv { column: None, lookups: None }),
-            "npy" => Some(Self::Npy),
-            "f64" | "bin" | "raw" => Some(Self::Raw),
-            _ => None,
-        }
-    }
-}
-
-/// Why numbers could not be read.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum ForeignError {
-    /// The system refused.
-    #[error("{file}: {cause}; give a file or a pipe that can be read")]
-    Unreadable {
-        /// The file as named by the caller.
-        file: String,
-        /// What the system said.
-        cause: io::Error,
-    },
-    /// There is no number at all.
-    #[error("{file}: no draws; write at least one number")]
-    Empty {
-        /// The file.
-        file: String,
-    },
-    /// The file ends too early.
-    #[error("{file}: ends after {found} of {expected} draws; write it to the end")]
-    Truncated {
-        /// The file.
-        file: String,
-        /// How many whole draws it holds.
-        found: u64,
-        /// How many its header announces.
-        expected: u64,
-    },
-    /// The file goes on where it should end.
-    #[error("{file}: goes on after its {expected} draws; write one array a file")]
-    Overlong {
-        /// The file.
-        file: String,
-        /// How many draws its header announces.
-        expected: u64,
-    },
-    /// The file ends within a number.
-    #[error(
-        "{file}: {rest} byte(s) are left after {whole} draws of 8 bytes; \
-         write little-endian float64 and nothing else"
-    )]
-    PartialDraw {
-        /// The file.
-        file: String,
-        /// How many whole draws came before.
-        whole: u64,
-        /// How many bytes are left.
-        rest: usize,
-    },
-    /// There is no NPY header.
-    #[error("{file}: not an npy file ({cause}); write it by numpy.save")]
-    NotNpy {
-        /// The file.
-        file: String,
-        /// What is wrong with the header.
-        cause: io::Error,
-    },
-    /// The array holds something else than real numbers of 4 or 8 bytes.
-    #[error("{file}: an array of type {found}; save it as float64 or float32, by x.astype('<f8')")]
-    ElementType {
-        /// The file.
-        file: String,
-        /// The type, as `NumPy` writes it.
-        found: String,
-    },
-    /// The array has several axes.
-    #[error(
-        "{file}: an array of shape {shape}, whose order of draws is not known; \
-         save one axis, by x.ravel() or x[:, k]"
-    )]
-    Shape {
-        /// The file.
-        file: String,
-        /// The shape, as `NumPy` writes it.
-        shape: String,
-    },
-    /// A table of several columns, and none was chosen.
-    #[error("{file}: {count} columns ({}); choose one by name or index", columns.join(", "))]
-    ManyColumns {
-        /// The file.
-        file: String,
-        /// How many.
-        count: usize,
-        /// The first of their names, or of their places where they have no names.
-        columns: Vec<String>,
-    },
-    /// The chosen column is not there.
-    #[error("{file}: no {column} among {}; choose one of these", columns.join(", "))]
-    NoColumn {
-        /// The file.
-        file: String,
-        /// What was chosen.
-        column: Column,
-        /// The names that are there, or the places where they have no names.
-        columns: Vec<String>,
-    },
-    /// Several columns have the chosen name.
-    #[error("{file}: {count} columns are called `{name}`; choose one by index")]
-    SameName {
-        /// The file.
-        file: String,
-        /// The name.
-        name: String,
-        /// How many bear it.
-        count: usize,
-    },
-    /// A line with another number of columns than the first.
-    #[error(
-        "{file}, line {line}: {found} column(s) where the first line has {expected}; mend the line"
-    )]
-    RaggedLine {
-        /// The file.
-        file: String,
-        /// The line; the first is 1.
-        line: u64,
-        /// How many columns it has.
-        found: u64,
-        /// How many the first line has.
-        expected: u64,
-    },
-    /// A line that does not end.
-    #[error("{file}, line {line}: longer than {longest} bytes; write one draw a line")]
-    LongLine {
-        /// The file.
-        file: String,
-        /// The line; the first is 1.
-        line: u64,
-        /// The longest line that is read.
-        longest: u64,
-    },
-    /// A word that is not a number.
-    #[error("{file}, line {line}, column {column}: `{text}` is not a number; write it as 1.25e-3")]
-    NotANumber {
-        /// The file.
-        file: String,
-        /// The line; the first is 1.
-        line: u64,
-        /// The column; the first is 0.
-        column: usize,
-        /// The word.
-        text: String,
-    },
-}
-
-impl ForeignError {
-    fn unreadable(file: &str, cause: io::Error) -> Self {
-        Self::Unreadable { file: file.to_owned(), cause }
-    }
-}
-
-/// Where bytes come from.
-type Bytes = Box<dyn Read + Send>;
-
-/// An open source of draws.
-pub struct Draws {
-    source: Source,
-    /// The lookups of the draws that were read last.
-    lookups: Vec<f64>,
-}
-
-enum Source {
-    Csv(Box<csv::Table>),
-    Words(raw::Words),
-}
-
-impl std::fmt::Debug for Draws {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.debug_struct("Draws").field("known_length", &self.known_length()).finish_non_exhaustive()
-    }
-}
-
-impl Draws {
-    /// Opens a file.
-    ///
-    /// # Errors
-    ///
-    /// The file cannot be read, holds no draws, is not of this format, or its length shows that it
-    /// is cut off.
-    pub fn open(path: &Path, format: Format) -> Result<Self, ForeignError> {
-        let name = path.display().to_string();
-        let unreadable = |cause| ForeignError::unreadable(&name, cause);
-        let file = File::open(path).map_err(unreadable)?;
-        let data = file.metadata().map_err(unreadable)?;
-        let bytes = data.is_file().then_some(data.len());
-        Self::new(Box::new(file), &name, format, bytes)
-    }
-
-    /// Reads a pipe, or anything else that is no file; `name` is what errors call it.
-    ///
-    /// # Errors
-    ///
-    /// The pipe cannot be read, holds no draws, or is not of this format.
-    pub fn from_reader(
-        reader: impl Read + Send + 'static,
-        name: &str,
-        format: Format,
-    ) -> Result<Self, ForeignError> {
-        Self::new(Box::new(reader), name, format, None)
-    }
-
-    fn new(
-        bytes: Bytes,
-        name: &str,
-        format: Format,
-        length: Option<u64>,
-    ) -> Result<Self, ForeignError> {
-        let source = match format {
-            Format::Csv { column, lookups } => {
-                let table = csv::Table::open(bytes, name, column.as_ref(), lookups.as_ref())?;
-                Source::Csv(Box::new(table))
-            }
-            Format::Npy => Source::Words(npy::open(bytes, name, length)?),
-            Format::Raw => Source::Words(raw::open(bytes, name, length)?),
-        };
-        Ok(Self { source, lookups: Vec::new() })
-    }
-
-    /// How many draws there are in all, where the file says so.
-    #[must_use]
-    pub fn known_length(&self) -> Option<u64> {
-        match &self.source {
-            Source::Csv(_) => None,
-            Source::Words(words) => words.known_length(),
-        }
-    }
-
-    /// Replaces the buffer's contents by the next draws, `at_most` of them; answers how many, 0 at
-    /// the end. Fewer than asked for come only at the end.
-    ///
-    /// # Errors
-    ///
-    /// The source cannot be read on, or what follows is not a draw. The buffer then holds the draws
-    /// before.
-    pub fn read(&mut self, buffer: &mut Vec<f64>, at_most: usize) -> Result<usize, ForeignError> {
-        buffer.clear();
-        self.lookups.clear();
-        match &mut self.source {
-            Source::Csv(table) => table.read(buffer, &mut self.lookups, at_most)?,
-            Source::Words(words) => words.read(buffer, at_most)?,
-        }
-        Ok(buffer.len())
-    }
-
-    /// The lookups of the draws that were read last; none where no column has them.
-    #[must_use]
-    pub fn lookups(&self) -> &[f64] {
-        &self.lookups
-    }
-}
-
-/// How many draws a file holds: by its length or its header, else by reading it through.
-///
-/// # Errors
-///
-/// The file cannot be read, or something in it is not a draw.
-pub fn count(path: &Path, format: Format) -> Result<u64, ForeignError> {
-    let mut draws = Draws::open(path, format)?;
-    if let Some(length) = draws.known_length() {
-        return Ok(length);
-    }
-    let (mut buffer, mut count) = (Vec::new(), 0);
-    while draws.read(&mut buffer, 1 << 14)? > 0 {
-        count += buffer.len() as u64;
-    }
-    Ok(count)
-}
-
-/// Every draw, in small pieces.
-#[cfg(test)]
-fn all(mut draws: Draws) -> Result<Vec<f64>, ForeignError> {
-    let (mut all, mut buffer) = (Vec::new(), Vec::new());
-    while draws.read(&mut buffer, 997)? > 0 {
-        all.append(&mut buffer);
-    }
-    Ok(all)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn endings_stand_for_formats() {
-        let of = |path: &str| Format::of_path(Path::new(path));
-        assert_eq!(of("a/draws.CSV"), Some(Format::Csv { column: None, lookups: None }));
-        assert_eq!(of("draws.txt"), Some(Format::Csv { column: None, lookups: None }));
-        assert_eq!(of("draws.v2.npy"), Some(Format::Npy));
-        for path in ["x.f64", "x.bin", "x.raw"] {
-            assert_eq!(of(path), Some(Format::Raw));
-        }
-        assert_eq!(of("draws"), None);
-        assert_eq!(of("draws.npz"), None);
-    }
-
-    #[test]
-    fn a_column_is_a_place_or_a_name() {
-        assert_eq!("3".parse(), Ok(Column::Index(3)));
-        assert_eq!("T".parse(), Ok(Column::Name("T".into())));
-    }
-}

@@ -5,11 +5,11 @@ use super::judgement::{Judgement, Stop};
 use super::scalar::{Levels, Scalar};
 use super::trial::{BUFFER, Trial};
 use super::{dependence, verdict};
-use crate::harness::plan::MISS;
-use crate::harness::record::Verdict;
 use crate::numeric::sum::Sum;
 use crate::stats::independence::Independence;
 use crate::stats::replays::Replays;
+use crate::stats::verdict::MISS;
+use crate::stats::verdict::Verdict;
 use crate::stats::{Powers, ties};
 
 /// The share of α that the drift has, a question of its own.

@@ -23,9 +23,7 @@ use super::asks::VARIANCE_CAP;
 use super::claim::{Claim, ClaimError};
 use super::judgement::{Judgement, Stop};
 use super::reading::Reading;
-use super::{Draws, ForeignError};
-use crate::harness::checks::mean::FURTHEST;
-use crate::harness::plan::BLOCK;
+use crate::stats::verdict::{BLOCK, FURTHEST};
 
 /// The widest ε of a mean that is chosen without being asked for.
 pub(super) const MEAN_CAP: f64 = 0.05;
@@ -141,35 +139,6 @@ impl Trial {
     /// What no draw of a claim without spread may exceed, in units of u.
     pub(super) fn bound(&self) -> f64 {
         self.claim.floor() + FURTHEST * self.deviation().unwrap_or(0.0)
-    }
-
-    /// Reads and judges.
-    ///
-    /// # Errors
-    ///
-    /// The draws cannot be read to their end, or to where they are decided.
-    pub fn judge(&self, draws: &mut Draws) -> Result<Judgement, ForeignError> {
-        let mut reading = Reading::new(self);
-        let mut block = Vec::with_capacity(BUFFER);
-        let mut stopped = None;
-        loop {
-            let left = self.wanted.most.map_or(u64::MAX, |most| most - reading.draws());
-            let wanted = BUFFER.min(usize::try_from(left).unwrap_or(BUFFER));
-            // One draw more tells whether there is any.
-            if draws.read(&mut block, wanted.max(1))? == 0 {
-                break;
-            }
-            if wanted == 0 {
-                stopped = Some(Stop::Limit);
-                break;
-            }
-            reading.absorb(&block, draws.lookups());
-            if self.wanted.stop_early && !reading.is_open() {
-                stopped = Some(Stop::Decided).filter(|_| self.length != Some(reading.draws()));
-                break;
-            }
-        }
-        Ok(reading.close(stopped))
     }
 
     /// Judges draws that are in memory; there are no lookups with them.

@@ -12,7 +12,7 @@
 use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
 use super::reading::{Fault, Reading, Refuted};
 use super::scalar::Scalar;
-use crate::harness::record::Verdict;
+use crate::stats::verdict::Verdict;
 
 /// The verdict of the whole, and what it promises.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {

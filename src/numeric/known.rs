@@ -1,12 +1,11 @@
 //! A value with a bound on its own error, and a stretch of a line.
 
-use serde::Serialize;
-
 /// A number that is known up to a stated absolute error.
 ///
 /// `error` bounds `|value − exact|`. No measurement is compared with `value` more strictly than
 /// `error` allows.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct Known {
     /// The best available value.
     pub value: f64,
@@ -41,7 +40,8 @@ impl std::ops::Add for Known {
 }
 
 /// A closed stretch `[from, to]` of a ray or line, in units of length; empty where `from ≥ to`.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct Span {
     /// Where the stretch begins.
     pub from: f64,

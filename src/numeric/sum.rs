@@ -1,7 +1,5 @@
 //! Sums that do not lose their small terms.
 
-use serde::{Deserialize, Serialize};
-
 /// A running sum with its rounding error kept beside it.
 ///
 /// ```text
@@ -10,7 +8,8 @@ use serde::{Deserialize, Serialize};
 ///
 /// Source: A. Neumaier, *Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen*,
 /// ZAMM 54 (1974), 39–51.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sum {
     sum: f64,
     correction: f64,

@@ -21,8 +21,6 @@
 //! Stochastic Processes and their Applications 163 (2023); J. Ville, *Étude critique de la notion
 //! de collectif* (1939).
 
-use serde::{Deserialize, Serialize};
-
 use super::catoni::{Argument, PsiSums};
 
 /// How many sums of ψ a scalar takes.
@@ -57,7 +55,8 @@ pub struct Design {
 }
 
 /// The evidence at a look.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 pub struct Evidence {
     /// ln E, against a correct y.
     pub ln_e: f64,
@@ -66,7 +65,8 @@ pub struct Evidence {
 }
 
 /// What the evidence says.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 pub enum Decision {
     /// Not yet enough.
     Open,

@@ -17,6 +17,7 @@ pub mod reflection;
 pub mod replays;
 pub mod tally;
 pub mod ties;
+pub mod verdict;
 
 pub use census::Census;
 pub use powers::Powers;

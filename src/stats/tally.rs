@@ -1,7 +1,5 @@
 //! Sums of draws, block by block.
 
-use serde::{Deserialize, Serialize};
-
 use super::Census;
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::Sum;
@@ -14,7 +12,8 @@ const LANES: usize = 16;
 /// The shift is the predicted mean, so that a small spread on a large mean loses no digits. Within
 /// a block the sums are plain; blocks are merged in the order of their addresses with compensated
 /// sums, so that the result does not depend on who drew which block.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 pub struct Tally {
     /// How many draws.
     pub draws: u64,

@@ -14,6 +14,7 @@
 use super::observe::{Observe, observe_each};
 use super::question::{Always, Check, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
+use crate::stats::verdict::FURTHEST;
 use crate::theory::Channel;
 
 /// The largest relative error of the mean that is still worth a promise.
@@ -21,10 +22,6 @@ const CAP: f64 = 0.05;
 
 /// The check of the mean.
 pub struct Mean;
-
-/// So many standard deviations no draw is away from its mean: by Chebyshev's inequality, with chance
-/// 1e-16 per draw.
-pub const FURTHEST: f64 = 1e8;
 
 /// Whether rounding spoils what the draws' spread says, if they have any.
 #[must_use]
