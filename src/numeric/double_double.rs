@@ -262,6 +262,30 @@ impl Div for Wide {
     }
 }
 
+/// With a double on either side, as if it were written in 32 digits.
+macro_rules! with_doubles {
+    ($($Trait:ident::$method:ident),*) => {
+        $(
+            impl $Trait<f64> for Wide {
+                type Output = Self;
+                #[inline]
+                fn $method(self, other: f64) -> Self {
+                    $Trait::$method(self, Self::from(other))
+                }
+            }
+
+            impl $Trait<Wide> for f64 {
+                type Output = Wide;
+                #[inline]
+                fn $method(self, other: Wide) -> Wide {
+                    $Trait::$method(Wide::from(self), other)
+                }
+            }
+        )*
+    };
+}
+with_doubles! { Add::add, Sub::sub, Mul::mul, Div::div }
+
 impl AddAssign<f64> for Wide {
     #[inline]
     fn add_assign(&mut self, x: f64) {
