@@ -180,9 +180,8 @@ fn whole_numbers(name: &str, seed: u64, parts: u64, law: &Law) -> Vec<Row> {
 fn one_huge_draw(effort: Effort, seed: u64) -> Vec<Row> {
     let draws = effort.of(1 << 18, 1 << 22);
     let range = format!("{draws} draws, one of them 1e3 … 1e60");
-    let mut of_variance = Row::new("variance with one huge draw", &range, Measure::Relative, BOUND);
-    let mut of_kurtosis =
-        Row::new("kurtosis with one huge draw", &range, Measure::Relative, 8.0 * BOUND);
+    let mut of_variance = Row::relative("variance with one huge draw", &range, BOUND);
+    let mut of_kurtosis = Row::relative("kurtosis with one huge draw", &range, 8.0 * BOUND);
     for power in [3_i32, 6, 9, 15, 30, 60] {
         let mut dice = Dice::new(seed, "one huge draw", power.unsigned_abs().into());
         let mut x: Vec<f64> = (0..draws).map(|_| dice.between(0.0, 1.0)).collect();
@@ -210,7 +209,7 @@ fn one_huge_draw(effort: Effort, seed: u64) -> Vec<Row> {
 /// Terms of both signs and all sizes that add up to almost nothing.
 fn cancelling(effort: Effort, seed: u64) -> Row {
     let range = "±x of 1e-12 … 1e12 and a rest of 1, any order";
-    let mut row = Row::new("compensated sum that cancels", range, Measure::Relative, 1e-15);
+    let mut row = Row::relative("compensated sum that cancels", range, 1e-15);
     for part in 0..effort.of(20, 400) {
         let mut dice = Dice::new(seed, "cancelling", part);
         let mut terms = vec![1.0];
@@ -231,7 +230,7 @@ fn cancelling(effort: Effort, seed: u64) -> Row {
 /// The same sums on any number of threads.
 fn threads(effort: Effort, seed: u64) -> Row {
     let range = "1, 2, 3, 7 threads";
-    let mut row = Row::new("bits that depend on threads", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("bits that depend on threads", range);
     let parts = effort.of(4, 32);
     let sums = |threads| -> Option<String> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;

@@ -11,9 +11,9 @@
 //!
 //! Where nothing is absorbed and the black sphere is as bright as the sky, J = 1 everywhere, whatever σ_t.
 
-use super::ordinates::{directions, roots, solved};
-use super::rods::{of_stated, share};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::ordinates::{directions, roots, solved_pivoted};
+use super::trial::{Dice, Trial, share};
+use super::{Effort, Row, in_parts};
 use crate::estimators::sphere::BLURRED;
 use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
@@ -21,7 +21,6 @@ use crate::theory::sphere::ball::Ball;
 use crate::theory::sphere::shells::{Centre, Resolution};
 use crate::theory::sphere::{Asked, Lights, answers, point};
 
-const PARTS: u64 = 16;
 /// Directions of the ordinates.
 const ORDINATES: usize = 64;
 /// Places and rays in one ball.
@@ -32,15 +31,22 @@ const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "balls", part);
+    in_parts(16, "balls", seed, |part| {
+        let number = part.number;
         let few = |full: bool, quick: bool| u32::from(effort.of(quick, full));
-        let mut rows = even(dice, effort.of(u32::from(part == 0), 2));
-        rows.push(white(dice, few(true, part == 1)));
+        let range = "homogeneous, σ_t R = 1e-2 … 20; discrete ordinates, 32 digits";
+        let rows = ["mean intensity in a ball", "radiance of a ball"];
+        let trials = effort.of(u32::from(number == 0), 2);
+        part.run(trials, rows.map(|what| Row::stated(what, range)), even);
+        let range = "radial σ_t, black spheres 0.01 … 0.95 R, a = 1; J = 1";
+        part.run(few(true, number == 1), [Row::stated("white ball in white light", range)], white);
         // One ball in ten is known too badly to be compared: three are enough for a row.
-        rows.push(finer(dice, few(part % 2 == 0, (1..4).contains(&part))));
-        rows.push(sources(dice, few(part % 8 == 3, part == 3)));
-        rows
+        let trials = few(number % 2 == 0, (1..4).contains(&number));
+        let range = "radial σ_t, black spheres 0.01 … 0.95 R, known to 1e-4; a finer solution";
+        part.run(trials, [Row::stated("ball of any albedo", range)], finer);
+        let trials = few(number % 8 == 3, number == 3);
+        let range = "σ_t R = 1e-2 … 3; a finer solution";
+        part.run(trials, [Row::stated("point source in a ball, by order", range)], sources);
     })
 }
 
@@ -59,12 +65,13 @@ impl Even {
         let reach = Wide::from(radius);
         let faint: Vec<Wide> = roots.iter().map(|&k| (-(k * reach).scaled(1)).exp()).collect();
         let row = |&mu: &Wide| {
-            let entries = roots.iter().zip(&faint).map(|(&k, &faint)| {
-                Wide::ONE / (Wide::ONE - k * mu) - faint / (Wide::ONE + k * mu)
-            });
+            let entries = roots
+                .iter()
+                .zip(&faint)
+                .map(|(&k, &faint)| 1.0 / (1.0 - k * mu) - faint / (1.0 + k * mu));
             entries.chain([-(reach + mu)]).collect()
         };
-        let alphas = solved(cosines.iter().map(row).collect())?;
+        let alphas = solved_pivoted(cosines.iter().map(row).collect())?;
         let parts = roots.into_iter().zip(alphas).map(|(k, alpha)| [k, alpha]).collect();
         Some(Self { radius, albedo, parts })
     }
@@ -105,7 +112,7 @@ impl Even {
                 let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));
                 // From both sides of the foot.
                 let seen = (Wide::from(t - half)).exp() + (-Wide::from(t + half)).exp();
-                sum += self.albedo * mean * seen * Wide::from(weight * (pair[1] - pair[0]));
+                sum += self.albedo * mean * seen * (weight * (pair[1] - pair[0]));
             }
         }
         sum
@@ -123,37 +130,32 @@ fn place(dice: &mut Dice, core: f64) -> f64 {
 }
 
 /// Homogeneous balls under the sky.
-fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "homogeneous, σ_t R = 1e-2 … 20; discrete ordinates, 32 digits";
-    let mut mean = Row::new("mean intensity in a ball", range, Measure::OfStated, 1.0);
-    let mut radiance = Row::new("radiance of a ball", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-2.0, 1.3), share(dice).max(1e-9));
-        let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(dice, 0.0))).collect();
-        for _ in 0..4 {
-            asked.push(Asked::Radiance { offset: place(dice, 0.0), from: f64::NEG_INFINITY });
-        }
-        let extinction = move |_: f64| depth;
-        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
-        let found = answers(&ball, albedo, SKY, Resolution::COARSE, &asked);
-        // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
-        let near = if albedo == 1.0 { Wide::ONE - Wide::from(1e-20) } else { Wide::from(albedo) };
-        let exact = Even::new(depth, near, ORDINATES);
-        for (i, asked) in asked.iter().enumerate() {
-            let said = || format!("σ_t R = {depth:e}, a = {albedo:e}, {asked:?}");
-            let row = if i < ASKED { &mut mean } else { &mut radiance };
-            let Some((found, exact)) = found.as_ref().zip(exact.as_ref()) else {
-                row.see(f64::NAN, said);
-                continue;
-            };
-            let exact = match *asked {
-                Asked::Mean(r) => exact.mean(r * depth),
-                Asked::Radiance { offset, .. } => exact.radiance(offset * depth),
-            };
-            row.see(of_stated(found[i], exact), said);
-        }
+fn even(t: &mut Trial) -> Option<()> {
+    let (depth, albedo) = (t.dice.sized(-2.0, 1.3), share(t.dice).max(1e-9));
+    let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(t.dice, 0.0))).collect();
+    for _ in 0..4 {
+        asked.push(Asked::Radiance { offset: place(t.dice, 0.0), from: f64::NEG_INFINITY });
     }
-    vec![mean, radiance]
+    let extinction = move |_: f64| depth;
+    let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
+    let found = answers(&ball, albedo, SKY, Resolution::COARSE, &asked);
+    // At a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
+    let near = if albedo == 1.0 { 1.0 - Wide::from(1e-20) } else { Wide::from(albedo) };
+    let solutions = found.zip(Even::new(depth, near, ORDINATES));
+    for (i, asked) in asked.iter().enumerate() {
+        t.place = format!("σ_t R = {depth:e}, a = {albedo:e}, {asked:?}");
+        let row = usize::from(i >= ASKED);
+        let Some((found, exact)) = &solutions else {
+            t.see(row, f64::NAN);
+            continue;
+        };
+        let exact = match *asked {
+            Asked::Mean(r) => exact.mean(r * depth),
+            Asked::Radiance { offset, .. } => exact.radiance(offset * depth),
+        };
+        t.stated(row, found[i], exact);
+    }
+    Some(())
 }
 
 /// σ_t of a ball of radius 1: a polynomial of r², or a Gaussian.
@@ -192,21 +194,20 @@ fn questions(dice: &mut Dice, core: f64) -> Vec<Asked> {
 }
 
 /// Where nothing can be seen.
-fn white(dice: &mut Dice, trials: u32) -> Row {
-    let range = "radial σ_t, black spheres 0.01 … 0.95 R, a = 1; J = 1";
-    let mut row = Row::new("white ball in white light", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let ((said, extinction), (centre, core)) = (field(dice), centre(dice));
-        let asked = questions(dice, core);
-        let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
-        let lights = Lights { environment: 1.0, core: 1.0 };
-        let found = answers(&ball, 1.0, lights, Resolution::COARSE, &asked);
-        for (i, asked) in asked.iter().enumerate() {
-            let error = found.as_ref().map_or(f64::NAN, |found| of_stated(found[i], Wide::ONE));
-            row.see(error, || format!("σ_t = {said}, {centre:?}, {asked:?}"));
+fn white(t: &mut Trial) -> Option<()> {
+    let ((said, extinction), (centre, core)) = (field(t.dice), centre(t.dice));
+    let asked = questions(t.dice, core);
+    let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
+    let lights = Lights { environment: 1.0, core: 1.0 };
+    let found = answers(&ball, 1.0, lights, Resolution::COARSE, &asked);
+    for (i, asked) in asked.iter().enumerate() {
+        t.place = format!("σ_t = {said}, {centre:?}, {asked:?}");
+        match &found {
+            Some(found) => t.stated(0, found[i], Wide::ONE),
+            None => t.see(0, f64::NAN),
         }
     }
-    row
+    Some(())
 }
 
 /// Nodes, directions and grading of which the answers are good to a small part of what is stated.
@@ -214,67 +215,58 @@ const FINER: Resolution =
     Resolution { nodes: 9, directions: 9, surface: 11, core: 14, centre: 23, chance: 1e-10 };
 
 /// Other albedos and lights, by a finer solution.
-fn finer(dice: &mut Dice, trials: u32) -> Row {
-    let range = "radial σ_t, black spheres 0.01 … 0.95 R, known to 1e-4; a finer solution";
-    let mut row = Row::new("ball of any albedo", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let ((said, extinction), (centre, core)) = (field(dice), centre(dice));
-        let albedo = share(dice);
-        let mut asked = questions(dice, core);
-        asked.extend(questions(dice, core));
-        let lights = if core > 0.0 { Lights { environment: 0.0, core: 1.0 } } else { SKY };
-        let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
-        let found = answers(&ball, albedo, lights, Resolution::COARSE, &asked);
-        let fine = answers(&ball, albedo, lights, FINER, &asked);
-        let Some((found, fine)) = found.zip(fine) else {
-            row.see(f64::NAN, || format!("σ_t = {said}, a = {albedo:e}, {centre:?}"));
-            continue;
-        };
-        for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
-            let said = || format!("σ_t = {said}, a = {albedo:e}, {centre:?}, {asked:?}");
-            // Nobody draws against an answer that is known no better.
-            if found.error > BLURRED * found.value {
-                row.skip(said);
-            } else {
-                row.see(of_stated(found, Wide::from(fine.value)), said);
-            }
+fn finer(t: &mut Trial) -> Option<()> {
+    let ((said, extinction), (centre, core)) = (field(t.dice), centre(t.dice));
+    let albedo = share(t.dice);
+    let mut asked = questions(t.dice, core);
+    asked.extend(questions(t.dice, core));
+    let lights = if core > 0.0 { Lights { environment: 0.0, core: 1.0 } } else { SKY };
+    let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
+    let of = |resolution| answers(&ball, albedo, lights, resolution, &asked);
+    let said = format!("σ_t = {said}, a = {albedo:e}, {centre:?}");
+    let Some((found, fine)) = of(Resolution::COARSE).zip(of(FINER)) else {
+        t.place = said;
+        t.see(0, f64::NAN);
+        return Some(());
+    };
+    for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
+        t.place = format!("{said}, {asked:?}");
+        // Nobody draws against an answer that is known no better.
+        if found.error > BLURRED * found.value {
+            t.skip(0);
+        } else {
+            t.stated(0, found, Wide::from(fine.value));
         }
     }
-    row
+    Some(())
 }
 
 /// A point source at the centre, order by order.
-fn sources(dice: &mut Dice, trials: u32) -> Row {
-    let range = "σ_t R = 1e-2 … 3; a finer solution";
-    let mut row = Row::new("point source in a ball, by order", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-2.0, 0.5), dice.between(0.1, 1.0));
-        let extinction = move |_: f64| depth;
-        let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
-        let offsets: Vec<f64> = (0..4 * ASKED).map(|_| dice.sized(-2.0, -0.01)).collect();
-        let of = |resolution| point::orders(&ball, albedo, &offsets, 3, resolution);
-        let (found, fine) = (of(Resolution::COARSE), of(FINER));
-        let Some((found, fine)) = found.zip(fine) else {
-            row.skip(|| format!("σ_t R = {depth:e}"));
-            continue;
-        };
-        for ((offset, found), fine) in offsets.iter().zip(found).zip(fine) {
-            for (order, (found, fine)) in found.into_iter().zip(fine).enumerate() {
-                let said = || format!("order {order}, σ_t R = {depth:e}, at {offset:e}");
-                row.see(of_stated(found, Wide::from(fine.value)), said);
-            }
+fn sources(t: &mut Trial) -> Option<()> {
+    let (depth, albedo) = (t.dice.sized(-2.0, 0.5), t.dice.between(0.1, 1.0));
+    let extinction = move |_: f64| depth;
+    let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
+    let offsets: Vec<f64> = (0..4 * ASKED).map(|_| t.dice.sized(-2.0, -0.01)).collect();
+    t.place = format!("σ_t R = {depth:e}");
+    let of = |resolution| point::orders(&ball, albedo, &offsets, 3, resolution);
+    let all = of(Resolution::COARSE)?.into_iter().zip(of(FINER)?);
+    for (offset, (found, fine)) in offsets.iter().zip(all) {
+        for (order, (found, fine)) in found.into_iter().zip(fine).enumerate() {
+            t.place = format!("order {order}, σ_t R = {depth:e}, at {offset:e}");
+            t.stated(0, found, Wide::from(fine.value));
         }
     }
-    row
+    Some(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stress::trial::of_stated;
 
     #[test]
     fn ordinates_see_nothing_in_a_white_ball() {
-        let even = Even::new(2.0, Wide::ONE - Wide::from(1e-20), ORDINATES).expect("solved");
+        let even = Even::new(2.0, 1.0 - Wide::from(1e-20), ORDINATES).expect("solved");
         for r in [1e-3, 1.0, 1.999_999] {
             assert!((even.mean(r).value() - 1.0).abs() < 1e-11, "{r}");
         }

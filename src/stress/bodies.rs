@@ -1,6 +1,6 @@
 //! Balls and boxes, and integrals over them in 32 digits.
 
-use super::Dice;
+use super::trial::Dice;
 use crate::geometry::Point;
 use crate::numeric::Wide;
 
@@ -39,9 +39,7 @@ impl Body {
     pub(super) fn centre(&self) -> [Wide; 3] {
         match self {
             Self::Ball(centre, _) => centre.map(Wide::from),
-            Self::Box(low, high) => {
-                [0, 1, 2].map(|i| (Wide::from(low[i]) + Wide::from(high[i])).scaled(-1))
-            }
+            Self::Box(low, high) => [0, 1, 2].map(|i| (Wide::from(low[i]) + high[i]).scaled(-1)),
         }
     }
 
@@ -68,7 +66,6 @@ impl Body {
 
     /// `∫ dV` and `∫ h dV` over what lies below a height along an axis.
     pub(super) fn under(&self, axis: [f64; 3], height: Wide) -> [Wide; 2] {
-        let two = |n: f64| Wide::from(n);
         match self {
             Self::Ball(_, radius) => {
                 let (reach, middle) = (Wide::from(*radius), dot(axis, self.centre()));
@@ -80,7 +77,7 @@ impl Body {
                 };
                 // π ∫ (R² − h²)(1, h)
                 let square = reach * reach;
-                let part = |h: Wide| square * h - h.powi(3) / two(3.0);
+                let part = |h: Wide| square * h - h.powi(3) / 3.0;
                 let first = part(h) - part(-reach);
                 let second = (square * h * h).scaled(-1) - h.powi(4).scaled(-2)
                     + square * square.scaled(-2)
@@ -111,8 +108,8 @@ impl Body {
                         continue;
                     }
                     let odd = (0..3).filter(|&i| is_far(i)).count() % 2 == 1;
-                    let cube = u.powi(3) / two(6.0);
-                    let terms = [cube, v * cube + u.powi(4) / two(8.0)];
+                    let cube = u.powi(3) / 6.0;
+                    let terms = [cube, v * cube + u.powi(4) / 8.0];
                     for (sum, term) in sums.iter_mut().zip(terms) {
                         *sum += if odd { -term } else { term };
                     }
@@ -129,12 +126,12 @@ impl Body {
             Self::Ball(_, radius) => {
                 let square: Wide = k.iter().map(|&k| Wide::product(k, k)).sum();
                 let cube = Wide::from(*radius).powi(3) * Wide::PI.scaled(2);
-                cube * over(square.sqrt() * Wide::from(*radius))
+                cube * over(square.sqrt() * *radius)
             }
             Self::Box(low, high) => {
                 let edge = |i: usize| {
-                    let length = Wide::from(high[i]) - Wide::from(low[i]);
-                    length * mean((length * Wide::from(k[i])).scaled(-1))
+                    let length = Wide::from(high[i]) - low[i];
+                    length * mean((length * k[i]).scaled(-1))
                 };
                 edge(0) * edge(1) * edge(2)
             }
@@ -143,7 +140,7 @@ impl Body {
 }
 
 pub(super) fn dot(k: [f64; 3], p: [Wide; 3]) -> Wide {
-    k.iter().zip(p).map(|(&k, p)| Wide::from(k) * p).sum()
+    k.iter().zip(p).map(|(&k, p)| k * p).sum()
 }
 
 /// A series in x² by its first term and the divisors of those that follow.
@@ -151,7 +148,7 @@ fn series(first: Wide, x: Wide, ratio: impl Fn(f64) -> f64) -> Wide {
     let square = x * x;
     let (mut term, mut sum) = (first, first);
     for n in 1..24_i32 {
-        term = term * square / Wide::from(ratio(f64::from(n)));
+        term = term * square / ratio(f64::from(n));
         sum += term;
     }
     sum
@@ -168,7 +165,7 @@ pub(super) fn sinhc(x: Wide) -> Wide {
 /// `(q cosh q − sinh q)/q³`.
 pub(super) fn sinh_over(q: Wide) -> Wide {
     if q.high < 1.0 {
-        return series(Wide::ONE / Wide::from(3.0), q, |n| 2.0 * n * (2.0 * n + 3.0));
+        return series(Wide::ONE / 3.0, q, |n| 2.0 * n * (2.0 * n + 3.0));
     }
     let (up, down) = (q.exp(), (-q).exp());
     (q * (up + down) - (up - down)).scaled(-1) / q.powi(3)
@@ -185,7 +182,7 @@ pub(super) fn sinc(x: Wide) -> Wide {
 /// `(sin q − q cos q)/q³`.
 pub(super) fn sine_over(q: Wide) -> Wide {
     if q.high < 1.0 {
-        return series(Wide::ONE / Wide::from(3.0), q, |n| -2.0 * n * (2.0 * n + 3.0));
+        return series(Wide::ONE / 3.0, q, |n| -2.0 * n * (2.0 * n + 3.0));
     }
     let [sine, cosine] = q.sin_cos();
     (sine - q * cosine) / q.powi(3)

@@ -10,6 +10,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use super::series::{coefficient, value};
 use crate::numeric::Wide;
 
 /// Terms of a series: at a fifth of its radius, 5⁻²⁸ = 3e-20 of the largest.
@@ -60,7 +61,7 @@ pub struct Chain {
 /// arsinh, of the size of its argument.
 pub fn arsinh(x: Wide) -> Wide {
     let size = x.abs();
-    let near = (size + size * size / (Wide::ONE + (Wide::ONE + size * size).sqrt())).ln_1p();
+    let near = (size + size * size / (1.0 + (1.0 + size * size).sqrt())).ln_1p();
     if x.high < 0.0 { -near } else { near }
 }
 
@@ -68,7 +69,7 @@ impl Chain {
     /// On a ray from 0.
     pub fn new(distance: f64, foot: f64, length: f64) -> Self {
         let distance = Wide::from(distance);
-        let ends = [0.0, length].map(|s| arsinh((Wide::from(s) - Wide::from(foot)) / distance));
+        let ends = [0.0, length].map(|s| arsinh((Wide::from(s) - foot) / distance));
         Self { distance, foot, ends, kernels: Vec::new(), functionals: Vec::new() }
     }
 
@@ -125,7 +126,7 @@ impl Chain {
             let mut step = (SHARE * at.high.hypot(FRAC_PI_2)).min(1.0);
             let radius = self.distance.high * at.high.abs().cosh();
             step = step.min(STEEPEST / (highest + steepest * radius * step.exp()));
-            let next = at - Wide::from(step);
+            let next = at - step;
             let next = if next.high > begin.high { next } else { begin };
             self.continued(values, [at, next - at], [&wanted, &used]);
             at = next;
@@ -140,12 +141,12 @@ impl Chain {
         for n in 0..TERMS {
             let pair = if n % 2 == 0 { [cosh, sinh] } else { [sinh, cosh] };
             [radius[n], along[n]] = pair.map(|x| x * factor);
-            factor = factor / Wide::from((n + 1) as f64);
+            factor = factor / (n + 1) as f64;
         }
         let mut tanh = zero();
         tanh[0] = sinh / cosh;
         for n in 0..TERMS - 1 {
-            let one = if n == 0 { Wide::ONE } else { Wide::default() };
+            let one = if n == 0 { 1.0 } else { 0.0 };
             tanh[n + 1] = (one - coefficient(&tanh, &tanh, n)) * share(n);
         }
         let kernel = |(&(power, loss), &used): (&(i32, Wide), &bool)| {
@@ -154,9 +155,9 @@ impl Chain {
             }
             let power = power + 1;
             let raised = cosh.powi(power.unsigned_abs());
-            let raised = if power < 0 { Wide::ONE / raised } else { raised };
+            let raised = if power < 0 { 1.0 / raised } else { raised };
             let rate: Series =
-                std::array::from_fn(|n| Wide::from(f64::from(power)) * tanh[n] - loss * along[n]);
+                std::array::from_fn(|n| f64::from(power) * tanh[n] - loss * along[n]);
             let mut series = zero();
             series[0] = raised * (-(loss * cosh)).exp();
             for n in 0..TERMS - 1 {
@@ -167,13 +168,13 @@ impl Chain {
         let kernels: Vec<Series> = self.kernels.iter().zip(used).map(kernel).collect();
         let mut all: Vec<Series> = Vec::with_capacity(values.len());
         let functionals = self.functionals.iter().zip(wanted);
-        for ((Functional { rate, terms }, &is_wanted), value) in functionals.zip(values) {
+        for ((Functional { rate, terms }, &is_wanted), at_end) in functionals.zip(values) {
             let mut series = zero();
             if !is_wanted {
                 all.push(series);
                 continue;
             }
-            series[0] = *value;
+            series[0] = *at_end;
             for n in 0..TERMS - 1 {
                 let mut sum = Wide::default();
                 if rate.high != 0.0 {
@@ -186,7 +187,7 @@ impl Chain {
                 }
                 series[n + 1] = sum * share(n);
             }
-            *value = series.iter().rev().fold(Wide::default(), |sum, &a| sum * step + a);
+            *at_end = value(&series, step);
             all.push(series);
         }
     }
@@ -198,12 +199,7 @@ fn zero() -> Series {
 
 /// 1/(n + 1).
 fn share(n: usize) -> Wide {
-    Wide::ONE / Wide::from((n + 1) as f64)
-}
-
-/// Of a product.
-fn coefficient(a: &Series, b: &Series, n: usize) -> Wide {
-    (0..=n).map(|i| a[i] * b[n - i]).sum()
+    Wide::ONE / (n + 1) as f64
 }
 
 #[cfg(test)]

@@ -8,14 +8,16 @@
 //! (n + 1) aₙ₊₁ = (1 − ρ^k − n) aₙ − ρ^k [g_k]ₙ,   m_k = g_k + A_k
 //! ```
 
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::series::{coefficient, value};
+use super::text::{self, one_line};
+use super::trial::{Trial, central};
+use super::{Effort, Row, in_parts};
 use crate::estimators::transmittance::next_flight::NextFlight;
 use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
 use crate::numeric::Wide;
+use crate::theory::Mesh;
 use crate::theory::volterra::{self, Source, binomial};
-use crate::theory::{Mesh, Moments};
 
-const PARTS: u64 = 16;
 /// Terms of a series: at a quarter of its radius, 4⁻⁴⁸ = 1e-29 of the largest.
 const TERMS: usize = 48;
 /// The moments that are compared.
@@ -24,75 +26,45 @@ const ORDERS: usize = 4;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    let trials = effort.of(1, 40);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "collided", part);
-        let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
-        let row = |what| Row::new(what, range, Measure::OfStated, 1.0);
-        let mut rows = ["variance", "fourth moment"]
-            .map(|what| row(format!("{what} of next-flight and MIS")))
-            .to_vec();
-        for _ in 0..trials {
-            trial(dice, &mut rows);
-        }
-        rows
-    })
+    let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
+    let rows = ["variance", "fourth moment"]
+        .map(|what| Row::stated(format!("{what} of next-flight and MIS"), range));
+    in_parts(16, "collided", seed, |part| part.run(effort.of(1, 40), rows.clone(), trial))
 }
 
-fn trial(dice: &mut Dice, rows: &mut [Row]) {
-    let layers = 1 + dice.below(4);
+fn trial(t: &mut Trial) -> Option<()> {
+    let layers = 1 + t.dice.below(4);
     let mut breaks = vec![0.0];
     for _ in 0..layers {
-        breaks.push(breaks[breaks.len() - 1] + dice.between(0.1, 1.0));
+        breaks.push(breaks[breaks.len() - 1] + t.dice.between(0.1, 1.0));
     }
-    let sampling = dice.sized(-1.0, 1.08) / breaks[layers];
-    let values: Vec<f64> = (0..layers).map(|_| sampling * dice.between(0.0, 1.7)).collect();
+    let sampling = t.dice.sized(-1.0, 1.08) / breaks[layers];
+    let values: Vec<f64> = (0..layers).map(|_| sampling * t.dice.between(0.0, 1.7)).collect();
     let text = format!(
         "medium.piecewise-constant = {{ breaks = {breaks:?}, values = {values:?} }}\n\
          span = [0, {:e}]",
         breaks[layers]
     );
-    let place = |name: &str| format!("{name}, σ̂ = {sampling:e}, {}", text.replace('\n', ", "));
-    let Some(medium) = text::medium(&text) else {
-        for row in rows.iter_mut() {
-            row.skip(|| place("not read"));
-        }
-        return;
-    };
-    let mesh = Mesh::new(medium);
+    t.place = format!("not read, σ̂ = {sampling:e}, {}", one_line(&text));
+    let mesh = Mesh::new(text::medium(&text)?);
     let sources: [(&str, &dyn Source, bool); 2] =
         [("next-flight", &NextFlight, false), ("unidirectional-mis", &UnidirectionalMis, true)];
     for (name, source, is_shared) in sources {
+        t.place = format!("{name}, σ̂ = {sampling:e}, {}", one_line(&text));
         let found = volterra::predict(&mesh, sampling, source).channels[0].moments;
-        let Some(Moments { relative, error, .. }) = found else {
-            for row in rows.iter_mut() {
-                row.skip(|| place(name));
-            }
-            continue;
-        };
-        let raw = raw(&breaks, &values, sampling, is_shared);
-        let exact = central(raw, raw[0]);
-        for ((row, found), exact) in rows.iter_mut().zip([relative[0], relative[2]]).zip(exact) {
-            row.see(exact.relative_error(found) / error, || place(name));
-        }
+        t.moments(0, found, |_| {
+            let raw = raw(&breaks, &values, sampling, is_shared);
+            central(raw, raw[0])
+        });
     }
-}
-
-/// From raw moments `m₂ − m₁²` and the fourth central moment, in a unit.
-pub(super) fn central([m1, m2, m3, m4]: [Wide; ORDERS], unit: Wide) -> [Wide; 2] {
-    let n = |x: f64| Wide::from(x);
-    let [one, two, three, four] =
-        [m1, m2 / unit, m3 / (unit * unit), m4 / (unit * unit * unit)].map(|moment| moment / unit);
-    let square = one * one;
-    let fourth = four - n(4.0) * three * one + n(6.0) * two * square - n(3.0) * square * square;
-    [two - square, fourth]
+    Some(())
 }
 
 /// A power series in t, cut off.
 type Series = Vec<Wide>;
 
 fn product(a: &Series, b: &Series) -> Series {
-    (0..TERMS).map(|n| (0..=n).map(|i| a[i] * b[n - i]).sum()).collect()
+    (0..TERMS).map(|n| coefficient(a, b, n)).collect()
 }
 
 /// `v` and what is added at a collision, around `v₀`: `v` or `v/(1 + v)`.
@@ -103,7 +75,7 @@ fn parts(centre: Wide, is_shared: bool) -> [Series; 2] {
         return [v.clone(), v];
     }
     // 1/(1 + v₀ + v₀t)
-    let below = Wide::ONE / (Wide::ONE + centre);
+    let below = 1.0 / (1.0 + centre);
     let mut inverse = vec![below];
     for n in 1..TERMS {
         inverse.push(-(inverse[n - 1] * centre * below));
@@ -115,16 +87,15 @@ fn parts(centre: Wide, is_shared: bool) -> [Series; 2] {
 /// `g_k` without and with what comes later, `A_1 … A_{k−1}`.
 fn added(k: usize, v: &Series, powers: &[Series], later: &[Series], is_shared: bool) -> Series {
     let mut sum = powers[k].clone();
+    let mut add = |factor: f64, more: Series| {
+        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += factor * more);
+    };
     if is_shared {
         // v(2u)^k + (1 − v)u^k
-        let more = product(v, &powers[k]);
-        let factor = Wide::from(2f64.powi(i32::try_from(k).unwrap_or(0)) - 1.0);
-        sum.iter_mut().zip(more).for_each(|(sum, more)| *sum += factor * more);
+        add(2f64.powi(i32::try_from(k).unwrap_or(0)) - 1.0, product(v, &powers[k]));
     }
     for j in 1..k {
-        let mixed = product(&powers[k - j], &later[j - 1]);
-        let ways = Wide::from(binomial(k, j));
-        sum.iter_mut().zip(mixed).for_each(|(sum, mixed)| *sum += ways * mixed);
+        add(binomial(k, j), product(&powers[k - j], &later[j - 1]));
     }
     sum
 }
@@ -132,20 +103,16 @@ fn added(k: usize, v: &Series, powers: &[Series], later: &[Series], is_shared: b
 /// `m_1 … m_4` at the beginning.
 fn raw(breaks: &[f64], values: &[f64], sampling: f64, is_shared: bool) -> [Wide; ORDERS] {
     let end = Wide::from(breaks[breaks.len() - 1]);
-    let rate = Wide::from(sampling);
     let mut after = [Wide::default(); ORDERS];
     let mut centre = Wide::ONE;
-    for (pair, &value) in breaks.windows(2).zip(values).rev() {
-        let target = (-(rate * (end - Wide::from(pair[0])))).exp();
-        let rho = Wide::ONE - Wide::from(value) / rate;
+    for (pair, &value_here) in breaks.windows(2).zip(values).rev() {
+        let target = (-(sampling * (end - pair[0]))).exp();
+        let rho = 1.0 - Wide::from(value_here) / sampling;
         while target.high < centre.high {
-            let next = centre * Wide::from(0.75);
+            let next = centre * 0.75;
             let next = if next.high > target.high { next } else { target };
-            let t = next / centre - Wide::ONE;
             let series = continued(centre, rho, after, is_shared);
-            after = std::array::from_fn(|k| {
-                series[k].iter().rev().fold(Wide::default(), |sum, &a| sum * t + a)
-            });
+            after = std::array::from_fn(|k| value(&series[k], next / centre - 1.0));
             centre = next;
         }
     }
@@ -176,9 +143,9 @@ fn continued(centre: Wide, rho: Wide, values: [Wide; ORDERS], is_shared: bool) -
         let source = added(all.len() + 1, &v, &powers, &all, is_shared);
         let mut series = vec![value];
         for n in 0..TERMS - 1 {
-            let at = Wide::from(n as f64);
-            let sum = (Wide::ONE - kept - at) * series[n] - kept * source[n];
-            series.push(sum / (at + Wide::ONE));
+            let at = n as f64;
+            let sum = (1.0 - kept - at) * series[n] - kept * source[n];
+            series.push(sum / (at + 1.0));
         }
         all.push(series);
     }

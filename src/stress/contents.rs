@@ -13,14 +13,15 @@
 
 use super::bodies::{Body, dot, sinc, sine_over, sinh_over, sinhc};
 use super::tails::normal_tail;
-use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
+use super::text;
+use super::trial::{Dice, Trial, beyond_rounding};
+use super::{Effort, Row, in_parts};
 use crate::geometry::Point;
 use crate::media::Volume;
-use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Span, Wide};
 use crate::theory::space::content;
 
-const PARTS: u64 = 16;
 /// Where fields jump across chords: so that a thousand of them take seconds, not minutes.
 const FEW_CHORDS: f64 = 4e3;
 
@@ -28,19 +29,18 @@ const FEW_CHORDS: f64 = 4e3;
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(2, 64);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "contents", part);
-        vec![
-            smooth(dice, trials),
-            layers(dice, trials, FEW_CHORDS, "layers at any angle, 4e3 chords"),
-            layers(
-                dice,
-                effort.of(u32::from(part == 0), 1),
-                content::MOST_CHORDS,
-                "layers at any angle, 3e5 chords",
-            ),
-            cells(dice, trials),
-        ]
+    in_parts(16, "contents", seed, |part| {
+        let range = "smooth fields of five kinds, balls and boxes";
+        part.run(trials, [Row::stated("∫σ_t dV, closed form", range)], smooth);
+        let few = effort.of(u32::from(part.number == 0), 1);
+        for (trials, chords, range) in [
+            (trials, FEW_CHORDS, "layers at any angle, 4e3 chords"),
+            (few, content::MOST_CHORDS, "layers at any angle, 3e5 chords"),
+        ] {
+            part.run(trials, [Row::stated("∫σ_t dV, layers", range)], |t| layers(t, chords));
+        }
+        let range = "grids and noise over boxes, 4e3 chords; by cells";
+        part.run(trials, [Row::stated("∫σ_t dV, cells", range)], cells);
     })
 }
 
@@ -58,7 +58,7 @@ fn exponential(dice: &mut Dice) -> (String, Wide) {
         "volume.exponential = {{ extinction = {sigma:e}, rate = {rate:e}, axis = {along:?}, {} }}",
         body.text()
     );
-    (field, exact * Wide::from(sigma))
+    (field, exact * sigma)
 }
 
 fn sines(dice: &mut Dice) -> (String, Wide) {
@@ -66,9 +66,9 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
     let (base, size) = (dice.sized(-3.0, 3.0), dice.sized(-2.0, 1.3) / body.size());
     let (amplitude, phase) = (dice.between(-1.0, 1.0) * base, dice.between(-3.0, 3.0));
     let k = [0; 3].map(|_| size * dice.between(-1.0, 1.0));
-    let [sine, _] = (dot(k, body.centre()) + Wide::from(phase)).sin_cos();
-    let waves = Wide::from(amplitude) * sine * body.wave(k, sinc, sine_over);
-    let even = Wide::from(base) * body.wave([0.0; 3], sinc, sine_over);
+    let [sine, _] = (dot(k, body.centre()) + phase).sin_cos();
+    let waves = amplitude * sine * body.wave(k, sinc, sine_over);
+    let even = base * body.wave([0.0; 3], sinc, sine_over);
     let field = format!(
         "volume.sines = {{ base = {base:e}, amplitudes = [{amplitude:e}], vectors = [{k:?}], \
          phases = [{phase:e}], {} }}",
@@ -84,7 +84,7 @@ fn share(a: Wide, b: Wide) -> Wide {
     } else if b.high < 0.0 {
         normal_tail(-b) - normal_tail(-a)
     } else {
-        Wide::ONE - normal_tail(-a) - normal_tail(b)
+        1.0 - normal_tail(-a) - normal_tail(b)
     }
 }
 
@@ -105,7 +105,7 @@ fn gaussian(dice: &mut Dice) -> (String, Wide) {
         }
         Body::Box(low, high) => {
             let edge = |i: usize| {
-                let z = |x: f64| (Wide::from(x) - Wide::from(centre[i])) / w;
+                let z = |x: f64| (Wide::from(x) - centre[i]) / w;
                 share(z(low[i]), z(high[i])) * Wide::PI.scaled(1).sqrt() * w
             };
             edge(0) * edge(1) * edge(2)
@@ -115,7 +115,7 @@ fn gaussian(dice: &mut Dice) -> (String, Wide) {
         "volume.gaussian = {{ peak = {peak:e}, centre = {centre:?}, width = {width:e}, {} }}",
         body.text()
     );
-    (field, exact * Wide::from(peak))
+    (field, exact * peak)
 }
 
 fn radial(dice: &mut Dice) -> (String, Wide) {
@@ -125,7 +125,7 @@ fn radial(dice: &mut Dice) -> (String, Wide) {
     let mut cs: Vec<f64> = (0..count).map(|_| size * dice.between(-0.3, 1.0)).collect();
     cs[0] = size;
     let powers = cs.iter().zip(1_i32..);
-    let sum: Wide = powers.map(|(&c, k)| Wide::from(c) / Wide::from(f64::from(2 * k + 1))).sum();
+    let sum: Wide = powers.map(|(&c, k)| Wide::from(c) / f64::from(2 * k + 1)).sum();
     let field = format!(
         "volume.radial = {{ centre = {centre:?}, radius = {radius:e}, coefficients = {cs:?} }}"
     );
@@ -135,84 +135,69 @@ fn radial(dice: &mut Dice) -> (String, Wide) {
 fn constant(dice: &mut Dice) -> (String, Wide) {
     let (body, sigma) = (Body::of(dice), dice.sized(-9.0, 9.0));
     let field = format!("volume.constant = {{ extinction = {sigma:e}, {} }}", body.text());
-    (field, Wide::from(sigma) * body.wave([0.0; 3], sinc, sine_over))
+    (field, sigma * body.wave([0.0; 3], sinc, sine_over))
 }
 
 /// A random field as text with what it holds.
 type Field = fn(&mut Dice) -> (String, Wide);
 
 /// In units of the stated error, but for half a unit in the last place.
-fn see(row: &mut Row, field: &str, exact: Wide, chords: f64) {
-    let place = || field.to_owned();
-    let volume = text::volume(field);
-    let found = volume.and_then(|volume| content::by_chords(&*volume, chords));
-    let Some(found) = found.filter(|_| exact.high > 1e-290) else { return row.skip(place) };
-    let off = (Wide::from(found.value) - exact).abs().value();
-    row.see(beyond(off, 0.5 * f64::EPSILON * exact.high) / found.error, place);
+fn see(t: &mut Trial, field: String, exact: impl Fn(&Volume) -> Wide, chords: f64) -> Option<()> {
+    t.place = field;
+    let volume = text::volume(&t.place)?;
+    let exact = exact(&*volume);
+    let found = content::by_chords(&*volume, chords)?;
+    if exact.high <= 1e-290 {
+        return None;
+    }
+    t.see(0, beyond_rounding(found, exact));
+    Some(())
 }
 
-fn smooth(dice: &mut Dice, trials: u32) -> Row {
+fn smooth(t: &mut Trial) -> Option<()> {
     const FIELDS: [Field; 5] = [exponential, sines, gaussian, radial, constant];
-    let range = "smooth fields of five kinds, balls and boxes";
-    let mut row = Row::new("∫σ_t dV, closed form", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (field, exact) = FIELDS[dice.below(FIELDS.len())](dice);
-        see(&mut row, &field, exact, content::MOST_CHORDS);
-    }
-    row
+    let (field, exact) = FIELDS[t.dice.below(FIELDS.len())](t.dice);
+    see(t, field, |_| exact, content::MOST_CHORDS)
 }
 
 /// Layers that jump, or bend, at heights along, across and askew of the chords.
-fn layers(dice: &mut Dice, trials: u32, chords: f64, range: &str) -> Row {
-    let mut row = Row::new("∫σ_t dV, layers", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let body = Body::of(dice);
-        let tilt = dice.between(0.05, 1.5);
-        let axis = match dice.below(3) {
-            0 => [1.0, 0.0, 0.0],
-            1 => [tilt.sin(), 0.1 * tilt.sin(), tilt.cos()],
-            _ => [0; 3].map(|_| dice.sign() * dice.between(0.05, 1.0)),
-        };
-        let Some(Point(axis)) = Point(axis).normalised() else { continue };
-        let middle = dot(axis, body.centre()).value();
-        let count = 2 + dice.below(5);
-        let reach = body.reach() * dice.between(1.0, 1.3);
-        let at = |i: usize| middle + reach * (2.0 * i as f64 / count as f64 - 1.0);
-        let knots: Vec<f64> = (0..=count).map(at).collect();
-        let bends = dice.below(2);
-        let values: Vec<f64> = (0..count + bends).map(|_| dice.between(0.0, 1.0)).collect();
-        let mut exact = Wide::default();
-        for (i, pair) in knots.windows(2).enumerate() {
-            let [from, to] = [pair[0], pair[1]].map(Wide::from);
-            let [low, high] = [values[i], values[i + bends]].map(Wide::from);
-            let slope = (high - low) / (to - from);
-            let [below, above] = [from, to].map(|h| body.under(axis, h));
-            exact += (low - slope * from) * (above[0] - below[0]) + slope * (above[1] - below[1]);
-        }
-        let (name, breaks) =
-            [("piecewise-constant", "breaks"), ("piecewise-linear", "knots")][bends];
-        let field = format!(
-            "volume.{name} = {{ {breaks} = {knots:?}, values = {values:?}, axis = {axis:?}, {} }}",
-            body.text()
-        );
-        see(&mut row, &field, exact, chords);
+fn layers(t: &mut Trial, chords: f64) -> Option<()> {
+    let dice = &mut *t.dice;
+    let body = Body::of(dice);
+    let tilt = dice.between(0.05, 1.5);
+    let axis = match dice.below(3) {
+        0 => [1.0, 0.0, 0.0],
+        1 => [tilt.sin(), 0.1 * tilt.sin(), tilt.cos()],
+        _ => [0; 3].map(|_| dice.sign() * dice.between(0.05, 1.0)),
+    };
+    let Some(Point(axis)) = Point(axis).normalised() else { return Some(()) };
+    let middle = dot(axis, body.centre()).value();
+    let count = 2 + dice.below(5);
+    let reach = body.reach() * dice.between(1.0, 1.3);
+    let at = |i: usize| middle + reach * (2.0 * i as f64 / count as f64 - 1.0);
+    let knots: Vec<f64> = (0..=count).map(at).collect();
+    let bends = dice.below(2);
+    let values: Vec<f64> = (0..count + bends).map(|_| dice.between(0.0, 1.0)).collect();
+    let mut exact = Wide::default();
+    for (i, pair) in knots.windows(2).enumerate() {
+        let [from, to] = [pair[0], pair[1]].map(Wide::from);
+        let [low, high] = [values[i], values[i + bends]].map(Wide::from);
+        let slope = (high - low) / (to - from);
+        let [below, above] = [from, to].map(|h| body.under(axis, h));
+        exact += (low - slope * from) * (above[0] - below[0]) + slope * (above[1] - below[1]);
     }
-    row
+    let (name, breaks) = [("piecewise-constant", "breaks"), ("piecewise-linear", "knots")][bends];
+    let field = format!(
+        "volume.{name} = {{ {breaks} = {knots:?}, values = {values:?}, axis = {axis:?}, {} }}",
+        body.text()
+    );
+    see(t, field, |_| exact, chords)
 }
 
 /// Grids and noise over boxes: polynomials in every cell, which Gauss' rule integrates from lookups.
-fn cells(dice: &mut Dice, trials: u32) -> Row {
-    let range = "grids and noise over boxes, 4e3 chords; by cells";
-    let mut row = Row::new("∫σ_t dV, cells", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (field, planes) = if dice.below(2) == 0 { grid(dice) } else { noise(dice) };
-        let Some(volume) = text::volume(&field) else {
-            row.skip(|| field);
-            continue;
-        };
-        see(&mut row, &field, by_cells(&*volume, &planes), FEW_CHORDS);
-    }
-    row
+fn cells(t: &mut Trial) -> Option<()> {
+    let (field, planes) = if t.dice.below(2) == 0 { grid(t.dice) } else { noise(t.dice) };
+    see(t, field, |volume| by_cells(volume, &planes), FEW_CHORDS)
 }
 
 /// Planes between which a field is a polynomial, axis by axis.
@@ -262,24 +247,16 @@ fn noise(dice: &mut Dice) -> (String, Planes) {
 
 fn by_cells(volume: &Volume, planes: &Planes) -> Wide {
     let rule = GaussLegendre::new(4);
-    let nodes = |planes: &[f64]| -> Vec<[f64; 2]> {
-        let pairs = planes.windows(2);
-        let panel = |pair: &[f64]| -> Vec<[f64; 2]> {
-            let (from, length) = (pair[0], pair[1] - pair[0]);
-            let points = rule.nodes.iter().zip(&rule.weights);
-            points.map(|(x, w)| [from + length * x, length * w]).collect()
-        };
-        pairs.flat_map(panel).collect()
-    };
-    let [xs, ys, zs] = planes.each_ref().map(|planes| nodes(planes));
+    let [xs, ys, zs] = planes.each_ref().map(|planes| -> Vec<(f64, f64)> {
+        Span::between(planes).flat_map(|span| rule.on(span).collect::<Vec<_>>()).collect()
+    });
     let mut sum = Wide::default();
-    for [x, of_x] in &xs {
-        for [y, of_y] in &ys {
-            let row: Wide = zs
-                .iter()
-                .map(|[z, of_z]| Wide::product(*of_z, volume.extinction_at(Point([*x, *y, *z]))))
-                .sum();
-            sum += row * Wide::product(*of_x, *of_y);
+    for &(x, of_x) in &xs {
+        for &(y, of_y) in &ys {
+            let at = |&(z, of_z): &(f64, f64)| {
+                Wide::product(of_z, volume.extinction_at(Point([x, y, z])))
+            };
+            sum += zs.iter().map(at).sum::<Wide>() * Wide::product(of_x, of_y);
         }
     }
     sum
@@ -298,9 +275,12 @@ mod tests {
         let field =
             format!("volume.exponential = {{ extinction = 1, rate = -13.5, {} }}", body.text());
         for (factor, holds) in [(1.0, true), (1.0 + 1e-12, false)] {
-            let mut row = Row::new("q", "r", Measure::OfStated, 1.0);
-            see(&mut row, &field, exact * Wide::from(factor), content::MOST_CHORDS);
-            assert_eq!(row.holds(), holds, "{row:?}");
+            let rows = in_parts(1, "q", 1, |part| {
+                part.run(1, [Row::stated("q", "r")], |t| {
+                    see(t, field.clone(), |_| exact * factor, content::MOST_CHORDS)
+                });
+            });
+            assert_eq!(rows[0].holds(), holds, "{rows:?}");
         }
     }
 

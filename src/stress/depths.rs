@@ -2,32 +2,36 @@
 //! and those of 3-D fields without one against quadrature of their lookups.
 
 use super::tails::normal_tail;
-use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
+use super::text::{self, one_line};
+use super::trial::{Dice, Trial, beyond_rounding, of_allowed};
+use super::{Effort, Row, in_parts};
 use crate::media::Medium;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::sum::Sum;
 use crate::numeric::{Span, Wide};
 
-const PARTS: u64 = 32;
-
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(10, 300);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "depths", part);
-        let mut rows: Vec<Row> =
-            FIELDS.iter().flat_map(|field| closed(dice, trials, field)).collect();
-        rows.push(splits(dice, trials));
-        rows.push(lookups(dice, trials / 9 + 1));
-        rows
+    in_parts(32, "depths", seed, |part| {
+        for (name, range, draw) in FIELDS {
+            let name = format!("optical depth, {name}");
+            let rows = [Row::stated(&name, range), Row::relative(&name, range, 1e-9)];
+            part.run(trials, rows, |t| closed(t, draw));
+        }
+        let range = "cuts at breaks, too; stated errors and 1e-13";
+        part.run(trials, [Row::stated("optical depth, sum over splits", range)], splits);
+        let range = "Eq. 21, noise, grids; from 0 … 1e4 away; stated and 1e-13";
+        let rows = [Row::stated("optical depth in 3-D, quadrature", range)];
+        part.run(trials / 9 + 1, rows, lookups);
     })
 }
 
 /// A random field as text with its exact depth.
-type Field = (&'static str, &'static str, fn(&mut Dice) -> (String, Wide));
+type Field = fn(&mut Dice) -> (String, Wide);
 
-const FIELDS: [Field; 6] = [
+const FIELDS: [(&str, &str, Field); 6] = [
     ("constant", "σ_t = 1e-12 … 1e6, length 1e-9 … 1e9", constant),
     ("piecewise constant", "1 … 30 pieces of 1e-9 … 1e6", piecewise_constant),
     ("piecewise linear", "1 … 30 pieces of 1e-9 … 1e6", piecewise_linear),
@@ -36,33 +40,21 @@ const FIELDS: [Field; 6] = [
     ("sines", "1e-6 … 1e5 periods", sines),
 ];
 
-fn closed(dice: &mut Dice, trials: u32, &(name, range, draw): &Field) -> [Row; 2] {
-    let name = format!("optical depth, {name}");
-    let mut stated = Row::new(&name, range, Measure::OfStated, 1.0);
-    let mut relative = Row::new(&name, range, Measure::Relative, 1e-9);
-    for _ in 0..trials {
-        let (text, exact) = draw(dice);
-        let Some(medium) = text::medium(&text) else {
-            stated.see(f64::NAN, || text.clone());
-            continue;
-        };
-        let depth = medium.optical_depth(medium.span());
-        if exact.high.abs() < 1e-290 {
-            stated.skip(|| one_line(&text));
-            relative.skip(|| one_line(&text));
-            continue;
-        }
-        // The nearest double to the truth is half a unit off at best.
-        let rounding = 0.5 * f64::EPSILON * exact.high;
-        let off = (Wide::from(depth.value) - exact).abs().value();
-        stated.see(beyond(off, rounding) / depth.error, || one_line(&text));
-        relative.see(exact.relative_error(depth.value), || one_line(&text));
+fn closed(t: &mut Trial, draw: Field) -> Option<()> {
+    let (text, exact) = draw(t.dice);
+    t.place = one_line(&text);
+    let Some(medium) = text::medium(&text) else {
+        t.see(0, f64::NAN);
+        return Some(());
+    };
+    let depth = medium.optical_depth(medium.span());
+    if exact.high.abs() < 1e-290 {
+        return None;
     }
-    [stated, relative]
-}
-
-fn one_line(text: &str) -> String {
-    text.replace('\n', ", ")
+    // The nearest double to the truth is half a unit off at best.
+    t.see(0, beyond_rounding(depth, exact));
+    t.relative(1, depth.value, exact);
+    Some(())
 }
 
 fn span(dice: &mut Dice, length: f64) -> [f64; 2] {
@@ -78,7 +70,7 @@ fn constant(dice: &mut Dice) -> (String, Wide) {
     let sigma = dice.sized(-12.0, 6.0);
     let length = dice.sized(-9.0, 9.0);
     let [from, to] = span(dice, length);
-    let exact = (Wide::from(to) - Wide::from(from)) * Wide::from(sigma);
+    let exact = (Wide::from(to) - from) * sigma;
     (spanned(&format!("constant.extinction = {sigma:e}"), [from, to]), exact)
 }
 
@@ -101,19 +93,19 @@ fn ends(knots: &[f64]) -> [f64; 2] {
 }
 
 fn widths(knots: &[f64]) -> impl Iterator<Item = Wide> + '_ {
-    knots.windows(2).map(|pair| Wide::from(pair[1]) - Wide::from(pair[0]))
+    knots.windows(2).map(|pair| Wide::from(pair[1]) - pair[0])
 }
 
 fn piecewise_constant(dice: &mut Dice) -> (String, Wide) {
     let [knots, values] = pieces(dice, 0);
-    let exact = widths(&knots).zip(&values).map(|(width, &value)| width * Wide::from(value)).sum();
+    let exact = widths(&knots).zip(&values).map(|(width, &value)| width * value).sum();
     let field = format!("piecewise-constant = {{ breaks = {knots:?}, values = {values:?} }}");
     (spanned(&field, ends(&knots)), exact)
 }
 
 fn piecewise_linear(dice: &mut Dice) -> (String, Wide) {
     let [knots, values] = pieces(dice, 1);
-    let mean = |pair: &[f64]| (Wide::from(pair[0]) + Wide::from(pair[1])).scaled(-1);
+    let mean = |pair: &[f64]| (Wide::from(pair[0]) + pair[1]).scaled(-1);
     let exact = widths(&knots).zip(values.windows(2)).map(|(width, pair)| width * mean(pair)).sum();
     let field = format!("piecewise-linear = {{ knots = {knots:?}, values = {values:?} }}");
     (spanned(&field, ends(&knots)), exact)
@@ -124,16 +116,11 @@ fn exponential(dice: &mut Dice) -> (String, Wide) {
     let rate = dice.sign() * dice.sized(-12.0, 2.7) / length;
     let from = dice.between(-0.1, 0.1) * length;
     let to = from + length;
-    let (slope, way) = (Wide::from(rate), Wide::from(to) - Wide::from(from));
-    let first = (-(slope * Wide::from(from))).exp() * Wide::from(sigma);
+    let (slope, way) = (Wide::from(rate), Wide::from(to) - from);
+    let first = (-(slope * from)).exp() * sigma;
     let exact = -(-(slope * way)).exp_m1() / slope * first;
-    (
-        spanned(
-            &format!("exponential = {{ extinction = {sigma:e}, rate = {rate:e} }}"),
-            [from, to],
-        ),
-        exact,
-    )
+    let field = format!("exponential = {{ extinction = {sigma:e}, rate = {rate:e} }}");
+    (spanned(&field, [from, to]), exact)
 }
 
 fn gaussian(dice: &mut Dice) -> (String, Wide) {
@@ -143,15 +130,15 @@ fn gaussian(dice: &mut Dice) -> (String, Wide) {
     let to = from + dice.sized(-3.0, 1.5) * width;
     // Q on both sides of the foot, by reflection.
     let tail = |s: f64| {
-        let z = (Wide::from(s) - Wide::from(centre)) / Wide::from(width);
+        let z = (Wide::from(s) - centre) / width;
         if z.high < 0.0 { (normal_tail(-z), true) } else { (normal_tail(z), false) }
     };
     let share = match (tail(from), tail(to)) {
         ((a, false), (b, _)) => a - b,
         ((a, true), (b, true)) => b - a,
-        ((a, true), (b, false)) => Wide::ONE - a - b,
+        ((a, true), (b, false)) => 1.0 - a - b,
     };
-    let exact = share * Wide::PI.scaled(1).sqrt() * Wide::from(width) * Wide::from(peak);
+    let exact = share * Wide::PI.scaled(1).sqrt() * width * peak;
     let field = format!("gaussian = {{ peak = {peak:e}, centre = {centre:e}, width = {width:e} }}");
     (spanned(&field, [from, to]), exact)
 }
@@ -163,14 +150,14 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
     let [from, to] = span(dice, length);
     let frequencies = [dice.sized(-6.0, 3.0) / length, dice.sized(-1.0, 5.0) / length];
     let phases = [dice.between(0.0, 6.3), dice.between(-6.3, 0.0)];
-    let way = Wide::from(to) - Wide::from(from);
-    let mut exact = way * Wide::from(base);
+    let way = Wide::from(to) - from;
+    let mut exact = way * base;
     for ((amplitude, frequency), phase) in amplitudes.into_iter().zip(frequencies).zip(phases) {
         let cosine = |s: f64| {
-            let [_, cosine] = (Wide::product(frequency, s) + Wide::from(phase)).sin_cos();
+            let [_, cosine] = (Wide::product(frequency, s) + phase).sin_cos();
             cosine
         };
-        exact += (cosine(from) - cosine(to)) * Wide::from(amplitude) / Wide::from(frequency);
+        exact += (cosine(from) - cosine(to)) * amplitude / frequency;
     }
     let field = format!(
         "sines = {{ base = {base:e}, amplitudes = {amplitudes:?}, frequencies = {frequencies:?}, phases = {phases:?} }}"
@@ -179,35 +166,28 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
 }
 
 /// Stretches that follow each other add up, wherever the cuts are: at breaks, too.
-fn splits(dice: &mut Dice, trials: u32) -> Row {
-    let range = "cuts at breaks, too; stated errors and 1e-13";
-    let mut row = Row::new("optical depth, sum over splits", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (text, _) = FIELDS[dice.below(FIELDS.len())].2(dice);
-        let Some(medium) = text::medium(&text) else {
-            row.skip(|| one_line(&text));
-            continue;
-        };
-        let (span, breaks) = (medium.span(), medium.breaks());
-        let whole = medium.optical_depth(span);
-        let mut cuts = vec![span.from, span.to];
-        for _ in 0..=dice.below(4) {
-            cuts.push(span.from + dice.between(0.0, 1.0) * span.length());
-            if !breaks.is_empty() {
-                cuts.push(breaks[dice.below(breaks.len())]);
-            }
+fn splits(t: &mut Trial) -> Option<()> {
+    let (_, _, draw) = FIELDS[t.dice.below(FIELDS.len())];
+    let (text, _) = draw(t.dice);
+    t.place = one_line(&text);
+    let medium = text::medium(&text)?;
+    let (span, breaks) = (medium.span(), medium.breaks());
+    let whole = medium.optical_depth(span);
+    let mut cuts = vec![span.from, span.to];
+    for _ in 0..=t.dice.below(4) {
+        cuts.push(span.from + t.dice.between(0.0, 1.0) * span.length());
+        if !breaks.is_empty() {
+            cuts.push(breaks[t.dice.below(breaks.len())]);
         }
-        cuts.sort_by(f64::total_cmp);
-        let (mut sum, mut allowed) = (Sum::default(), whole.error + 1e-13 * whole.value);
-        for pair in cuts.windows(2) {
-            let part = medium.optical_depth(Span::new(pair[0], pair[1]));
-            sum.add(part.value);
-            allowed += part.error;
-        }
-        let off = (sum.value() - whole.value).abs();
-        row.see(if off == 0.0 { 0.0 } else { off / allowed }, || one_line(&text));
     }
-    row
+    cuts.sort_by(f64::total_cmp);
+    let (mut sum, mut allowed) = (Sum::default(), whole.error + 1e-13 * whole.value);
+    for part in Span::between(&cuts).map(|span| medium.optical_depth(span)) {
+        sum.add(part.value);
+        allowed += part.error;
+    }
+    t.see(0, of_allowed((sum.value() - whole.value).abs(), allowed));
+    Some(())
 }
 
 const VOLUMES: [&str; 6] = [
@@ -220,36 +200,26 @@ const VOLUMES: [&str; 6] = [
 ];
 
 /// Rays from near and far through fields in space.
-fn lookups(dice: &mut Dice, trials: u32) -> Row {
-    let range = "Eq. 21, noise, grids; from 0 … 1e4 away; stated and 1e-13";
-    let mut row = Row::new("optical depth in 3-D, quadrature", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let field = VOLUMES[dice.below(VOLUMES.len())];
-        let target = [dice.between(-6.0, 6.0), dice.between(-6.0, 6.0), dice.between(2.0, 18.0)];
-        let direction = [0; 3].map(|_| dice.between(-1.0, 1.0));
-        let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
-        let back = if dice.below(2) == 0 { 12.0 } else { dice.sized(1.5, 4.0) };
-        let origin: Vec<f64> =
-            target.iter().zip(direction).map(|(at, along)| at - back * along / norm).collect();
-        let ray = format!(
-            "{{ origin = {origin:?}, direction = {direction:?}, length = {} }}",
-            2.0 * back
-        );
-        let text = format!("volume.{field}\nray = {ray}");
-        let Some(medium) = text::medium(&text) else {
-            row.skip(|| one_line(&text));
-            continue;
-        };
-        let depth = medium.optical_depth(medium.span());
-        let found = quadrature(&medium);
-        // Lookups far from the origin are at places that are rounded.
-        let grain = 4.0 * f64::EPSILON * back * medium.support().length();
-        let allowed = depth.error + 1e-13 * depth.value + grain;
-        // A ray that misses the field has no depth, and no error to measure it by.
-        let off = (found - depth.value).abs();
-        row.see(if off == 0.0 { 0.0 } else { off / allowed }, || one_line(&text));
-    }
-    row
+fn lookups(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
+    let field = VOLUMES[dice.below(VOLUMES.len())];
+    let target = [dice.between(-6.0, 6.0), dice.between(-6.0, 6.0), dice.between(2.0, 18.0)];
+    let direction = [0; 3].map(|_| dice.between(-1.0, 1.0));
+    let norm = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let back = if dice.below(2) == 0 { 12.0 } else { dice.sized(1.5, 4.0) };
+    let origin = [0, 1, 2].map(|i| target[i] - back * direction[i] / norm);
+    let length = 2.0 * back;
+    let ray = format!("{{ origin = {origin:?}, direction = {direction:?}, length = {length} }}");
+    let text = format!("volume.{field}\nray = {ray}");
+    t.place = one_line(&text);
+    let medium = text::medium(&text)?;
+    let depth = medium.optical_depth(medium.span());
+    // Lookups far from the origin are at places that are rounded.
+    let grain = 4.0 * f64::EPSILON * back * medium.support().length();
+    let allowed = depth.error + 1e-13 * depth.value + grain;
+    // A ray that misses the field has no depth, and no error to measure it by.
+    t.see(0, of_allowed((quadrature(&medium) - depth.value).abs(), allowed));
+    Some(())
 }
 
 /// `∫σ_t` of lookups: panels between the breaks, halved until they agree.

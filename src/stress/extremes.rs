@@ -8,7 +8,8 @@
 
 use rayon::prelude::*;
 
-use super::{Effort, Measure, Row, text};
+use super::text::{self, one_line};
+use super::{Effort, Row, joined};
 use crate::harness::plan::Planned;
 use crate::harness::record::Verdict;
 use crate::harness::{Amount, Options, Plan, run, verdict};
@@ -87,8 +88,8 @@ fn see(text: &str, what: &str, seed: u64, is_drawn: bool, rows: &mut [Row; 2]) {
 
 fn pair(range: &str) -> [Row; 2] {
     [
-        Row::new("neither predicted nor refused", range, Measure::Count, 0.0),
-        Row::new("correct experiments refuted", range, Measure::Count, 0.0),
+        Row::wrong("neither predicted nor refused", range),
+        Row::wrong("correct experiments refuted", range),
     ]
 }
 
@@ -109,7 +110,7 @@ fn swept(effort: Effort, seed: u64) -> Vec<Row> {
             }
         }
     }
-    let found: Vec<[Row; 2]> = cases
+    let found = cases
         .into_par_iter()
         .map(|(depth, ratio, length)| {
             let mut rows = pair(range);
@@ -139,16 +140,10 @@ fn swept(effort: Effort, seed: u64) -> Vec<Row> {
                     see(&format!("title = \"t\"\n{problem}"), &what, seed, is_drawn, &mut rows);
                 }
             }
-            rows
+            rows.to_vec()
         })
         .collect();
     joined(found)
-}
-
-fn joined(found: Vec<[Row; 2]>) -> Vec<Row> {
-    let mut all = found.into_iter();
-    let Some(first) = all.next() else { return Vec::new() };
-    all.fold(first, |[a, b], [c, d]| [a.and(c), b.and(d)]).into()
 }
 
 /// Kinks of all parts of a problem at the same places, stretches on which nothing is, and controls that
@@ -189,20 +184,12 @@ fn at_breaks(effort: Effort, seed: u64) -> Row {
         }
     }
     let texts: Vec<String> = texts.into_iter().step_by(effort.of(8, 1)).collect();
-    let found: Vec<[Row; 2]> = texts
-        .par_iter()
-        .map(|text| {
-            let mut rows = pair(range);
-            see(text, &text.replace('\n', ", "), seed, true, &mut rows);
-            rows
-        })
-        .collect();
-    let rows = joined(found);
-    let mut rows = rows.into_iter();
-    match (rows.next(), rows.next()) {
-        (Some(sound), Some(fair)) => {
-            Row { quantity: "wrong at coinciding breaks".into(), ..sound.and(fair) }
-        }
-        _ => Row::new("wrong at coinciding breaks", range, Measure::Count, 0.0),
-    }
+    let found = texts.par_iter().map(|text| {
+        let mut rows = pair(range);
+        see(text, &one_line(text), seed, true, &mut rows);
+        rows.to_vec()
+    });
+    let both = joined(found.collect()).into_iter().reduce(Row::and);
+    let both = both.unwrap_or_else(|| Row::wrong("", range));
+    Row { quantity: "wrong at coinciding breaks".into(), ..both }
 }

@@ -9,9 +9,9 @@
 //! E[X^k] = ∫ p (σ_t S/p)^k e^{−A_k} e^{−B_k} ds,   V_k = ∫ₛ Σⱼ (k over j) σ̂ (σ_t S/σ̂)ʲ e^{−Bⱼ} w^{k−j} V_{k−j} e^{A_{k−j} − A_k} ds
 //! ```
 
-use super::collided::central;
 use super::scattering::{field, panels};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::trial::{Trial, central};
+use super::{Effort, Row, in_parts};
 use crate::media::{Control, Medium, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Span, Wide};
@@ -21,23 +21,18 @@ use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Tracking, walks};
 use crate::theory::volterra::binomial;
 
-const PARTS: u64 = 16;
 /// Panels of s, at least.
 const STEPS: u32 = 40;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "gathered", part);
-        let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
-        let mut rows = ["variance", "fourth moment"].map(|what| {
-            Row::new(format!("single scattering in fields, {what}"), range, Measure::OfStated, 1.0)
-        });
-        for _ in 0..effort.of(u32::from(part % 2 == 0), 9) {
-            trial(dice, &mut rows);
-        }
-        rows.to_vec()
+    let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
+    let rows = ["variance", "fourth moment"]
+        .map(|what| Row::stated(format!("single scattering in fields, {what}"), range));
+    in_parts(16, "gathered", seed, |part| {
+        let trials = effort.of(u32::from(part.number % 2 == 0), 9);
+        part.run(trials, rows.clone(), trial);
     })
 }
 
@@ -58,18 +53,15 @@ struct At {
     shadow: [f64; 5],
 }
 
-fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
+fn trial(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
     let (what, problem) = field(dice);
     let (scale, shadow_scale) = (dice.sized(-0.2, 0.7), dice.sized(-0.2, 0.7));
     let kind = dice.below(12);
     let share = if dice.below(2) == 0 { 0.0 } else { dice.between(0.0, 0.8) };
     let count = 1 + dice.below(8);
-    let Some(problem) = problem.filter(|problem| !problem.medium().support().is_empty()) else {
-        for row in rows {
-            row.skip(|| what.clone());
-        }
-        return;
-    };
+    t.place.clone_from(&what);
+    let problem = problem.filter(|problem| !problem.medium().support().is_empty())?;
     let support = problem.medium().support();
     let mesh = Mesh::new(problem.medium().clone());
     let largest = mesh.largest(|_, sigma| sigma).map_or(1.0, |(_, largest)| largest);
@@ -111,20 +103,10 @@ fn trial(dice: &mut Dice, rows: &mut [Row; 2]) {
             ("shared walk", points, shared(&nodes, count))
         }
     };
-    let place = || format!("{name}, σ̂ = {sampling:e}, σ_c = {held:e}, {tracking:?}, {what}");
-    match points.prediction().channels[0].moments {
-        Some(known) => {
-            let exact = central(raw.map(Wide::from), Wide::from(known.scale));
-            for (row, (exact, i)) in rows.iter_mut().zip(exact.into_iter().zip([0, 2])) {
-                row.see(exact.relative_error(known.relative[i]) / known.error, place);
-            }
-        }
-        None => {
-            for row in rows {
-                row.skip(place);
-            }
-        }
-    }
+    t.place = format!("{name}, σ̂ = {sampling:e}, σ_c = {held:e}, {tracking:?}, {what}");
+    let known = points.prediction().channels[0].moments;
+    t.moments(0, known, |scale| central(raw.map(Wide::from), Wide::from(scale)));
+    Some(())
 }
 
 /// All nodes, panel by panel.

@@ -35,7 +35,7 @@ fn before(word: u64) -> Stream {
 
 fn ends() -> Row {
     let range = "words 0, 2¹¹, 2⁶³, 2⁶⁴ − 1 and neighbours";
-    let mut row = Row::new("uniforms outside their range", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("uniforms outside their range", range);
     for near in [0, 1 << 11, 1 << 63, u64::MAX] {
         for word in [near, near.wrapping_sub(1), near.wrapping_add(1)] {
             let numbers = [before(word).uniform(), unit(&mut before(word))];
@@ -75,7 +75,7 @@ fn collisions() -> Row {
 /// Flights through σ̂ of any size: each is `−ln(u)/σ̂`.
 fn distances(effort: Effort, seed: u64) -> Row {
     let range = "σ̂ = 1e-9 … 1e9";
-    let mut row = Row::new("distance of a flight", range, Measure::Relative, 1e-15);
+    let mut row = Row::relative("distance of a flight", range, 1e-15);
     for power in -9..=9 {
         let sampling = 10f64.powi(power);
         let field = Piecewise::constant(sampling, Span::new(0.0, 40.0 / sampling));
@@ -98,7 +98,7 @@ fn distances(effort: Effort, seed: u64) -> Row {
 fn equal_distances(effort: Effort, seed: u64) -> Row {
     let range = "σ̂ = 1e-9 … 1e9";
     let name = "flights of equal length";
-    let mut row = Row::new(name, range, Measure::Improbability, 6.0);
+    let mut row = Row::improbable(name, range);
     let draws = effort.of(20_000, 1_000_000);
     for power in [-9, -3, 0, 9] {
         let sampling = 10f64.powi(power);
@@ -141,7 +141,7 @@ fn overlaps(effort: Effort, seed: u64) -> Row {
     let blocks = blocks(effort, seed);
     let words = effort.of(1 << 14, 1 << 17);
     let range = format!("{} blocks of {LANES} streams, {words} words each", blocks.len());
-    let mut row = Row::new("words that streams share", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("words that streams share", range);
     let mut marked: Vec<u64> = blocks
         .into_par_iter()
         .flat_map_iter(|streams| streams.words().take(words).filter(|word| word >> 56 == 0))
@@ -174,7 +174,7 @@ fn lagged(effort: Effort, seed: u64) -> Row {
         })
         .collect();
     let range = format!("{} pairs of streams, 32 lags", found.len());
-    let mut row = Row::new("correlation of streams", range, Measure::Improbability, 6.0);
+    let mut row = Row::improbable("correlation of streams", range);
     for pair in &found {
         let p = (pair.p_value * found.len() as f64).min(1.0);
         row.see(-p.log10(), || format!("lag {}, z = {:.2}", pair.lag, pair.z));
@@ -195,7 +195,7 @@ fn dispersion(effort: Effort, seed: u64) -> Row {
         })
         .collect();
     let range = format!("{blocks} blocks of {DRAWS} flights");
-    let mut row = Row::new("z-scores of blocks", range, Measure::Improbability, 6.0);
+    let mut row = Row::improbable("z-scores of blocks", range);
     let squares: f64 = z.iter().map(|z| z * z).sum();
     row.see(-chi_square::two_sided(squares, blocks as f64).log10(), || "their spread".to_owned());
     let neighbours = correlation::lagged(&z, &z, 1..=64).map_or(1.0, |found| found.p_value);

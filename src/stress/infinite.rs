@@ -10,13 +10,12 @@
 //!
 //! have theirs at π/2: h = 1/6 leaves 1e-26.
 
-use super::rods::{of_stated, share};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::trial::{Trial, share};
+use super::{Effort, Row, in_parts};
 use crate::numeric::{Known, Wide};
 use crate::theory::h_function::{self, h_function};
 use crate::theory::space::infinite;
 
-const PARTS: u64 = 16;
 /// Steps of t per unit.
 const STEPS: i32 = 6;
 
@@ -24,14 +23,19 @@ const STEPS: i32 = 6;
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(1, 12);
-    let nodes = cut_nodes();
-    let angles = angles();
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "infinite", part);
-        let mut rows = case(dice, trials, &nodes);
-        rows.push(totals(dice, 20 * trials));
-        rows.push(half_space(dice, trials, &angles));
-        rows
+    let (nodes, angles) = (cut_nodes(), angles());
+    in_parts(16, "infinite", seed, |part| {
+        let range = "c = 0 … 1 − 1e-15, distances 1e-8 …";
+        let rows = [
+            Row::stated("collisions within a radius", format!("{range} 1e4")),
+            Row::stated("fluence of a point source", format!("{range} 600")),
+        ];
+        part.run(trials, rows, |t| case(t, &nodes));
+        let range = "a = 0 … 1 − 1e-15, mean cosines −1 … 1";
+        part.run(20 * trials, [Row::stated("squared distance at absorption", range)], totals);
+        let (name, range) = ("Chandrasekhar's H-function", "a = 0 … 1, μ = 1e-9 … 1");
+        let rows = [Row::relative(name, range, h_function::ERROR)];
+        part.run(trials, rows, |t| half_space(t, &angles));
     })
 }
 
@@ -50,12 +54,12 @@ fn cut_nodes() -> Vec<Node> {
     // Below e⁻⁷⁶ lies 1e-33 of the integral, above e³¹ 1e-27.
     let steps = -76 * STEPS..=31 * STEPS;
     let node = |i: i32| {
-        let w = (n(f64::from(i)) / n(f64::from(STEPS))).exp();
+        let w = (n(f64::from(i)) / f64::from(STEPS)).exp();
         // tanh ln(1 + w), without the exponential.
-        let square = w * w + w.scaled(1) + n(2.0);
+        let square = w * w + w.scaled(1) + 2.0;
         let nu = (w * w + w.scaled(1)) / square;
-        let rest = ((w + Wide::ONE) / square).powi(2).scaled(2);
-        Node { y: w.ln_1p(), nu, weight: rest * w / (Wide::ONE + w) / n(f64::from(STEPS)) }
+        let rest = ((w + 1.0) / square).powi(2).scaled(2);
+        Node { y: w.ln_1p(), nu, weight: rest * w / (1.0 + w) / f64::from(STEPS) }
     };
     steps.map(node).collect()
 }
@@ -63,13 +67,13 @@ fn cut_nodes() -> Vec<Node> {
 /// `1 − (1 + x)e^{−x}`.
 fn within(x: Wide) -> Wide {
     if x.high > 1.0 {
-        return Wide::ONE - (Wide::ONE + x) * (-x).exp();
+        return 1.0 - (1.0 + x) * (-x).exp();
     }
     let (mut sum, mut power) = (Wide::default(), -x);
     for k in 2..=34 {
         let k = f64::from(k);
-        power = -(power * x) / n(k);
-        sum += power * n(k - 1.0);
+        power = -(power * x) / k;
+        sum += power * (k - 1.0);
     }
     sum
 }
@@ -87,7 +91,7 @@ fn pole(albedo: f64) -> Option<[Wide; 2]> {
     }
     // y coth y − 1 = 1/c − 1, of which 1 − c is exact; in 32 digits two steps are left to do.
     let mut y = n((0.5 * (low + high)).max((3.0 * (1.0 - albedo)).sqrt()));
-    let wanted = (Wide::ONE - c) / c;
+    let wanted = (1.0 - c) / c;
     for _ in 0..4 {
         let (sine, cosine) = hyperbolic(y);
         let f = (y * cosine - sine) / sine - wanted;
@@ -95,44 +99,36 @@ fn pole(albedo: f64) -> Option<[Wide; 2]> {
         y = y - f / slope;
     }
     let (sine, cosine) = hyperbolic(y);
-    Some([sine / cosine, Wide::ONE / (cosine * cosine)])
+    Some([sine / cosine, 1.0 / (cosine * cosine)])
 }
 
 /// sinh and cosh.
 fn hyperbolic(y: Wide) -> (Wide, Wide) {
     let grown = y.exp_m1();
-    let inverse = Wide::ONE / (grown + Wide::ONE);
-    ((grown + grown * inverse).scaled(-1), (grown + Wide::ONE + inverse).scaled(-1))
+    let inverse = 1.0 / (grown + 1.0);
+    ((grown + grown * inverse).scaled(-1), (grown + 1.0 + inverse).scaled(-1))
 }
 
-fn case(dice: &mut Dice, trials: u32, nodes: &[Node]) -> Vec<Row> {
-    let range = "c = 0 … 1 − 1e-15, distances 1e-8 … 1e4";
-    let mut inside = Row::new("collisions within a radius", range, Measure::OfStated, 1.0);
-    let range = "c = 0 … 1 − 1e-15, distances 1e-8 … 600";
-    let mut fluence = Row::new("fluence of a point source", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let albedo = share(dice).min(1.0 - 1e-15);
-        let c = n(albedo);
-        let g: Vec<Wide> = nodes
-            .iter()
-            .map(|node| {
-                let a = Wide::ONE - c * node.nu * node.y;
-                let b = Wide::PI.scaled(-1) * c * node.nu;
-                node.weight / (a * a + b * b)
-            })
-            .collect();
-        let pole = pole(albedo);
-        for _ in 0..8 {
-            let near = dice.sized(-8.0, 2.77);
-            let far = if dice.below(4) == 0 { dice.sized(0.0, 4.0) } else { near };
-            let place = |r: f64| move || format!("c = {albedo:e}, σ_t r = {r:e}");
-            let exact = collisions(n(far), nodes, &g, pole, c);
-            inside.see(of_stated(infinite::collisions_within(albedo, far), exact), place(far));
-            let exact = around(n(near), nodes, &g, pole, c);
-            fluence.see(of_stated(infinite::fluence(albedo, near), exact), place(near));
-        }
+fn case(t: &mut Trial, nodes: &[Node]) -> Option<()> {
+    let albedo = share(t.dice).min(1.0 - 1e-15);
+    let c = n(albedo);
+    let of_node = |node: &Node| {
+        let a = 1.0 - c * node.nu * node.y;
+        let b = Wide::PI.scaled(-1) * c * node.nu;
+        node.weight / (a * a + b * b)
+    };
+    let g: Vec<Wide> = nodes.iter().map(of_node).collect();
+    let pole = pole(albedo);
+    for _ in 0..8 {
+        let near = t.dice.sized(-8.0, 2.77);
+        let far = if t.dice.below(4) == 0 { t.dice.sized(0.0, 4.0) } else { near };
+        t.place = format!("c = {albedo:e}, σ_t r = {far:e}");
+        let found = infinite::collisions_within(albedo, far);
+        t.stated(0, found, collisions(n(far), nodes, &g, pole, c));
+        t.place = format!("c = {albedo:e}, σ_t r = {near:e}");
+        t.stated(1, infinite::fluence(albedo, near), around(n(near), nodes, &g, pole, c));
     }
-    vec![inside, fluence]
+    Some(())
 }
 
 fn collisions(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide) -> Wide {
@@ -154,77 +150,65 @@ fn around(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide)
     (sum + settled.unwrap_or_default()) / (Wide::PI.scaled(2) * r)
 }
 
-/// Numbers of collisions, and the square of the distance where they end.
-fn totals(dice: &mut Dice, trials: u32) -> Row {
-    let range = "a = 0 … 1 − 1e-15, mean cosines −1 … 1";
-    let mut row = Row::new("squared distance at absorption", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let albedo = share(dice).min(1.0 - 1e-15);
-        let cosine = dice.between(-1.0, 1.0);
-        let (a, g) = (n(albedo), n(cosine));
-        let exact = n(2.0) / ((Wide::ONE - a) * (Wide::ONE - a * g));
-        let found = infinite::square_at_absorption(albedo, cosine);
-        let found = Known::new(found, infinite::ROUNDING * found);
-        row.see(of_stated(found, exact), || format!("a = {albedo:e}, g = {cosine:e}"));
-    }
-    row
+/// The square of the distance where collisions end.
+fn totals(t: &mut Trial) -> Option<()> {
+    let albedo = share(t.dice).min(1.0 - 1e-15);
+    let cosine = t.dice.between(-1.0, 1.0);
+    let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - Wide::product(albedo, cosine)));
+    let found = infinite::square_at_absorption(albedo, cosine);
+    t.place = format!("a = {albedo:e}, g = {cosine:e}");
+    t.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
+    Some(())
 }
 
 /// x, its arc tangent over x, and `dx`.
 fn angles() -> Vec<[Wide; 3]> {
     let steps = -50 * STEPS..=50 * STEPS;
     let angle = |i: i32| {
-        let x = (n(f64::from(i)) / n(f64::from(STEPS))).exp();
+        let x = (n(f64::from(i)) / f64::from(STEPS)).exp();
         // What the double leaves: tan of the difference, which is the difference.
         let near = n(x.high.atan());
         let [sine, cosine] = near.sin_cos();
         let arc = near + (x * cosine - sine) / (cosine + x * sine);
-        let ratio = if x.high < 1e-8 { Wide::ONE - x * x / n(3.0) } else { arc / x };
-        [x, ratio, x / n(f64::from(STEPS))]
+        let ratio = if x.high < 1e-8 { 1.0 - x * x / 3.0 } else { arc / x };
+        [x, ratio, x / f64::from(STEPS)]
     };
     steps.map(angle).collect()
 }
 
-fn half_space(dice: &mut Dice, trials: u32, angles: &[[Wide; 3]]) -> Row {
-    let range = "a = 0 … 1, μ = 1e-9 … 1";
-    let bound = h_function::ERROR;
-    let mut row = Row::new("Chandrasekhar's H-function", range, Measure::Relative, bound);
-    for _ in 0..trials {
-        let albedo = share(dice);
-        let a = n(albedo);
-        let logs = angles.iter().map(|&[x, ratio, _]| {
-            // 1 − artan(x)/x, which cancels where x is small.
-            let bent = if x.high < 0.02 {
-                let square = x * x;
-                let terms = (1..12).rev().map(|k| {
-                    let term = Wide::ONE / n(f64::from(2 * k + 1));
-                    if k % 2 == 1 { term } else { -term }
-                });
-                terms.fold(Wide::default(), |sum, term| sum * square + term) * square
-            } else {
-                Wide::ONE - ratio
-            };
-            ((Wide::ONE - a) + a * bent).ln()
-        });
-        let logs: Vec<Wide> = logs.collect();
-        for _ in 0..8 {
-            let cosine =
-                if dice.below(3) == 0 { dice.sized(-9.0, 0.0) } else { dice.between(0.0, 1.0) };
-            let mu = n(cosine);
-            let terms = angles.iter().zip(&logs);
-            let integral: Wide =
-                terms.map(|(&[x, _, dx], &log)| log * dx / (Wide::ONE + (mu * x).powi(2))).sum();
-            let exact = (-(mu * integral / Wide::PI)).exp();
-            let found = h_function(albedo, cosine);
-            row.see(exact.relative_error(found), || format!("a = {albedo:e}, μ = {cosine:e}"));
-        }
+/// `1 − artan(x)/x`, which cancels where x is small.
+fn bent(&[x, ratio, _]: &[Wide; 3]) -> Wide {
+    if x.high >= 0.02 {
+        return 1.0 - ratio;
     }
-    row
+    let terms = (1..12).rev().map(|k| {
+        let term = 1.0 / n(f64::from(2 * k + 1));
+        if k % 2 == 1 { term } else { -term }
+    });
+    terms.fold(Wide::default(), |sum, term| sum * (x * x) + term) * (x * x)
+}
+
+fn half_space(t: &mut Trial, angles: &[[Wide; 3]]) -> Option<()> {
+    let albedo = share(t.dice);
+    let log = |angle| ((1.0 - n(albedo)) + albedo * bent(angle)).ln();
+    let logs: Vec<Wide> = angles.iter().map(log).collect();
+    for _ in 0..8 {
+        let grazes = t.dice.below(3) == 0;
+        let cosine = if grazes { t.dice.sized(-9.0, 0.0) } else { t.dice.between(0.0, 1.0) };
+        let mu = n(cosine);
+        let terms = angles.iter().zip(&logs);
+        let integral: Wide =
+            terms.map(|(&[x, _, dx], &log)| log * dx / (1.0 + (mu * x).powi(2))).sum();
+        t.place = format!("a = {albedo:e}, μ = {cosine:e}");
+        t.relative(0, h_function(albedo, cosine), (-(mu * integral / Wide::PI)).exp());
+    }
+    Some(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stress::trial::of_stated;
 
     #[test]
     fn without_scattering_the_rule_has_closed_forms() {

@@ -12,9 +12,9 @@
 
 use std::cell::OnceCell;
 
-use super::collided::central;
-use super::rods::{moments_of, of_relative, of_stated, rod_with, share};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::rods::{moments_of, rod_with, rule};
+use super::trial::{Dice, Trial, central, of_relative, share};
+use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::Wide;
 use crate::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Seen};
@@ -22,7 +22,6 @@ use crate::theory::particle::ParticleRule;
 use crate::theory::rod as rods;
 use crate::theory::volterra::binomial;
 
-const PARTS: u64 = 16;
 /// Terms of a series: at half a collision, 2⁻²²/22! = 2e-28.
 const TERMS: usize = 22;
 /// The highest power.
@@ -31,31 +30,28 @@ const POWERS: u32 = 4;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "inside", part);
-        let mut rows = truths(dice, effort.of(1, 16));
-        rows.extend(moments(dice, effort.of(u32::from(part % 2 == 0), 6)));
-        rows
+    in_parts(16, "inside", seed, |part| {
+        let range = "to order 6, 1 … 4 parts, two albedos, τ = 1e-6 … 30";
+        part.run(effort.of(1, 16), SEEN.map(|seen| Row::stated(seen, range)), truths);
+        let range = "to order 3, 1 … 4 parts, 3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
+        let rows = std::array::from_fn::<_, 6, _>(|i| {
+            let what = ["variance", "fourth moment"][i / 3];
+            Row::stated(format!("{what}, {}", SEEN[i % 3]), range)
+        });
+        part.run(effort.of(u32::from(part.number % 2 == 0), 6), rows, moments);
     })
 }
 
-/// The rows of the orders, of the flux, and of what is absorbed.
-struct Kinds([Row; 3]);
+const SEEN: [&str; 3] =
+    ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
 
-impl Kinds {
-    fn new(what: &str, range: &str) -> Self {
-        let row = |seen: &str| Row::new(format!("{what}{seen}"), range, Measure::OfStated, 1.0);
-        let seen = ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
-        Self(seen.map(row))
-    }
-
-    fn of(&mut self, seen: Seen) -> Option<&mut Row> {
-        match seen {
-            Seen::ReflectedBy(_) | Seen::TransmittedBy(_) => Some(&mut self.0[0]),
-            Seen::Flux(_) => Some(&mut self.0[1]),
-            Seen::Absorbed => Some(&mut self.0[2]),
-            Seen::Reflected | Seen::Transmitted => None,
-        }
+/// Which of them a channel is.
+fn row_of(seen: Seen) -> Option<usize> {
+    match seen {
+        Seen::ReflectedBy(_) | Seen::TransmittedBy(_) => Some(0),
+        Seen::Flux(_) => Some(1),
+        Seen::Absorbed => Some(2),
+        Seen::Reflected | Seen::Transmitted => None,
     }
 }
 
@@ -79,85 +75,60 @@ impl Case {
         let Self { depth, forward, albedo, .. } = self;
         format!("{}, τ = {depth:e}, a = {albedo:?}, p_f = {forward:e}", seen.name())
     }
-
-    fn line(&self, rule: ParticleRule, sampling: f64) -> Line {
-        Line::new(self, rule, sampling)
-    }
 }
 
-fn truths(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let mut kinds = Kinds::new("", "to order 6, 1 … 4 parts, two albedos, τ = 1e-6 … 30");
-    for _ in 0..trials {
-        let depth = dice.sized(-6.0, 1.48);
-        #[allow(clippy::cast_possible_truncation)] // six
-        let case = Case::new(dice, depth, HIGHEST_ORDER as usize);
-        let found = rod_with(depth, &case.albedo, case.forward, case.channels.clone())
-            .and_then(|(mesh, rod)| rods::truth(&mesh, &rod));
-        let line = case.line(ParticleRule::Terminating, depth);
-        for (i, &seen) in case.channels.iter().enumerate() {
-            let Some(row) = kinds.of(seen) else { continue };
-            let Some(found) = &found else {
-                row.skip(|| case.place(seen));
-                continue;
-            };
-            let [exact, ..] = line.powers(seen, 1);
-            if exact.high >= 1e-290 {
-                row.see(of_stated(found[i], exact), || case.place(seen));
-            } else {
-                row.skip(|| case.place(seen));
-            }
+fn truths(t: &mut Trial) -> Option<()> {
+    let depth = t.dice.sized(-6.0, 1.48);
+    #[allow(clippy::cast_possible_truncation)] // six
+    let case = Case::new(t.dice, depth, HIGHEST_ORDER as usize);
+    let found = rod_with(depth, &case.albedo, case.forward, case.channels.clone())
+        .and_then(|(mesh, rod)| rods::truth(&mesh, &rod));
+    let line = Line::new(&case, ParticleRule::Terminating, depth);
+    for (i, &seen) in case.channels.iter().enumerate() {
+        let Some(row) = row_of(seen) else { continue };
+        t.place = case.place(seen);
+        let [exact, ..] = line.powers(seen, 1);
+        match found.as_ref().filter(|_| exact.high >= 1e-290) {
+            Some(found) => t.stated(row, found[i], exact),
+            None => t.skip(row),
         }
     }
-    kinds.0.to_vec()
+    Some(())
 }
 
-fn moments(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "to order 3, 1 … 4 parts, 3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
-    let mut second = Kinds::new("variance, ", range);
-    let mut fourth = Kinds::new("fourth moment, ", range);
-    for _ in 0..trials {
-        let (depth, ratio) = (dice.sized(-3.0, 1.0), dice.sized(-1.0, 0.5));
-        let order = 1 + dice.below(3);
-        let case = Case::new(dice, depth, order);
-        let sampling = depth / ratio;
-        let rule = if ratio <= 1.0 && dice.below(3) == 0 {
-            ParticleRule::Terminating
-        } else {
-            [ParticleRule::NonTerminating, ParticleRule::Weighted][dice.below(2)]
+fn moments(t: &mut Trial) -> Option<()> {
+    let (depth, ratio) = (t.dice.sized(-3.0, 1.0), t.dice.sized(-1.0, 0.5));
+    let order = 1 + t.dice.below(3);
+    let case = Case::new(t.dice, depth, order);
+    let (sampling, rule) = (depth / ratio, rule(t.dice, ratio, 3));
+    let found = rod_with(depth, &case.albedo, case.forward, case.channels.clone());
+    let found = found.map(|(mesh, rod)| {
+        let flown = Piecewise::constant(sampling, mesh.support());
+        rods::predict(&mesh, &rod, &flown, rule, true)
+    });
+    let line = Line::new(&case, rule, sampling);
+    for (i, &seen) in case.channels.iter().enumerate() {
+        let Some(row) = row_of(seen) else { continue };
+        t.place = format!("{rule:?}, r = {ratio:e}, {}", case.place(seen));
+        let moments = found.as_ref().and_then(|found| found.channels[i].moments);
+        // A moment that diverges says so, as `rods` checks.
+        let known = moments.filter(|moments| moments.relative[0].is_finite());
+        let known = known.map(|known| (known, line.powers(seen, POWERS)));
+        let Some((known, raw)) = known.filter(|(_, raw)| raw[0].high >= 1e-70) else {
+            t.skip(row);
+            t.skip(row + 3);
+            continue;
         };
-        let found = rod_with(depth, &case.albedo, case.forward, case.channels.clone());
-        let found = found.map(|(mesh, rod)| {
-            let flown = Piecewise::constant(sampling, mesh.support());
-            rods::predict(&mesh, &rod, &flown, rule, true)
-        });
-        let line = case.line(rule, sampling);
-        for (i, &seen) in case.channels.iter().enumerate() {
-            let place = || format!("{rule:?}, r = {ratio:e}, {}", case.place(seen));
-            let Some((second, fourth)) = second.of(seen).zip(fourth.of(seen)) else { continue };
-            let moments = found.as_ref().and_then(|found| found.channels[i].moments);
-            // A moment that diverges says so, as `rods` checks.
-            let Some(moments) = moments.filter(|moments| moments.relative[0].is_finite()) else {
-                second.skip(place);
-                fourth.skip(place);
-                continue;
-            };
-            let raw = line.powers(seen, POWERS);
-            if raw[0].high < 1e-70 {
-                second.skip(place);
-                fourth.skip(place);
-                continue;
-            }
-            // In units of the mean as it is told, which may have few digits.
-            let exact = central(raw, Wide::from(moments.scale));
-            second.see(of_relative(moments.relative[0], moments.error, exact[0]), place);
-            if moments.relative[2].is_finite() {
-                fourth.see(of_relative(moments.relative[2], moments.error, exact[1]), place);
-            } else {
-                fourth.skip(place);
-            }
+        // In units of the mean as it is told, which may have few digits.
+        let [second, fourth] = central(raw, Wide::from(known.scale));
+        t.see(row, of_relative(known.relative[0], known.error, second));
+        if known.relative[2].is_finite() {
+            t.see(row + 3, of_relative(known.relative[2], known.error, fourth));
+        } else {
+            t.skip(row + 3);
         }
     }
-    second.0.into_iter().chain(fourth.0).collect()
+    Some(())
 }
 
 type Series = [Wide; TERMS];
@@ -195,20 +166,19 @@ impl Line {
         let parts = case.channels.iter().filter(|seen| matches!(seen, Seen::Flux(_))).count();
         // Twelfths hold halves, thirds and quarters.
         let forward = Wide::from(case.forward);
-        let ratio = Wide::from(case.depth) / Wide::from(sampling);
+        let ratio = Wide::from(case.depth) / sampling;
         let sampling = Wide::from(sampling);
         let of = |twelfth: usize| {
             let albedo = case.albedo[twelfth * case.albedo.len() / 12];
             let odds = [0, 1, 2, 3, 4].map(|k| moments_of(rule, ratio, albedo, k));
             let fastest = odds.iter().fold(0.0, |most: f64, &[q, s]| {
-                let straight =
-                    (Wide::ONE - q).high.abs().max((Wide::ONE - q - s * forward).high.abs());
+                let straight = (1.0 - q).high.abs().max((1.0 - q - s * forward).high.abs());
                 most.max(straight + s.high.abs())
             });
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // some hundreds
             let steps = (sampling.high * fastest / 6.0).ceil().max(1.0) as usize;
-            let step = Wide::ONE / Wide::from(12.0 * steps as f64);
-            let absorbed = ratio * (Wide::ONE - Wide::from(albedo));
+            let step = Wide::ONE / (12.0 * steps as f64);
+            let absorbed = ratio * (1.0 - Wide::from(albedo));
             Stretch { steps, step, sampling, absorbed, part: twelfth * parts / 12, odds }
         };
         let stretches = (0..12).map(of).collect();
@@ -233,10 +203,10 @@ impl Line {
             }
             Seen::Flux(part) => {
                 // σ̂c = 1/width.
-                let width = Wide::ONE / Wide::from(self.parts);
+                let width = Wide::ONE / self.parts;
                 let score = |stretch: &Stretch| {
                     let inside = stretch.part == part;
-                    if inside { Wide::ONE / (stretch.sampling * width) } else { Wide::default() }
+                    if inside { 1.0 / (stretch.sampling * width) } else { Wide::default() }
                 };
                 self.scores(&score, k, &mut powers);
             }
@@ -249,7 +219,7 @@ impl Line {
     fn by_order(&self, k: usize, is_back: usize) -> Vec<Wide> {
         let mut ends = [Wide::default(); 2];
         ends[1 - is_back] = Wide::ONE;
-        let rates = |stretch: &Stretch| [Wide::ONE - stretch.odds[k][0], Wide::default()];
+        let rates = |stretch: &Stretch| [1.0 - stretch.odds[k][0], Wide::default()];
         let mut worth = self.solve(&rates, &|_, _| NOTHING, ends);
         let mut orders = vec![worth[0][0][0]];
         for _ in 0..self.highest {
@@ -277,8 +247,7 @@ impl Line {
                 let whole = c.powi(u32::try_from(j).unwrap_or(0));
                 (sum[0][0], sum[1][0]) = (whole, whole);
                 for i in 1..j {
-                    let ways = Wide::from(binomial(j, i));
-                    let factor = ways * c.powi(u32::try_from(j - i).unwrap_or(0));
+                    let factor = binomial(j, i) * c.powi(u32::try_from(j - i).unwrap_or(0));
                     let after = self.after(stretch.odds[i], &found[i - 1][at]);
                     for (sum, after) in sum.iter_mut().flatten().zip(after.iter().flatten()) {
                         *sum += factor * *after;
@@ -294,12 +263,12 @@ impl Line {
 
     /// A and B over σ̂.
     fn rates(&self, [q, s]: [Wide; 2]) -> [Wide; 2] {
-        [Wide::ONE - q - s * self.forward, s * (Wide::ONE - self.forward)]
+        [1.0 - q - s * self.forward, s * (1.0 - self.forward)]
     }
 
     /// What a particle that collides is worth afterwards.
     fn after(&self, [q, s]: [Wide; 2], [plus, minus]: &Both) -> Both {
-        let [onward, turned] = [q + s * self.forward, s * (Wide::ONE - self.forward)];
+        let [onward, turned] = [q + s * self.forward, s * (1.0 - self.forward)];
         let mixed = |a: &Series, b: &Series| -> Series {
             std::array::from_fn(|n| onward * a[n] + turned * b[n])
         };
@@ -365,7 +334,7 @@ fn continued([a, b]: [Wide; 2], begin: [Wide; 2], source: &Both) -> Both {
     (found[0][0], found[1][0]) = (begin[0], begin[1]);
     for n in 0..TERMS - 1 {
         let (plus, minus) = (found[0][n], found[1][n]);
-        let share = Wide::ONE / Wide::from((n + 1) as f64);
+        let share = Wide::ONE / (n + 1) as f64;
         found[0][n + 1] = (a * plus - b * minus - source[0][n]) * share;
         found[1][n + 1] = (b * plus - a * minus + source[1][n]) * share;
     }
@@ -382,9 +351,9 @@ mod tests {
         let (depth, albedo, forward) = (2.5, 0.004, 0.3);
         let channels = rod::channels(1, true, Some(6));
         let case = Case { depth, forward, albedo: vec![albedo], channels };
-        let line = case.line(ParticleRule::Terminating, depth);
+        let line = Line::new(&case, ParticleRule::Terminating, depth);
         let [a, p] = [albedo, forward].map(Wide::from);
-        let rates = [Wide::ONE - a * p, a * (Wide::ONE - p)].map(|rate| rate * Wide::from(depth));
+        let rates = [1.0 - a * p, a * (1.0 - p)].map(|rate| rate * depth);
         let [r, t] = leaving(rates);
         let sum = |seen: fn(usize) -> Seen| -> Wide {
             (0..=6).map(|order| line.powers(seen(order), 1)[0]).sum()
@@ -392,9 +361,9 @@ mod tests {
         assert!(t.relative_error(sum(Seen::TransmittedBy).value()) < 1e-15);
         assert!(r.relative_error(sum(Seen::ReflectedBy).value()) < 1e-15);
         // What does not leave is absorbed, and what is absorbed is the flux times the rate.
-        let lost = Wide::ONE - r - t;
+        let lost = 1.0 - r - t;
         let absorbed = line.powers(Seen::Absorbed, 1)[0];
-        let flux = line.powers(Seen::Flux(0), 1)[0] * Wide::from(depth) * (Wide::ONE - a);
+        let flux = line.powers(Seen::Flux(0), 1)[0] * depth * (1.0 - a);
         assert!((lost - absorbed).abs().value() < 1e-28 && (lost - flux).abs().value() < 1e-28);
     }
 }

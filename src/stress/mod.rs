@@ -65,18 +65,23 @@ pub mod narrow;
 mod ordinates;
 mod peierls;
 pub mod rods;
+pub mod row;
 pub mod scattered;
 pub mod scattering;
+mod series;
 pub mod slabs;
 pub mod tails;
 mod techniques;
 mod text;
+pub mod trial;
 pub mod verdicts;
 pub mod walks;
 
 use rayon::prelude::*;
 
-use crate::rng::{Address, Stream, name_hash};
+pub use self::row::{Measure, Row};
+pub use self::trial::Dice;
+use self::trial::{in_parts, joined};
 
 /// How long is looked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,183 +101,6 @@ impl Effort {
             Self::Full => full,
         }
     }
-}
-
-/// What an error is measured in.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// `|found − exact|/|exact|`.
-    Relative,
-    /// `|found − exact|`.
-    Absolute,
-    /// `|found − exact|` in units of the stated bound.
-    OfStated,
-    /// In standard deviations of one draw.
-    Deviations,
-    /// `−log₁₀` of a p-value.
-    Improbability,
-    /// How many were wrong.
-    Count,
-}
-
-impl Measure {
-    /// The words in tables.
-    #[must_use]
-    pub fn words(self) -> &'static str {
-        match self {
-            Self::Relative => "relative",
-            Self::Absolute => "absolute",
-            Self::OfStated => "of stated error",
-            Self::Deviations => "deviations",
-            Self::Improbability => "−log₁₀ p",
-            Self::Count => "count",
-        }
-    }
-}
-
-/// The worst of many trials of one quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Row {
-    /// What was computed.
-    pub quantity: String,
-    /// The range that was tried.
-    pub range: String,
-    /// How many trials.
-    pub trials: u64,
-    /// How many more were drawn and gave nothing to compare: refused, out of range, unknown.
-    pub skipped: u64,
-    /// The first of those.
-    pub first_skipped: String,
-    /// What the error is measured in.
-    pub measure: Measure,
-    /// The largest error; not a number once one was none.
-    pub worst: f64,
-    /// What it may be.
-    pub bound: f64,
-    /// Where the largest error was.
-    pub place: String,
-}
-
-impl Row {
-    /// Before the first trial.
-    #[must_use]
-    pub fn new(
-        quantity: impl Into<String>,
-        range: impl Into<String>,
-        measure: Measure,
-        bound: f64,
-    ) -> Self {
-        let (quantity, range) = (quantity.into(), range.into());
-        let (place, first_skipped) = Default::default();
-        let (trials, skipped, worst) = (0, 0, 0.0);
-        Self { quantity, range, trials, skipped, first_skipped, measure, worst, bound, place }
-    }
-
-    /// Parameters that gave nothing to compare.
-    pub fn skip(&mut self, place: impl FnOnce() -> String) {
-        if self.skipped == 0 {
-            self.first_skipped = place();
-        }
-        self.skipped += 1;
-    }
-
-    /// One trial.
-    pub fn see(&mut self, error: f64, place: impl FnOnce() -> String) {
-        self.trials += 1;
-        if !self.worst.is_nan() && (error.is_nan() || error > self.worst || self.trials == 1) {
-            (self.worst, self.place) = (error, place());
-        }
-    }
-
-    /// One trial of which only right or wrong is known.
-    pub fn count(&mut self, is_wrong: bool, place: impl FnOnce() -> String) {
-        self.trials += 1;
-        if is_wrong {
-            if self.worst == 0.0 {
-                self.place = place();
-            }
-            self.worst += 1.0;
-        }
-    }
-
-    /// Adds the trials of a later part of the same quantity.
-    #[must_use]
-    pub fn and(mut self, later: Self) -> Self {
-        self.trials += later.trials;
-        if self.skipped == 0 {
-            self.first_skipped = later.first_skipped;
-        }
-        self.skipped += later.skipped;
-        if self.measure == Measure::Count {
-            if self.worst == 0.0 {
-                self.place = later.place;
-            }
-            self.worst += later.worst;
-        } else if !self.worst.is_nan() && (later.worst.is_nan() || later.worst > self.worst) {
-            (self.worst, self.place) = (later.worst, later.place);
-        }
-        self
-    }
-
-    /// Whether the bound holds. What was never tried does not, nor what was mostly skipped.
-    #[must_use]
-    pub fn holds(&self) -> bool {
-        self.trials > 0 && !self.is_mostly_skipped() && self.worst <= self.bound
-    }
-
-    /// Whether more was skipped than compared: such a row says nothing of its range.
-    #[must_use]
-    pub fn is_mostly_skipped(&self) -> bool {
-        self.skipped > self.trials
-    }
-}
-
-/// Random parameters.
-pub struct Dice(Stream);
-
-impl Dice {
-    /// Those of a part of a quantity.
-    #[must_use]
-    pub fn new(seed: u64, quantity: &str, part: u64) -> Self {
-        let experiment = name_hash(&format!("stress|{quantity}"));
-        Self(Address { seed, experiment, block: part, lane: 0 }.stream())
-    }
-
-    /// Uniform between two numbers.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.0.uniform()
-    }
-
-    /// Of any size between two powers of ten.
-    pub fn sized(&mut self, least: f64, most: f64) -> f64 {
-        10f64.powf(self.between(least, most))
-    }
-
-    /// 1 or −1.
-    pub fn sign(&mut self) -> f64 {
-        if self.0.uniform() < 0.5 { -1.0 } else { 1.0 }
-    }
-
-    /// Below a bound.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below the bound
-    pub fn below(&mut self, bound: usize) -> usize {
-        ((bound as f64 * self.0.uniform()) as usize).min(bound.saturating_sub(1))
-    }
-
-    /// 64 bits.
-    pub fn word(&mut self) -> u64 {
-        self.0.word()
-    }
-}
-
-/// Runs the parts of a quantity on all threads and joins their rows in the order of the parts.
-pub fn in_parts(parts: u64, part: impl Fn(u64) -> Vec<Row> + Sync + Send) -> Vec<Row> {
-    let found: Vec<Vec<Row>> = (0..parts).into_par_iter().map(part).collect();
-    let mut found = found.into_iter();
-    let first = found.next().unwrap_or_default();
-    found.fold(first, |rows, later| {
-        rows.into_iter().zip(later).map(|(row, later)| row.and(later)).collect()
-    })
 }
 
 /// What was found.
@@ -350,62 +178,4 @@ pub fn all(effort: Effort, seed: u64, done: &(dyn Fn(&str) + Sync)) -> Stress {
     let mut rows: Vec<Row> = rows.into_iter().flatten().collect();
     rows.extend(narrow.rows());
     Stress { rows, narrow, seconds: begin.elapsed().as_secs_f64() }
-}
-
-/// By how much an error is beyond what the reference itself is off; what is no number stays none.
-fn beyond(off: f64, slack: f64) -> f64 {
-    if off <= slack { 0.0 } else { off - slack }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_row_keeps_the_worst_and_what_is_no_number() {
-        let mut row = Row::new("q", "r", Measure::Relative, 1e-9);
-        assert!(!row.holds(), "nothing was tried");
-        row.see(1e-12, || "a".into());
-        row.see(1e-10, || "b".into());
-        row.see(1e-11, || "c".into());
-        assert!(row.holds() && row.place == "b" && row.trials == 3);
-        let mut later = Row::new("q", "r", Measure::Relative, 1e-9);
-        later.see(f64::NAN, || "d".into());
-        later.see(1.0, || "e".into());
-        let both = row.and(later);
-        assert!(both.worst.is_nan() && both.place == "d" && !both.holds());
-    }
-
-    #[test]
-    fn one_wrong_verdict_is_too_many() {
-        let mut row = Row::new("q", "r", Measure::Count, 0.0);
-        row.count(false, || "a".into());
-        assert!(row.holds());
-        let mut later = row.clone();
-        later.count(true, || "b".into());
-        let both = row.and(later);
-        assert!(!both.holds() && both.place == "b" && both.worst == 1.0);
-    }
-
-    #[test]
-    fn what_is_mostly_skipped_does_not_hold() {
-        let mut row = Row::new("q", "r", Measure::Relative, 1e-9);
-        row.see(0.0, || "a".into());
-        row.skip(|| "b".into());
-        assert!(row.holds() && row.first_skipped == "b");
-        let mut later = Row::new("q", "r", Measure::Relative, 1e-9);
-        later.skip(|| "c".into());
-        let both = row.and(later);
-        assert!(!both.holds() && both.skipped == 2 && both.first_skipped == "b");
-    }
-
-    #[test]
-    fn parts_are_joined_in_their_order() {
-        let rows = in_parts(5, |part| {
-            let mut row = Row::new("q", "r", Measure::Absolute, 9.0);
-            row.see(if part == 3 { 2.0 } else { 1.0 }, || part.to_string());
-            vec![row]
-        });
-        assert_eq!((rows[0].trials, rows[0].place.as_str()), (5, "3"));
-    }
 }

@@ -5,7 +5,9 @@
 //! m₂ = expm1 J₂, and so on as in `theory::moments`, without cancellation and in 32 digits
 //! ```
 
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::text::homogeneous;
+use super::trial::{Dice, Trial, off};
+use super::{Effort, Row, in_parts};
 use crate::estimators::rules::{Single, Weight};
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Span, Wide};
@@ -13,31 +15,21 @@ use crate::theory::prediction::transmittance;
 use crate::theory::product::Product;
 use crate::theory::{Mesh, Rule};
 
-const PARTS: u64 = 32;
-
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(6, 200);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "moments", part);
-        let wide = "τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9";
-        let special = "r near 0, 1, 2, ±1e3; τ = 1e-6 … 50 collisions";
-        let mut rows = of_products(dice, trials, wide, |dice| {
-            let length = dice.sized(-9.0, 9.0);
-            let extinction = dice.sized(-12.0, 3.0) / length;
-            Case { extinction, control: 0.0, sampling: extinction * dice.sized(-9.0, 9.0), length }
-        });
-        rows.extend(of_products(dice, trials, special, |dice| {
-            let near = [0.0, 1.0, 2.0, 1e3, -1e3][dice.below(5)];
-            let ratio = near + dice.sign() * dice.sized(-14.0, -1.0);
-            let sampling = dice.sized(-3.0, 3.0);
-            let control = sampling * dice.between(0.0, 2.0) + (-ratio * sampling).max(0.0);
-            let extinction = (control + ratio * sampling).max(0.0);
-            Case { extinction, control, sampling, length: dice.sized(-6.0, 1.7) / sampling }
-        }));
-        rows.push(transmittances(dice, trials));
-        rows
+    let ranges: [(&str, fn(&mut Dice) -> Case); 2] = [
+        ("τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9", of_any_size),
+        ("r near 0, 1, 2, ±1e3; τ = 1e-6 … 50 collisions", of_special_ratios),
+    ];
+    in_parts(32, "moments", seed, |part| {
+        for (range, draw) in ranges {
+            let rows = ["variance of products", "fourth moment of products"];
+            part.run(trials, rows.map(|what| Row::stated(what, range)), |t| products(t, draw));
+        }
+        let range = "τ = 1e-12 … 1e9, in units of e^{−τ} beyond 300";
+        part.run(trials, [Row::stated("transmittance", range)], transmittances);
     })
 }
 
@@ -49,135 +41,103 @@ struct Case {
     length: f64,
 }
 
-/// Survival and loss at a collision, in 32 digits.
-struct Outcome {
-    death: Wide,
-    loss: Wide,
+fn of_any_size(dice: &mut Dice) -> Case {
+    let length = dice.sized(-9.0, 9.0);
+    let extinction = dice.sized(-12.0, 3.0) / length;
+    Case { extinction, control: 0.0, sampling: extinction * dice.sized(-9.0, 9.0), length }
 }
 
-impl Outcome {
-    fn new(rule: Single, ratio: Wide) -> Self {
-        let left = Wide::ONE - ratio;
-        let is_below = left.high >= 0.0;
-        if let Single::NonTerminating { albedo } = rule {
-            let scattered = ratio.abs() * Wide::from(albedo);
-            let sum = scattered + left.abs();
-            let loss = if is_below { Wide::ONE - sum } else { Wide::ONE + sum };
-            return Self { death: scattered / sum, loss };
-        }
-        let loss = if is_below { Wide::default() } else { Wide::from(2.0) };
-        Self { death: Wide::ONE - left.abs(), loss }
-    }
+fn of_special_ratios(dice: &mut Dice) -> Case {
+    let near = [0.0, 1.0, 2.0, 1e3, -1e3][dice.below(5)];
+    let ratio = near + dice.sign() * dice.sized(-14.0, -1.0);
+    let sampling = dice.sized(-3.0, 3.0);
+    let control = sampling * dice.between(0.0, 2.0) + (-ratio * sampling).max(0.0);
+    let extinction = (control + ratio * sampling).max(0.0);
+    Case { extinction, control, sampling, length: dice.sized(-6.0, 1.7) / sampling }
+}
 
-    /// `E[(1 − W)^k]`.
-    fn mean_loss(&self, k: u32) -> Wide {
-        self.death + (Wide::ONE - self.death) * self.loss.powi(k)
-    }
+/// `E[(1 − W)^k]` at a collision, in 32 digits, for k = 2, 3, 4.
+fn losses(rule: Single, ratio: Wide) -> [Wide; 3] {
+    let left = 1.0 - ratio;
+    let is_below = left.high >= 0.0;
+    let (death, loss) = if let Single::NonTerminating { albedo } = rule {
+        let scattered = ratio.abs() * albedo;
+        let sum = scattered + left.abs();
+        (scattered / sum, if is_below { 1.0 - sum } else { 1.0 + sum })
+    } else {
+        (1.0 - left.abs(), if is_below { Wide::default() } else { Wide::from(2.0) })
+    };
+    [2, 3, 4].map(|k| death + (1.0 - death) * loss.powi(k))
 }
 
 /// `m₂` and `m₄` of J₂, J₃ and J₄.
 fn central([j2, j3, j4]: [Wide; 3]) -> [Wide; 2] {
-    let n = |x: f64| Wide::from(x);
     if j2.high.abs() > 1.0 {
-        let [e2, e3, e4] = [j2, j2 * n(3.0) - j3, j2 * n(6.0) - j3.scaled(2) + j4].map(Wide::exp);
-        return [j2.exp_m1(), e4 - e3.scaled(2) + e2 * n(6.0) - n(3.0)];
+        let [e2, e3, e4] = [j2, j2 * 3.0 - j3, j2 * 6.0 - j3.scaled(2) + j4].map(Wide::exp);
+        return [j2.exp_m1(), e4 - e3.scaled(2) + e2 * 6.0 - 3.0];
     }
     let (u, v, z) = (j2.exp_m1(), (-j3).exp_m1(), j4.exp_m1());
-    let cube = (Wide::ONE + u).powi(3);
-    let mixed = u.scaled(2) * (n(3.0) + u * (n(3.0) + u)) + cube * v * (n(6.0) + v * (n(4.0) + v));
-    let fourth = u * u * (n(3.0) + u * (n(16.0) + u * (n(15.0) + u * (n(6.0) + u))))
+    let cube = (1.0 + u).powi(3);
+    let mixed = u.scaled(2) * (3.0 + u * (3.0 + u)) + cube * v * (6.0 + v * (4.0 + v));
+    let fourth = u * u * (3.0 + u * (16.0 + u * (15.0 + u * (6.0 + u))))
         + cube * v * mixed
-        + (j2 * n(6.0) - j3.scaled(2)).exp() * z;
+        + (j2 * 6.0 - j3.scaled(2)).exp() * z;
     [u, fourth]
 }
 
-fn of_products(
-    dice: &mut Dice,
-    trials: u32,
-    range: &str,
-    draw: impl Fn(&mut Dice) -> Case,
-) -> Vec<Row> {
-    let row = |what| Row::new(what, range, Measure::OfStated, 1.0);
-    let (mut second, mut fourth) = (row("variance of products"), row("fourth moment of products"));
-    for _ in 0..trials {
-        let case = draw(dice);
-        let Case { extinction, control, sampling, length } = case;
-        let text = format!("medium.constant.extinction = {extinction:e}\nspan = [0, {length:e}]");
-        let Some(medium) = text::medium(&text) else {
-            second.skip(|| text.clone());
-            fourth.skip(|| text.clone());
-            continue;
+fn products(t: &mut Trial, draw: fn(&mut Dice) -> Case) -> Option<()> {
+    let case = draw(t.dice);
+    let Case { extinction, control, sampling, length } = case;
+    t.place = format!("{case:?}");
+    let mesh = Mesh::new(homogeneous(extinction, length)?);
+    let span = Span::new(0.0, length);
+    let (flown, main) = (Piecewise::constant(sampling, span), Piecewise::constant(control, span));
+    let main = if control == 0.0 { Control::None } else { Control::Pieces(main) };
+    let ratio = (Wide::from(extinction) - control) / sampling;
+    let non_terminating = Single::NonTerminating { albedo: t.dice.between(0.0, 1.0) };
+    let terminating = (0.0..=2.0).contains(&ratio.high).then_some(Single::Terminating);
+    let mut of_rule = |name: &str, rule: &dyn Rule, losses: [Wide; 3]| {
+        t.place = format!("{name}, r = {:e}, {case:?}", ratio.high);
+        let found = Product { laws: false, ..Product::new(&mesh, &flown, &main, rule) }.predict();
+        let Some(moments) = found.channels[0].moments else {
+            t.skip(0);
+            return t.skip(1);
         };
-        let mesh = Mesh::new(medium);
-        let span = Span::new(0.0, length);
-        let (flown, main) =
-            (Piecewise::constant(sampling, span), Piecewise::constant(control, span));
-        let main = if control == 0.0 { Control::None } else { Control::Pieces(main) };
-        let residual = Wide::from(extinction) - Wide::from(control);
-        let ratio = residual / Wide::from(sampling);
-        let collisions = Wide::product(sampling, length);
-        let mut of_rule = |name: &str, rule: &dyn Rule, losses: [Wide; 3]| {
-            let losses = losses.map(|loss| loss * collisions);
-            let found =
-                Product { laws: false, ..Product::new(&mesh, &flown, &main, rule) }.predict();
-            let place = || format!("{name}, r = {:e}, {case:?}", ratio.high);
-            let Some(moments) = found.channels[0].moments else {
-                second.skip(place);
-                fourth.skip(place);
-                return;
-            };
-            let [_, j3, j4] = losses;
-            let exponents = [losses[0], losses[0] * Wide::from(6.0) - j3.scaled(2) + j4];
-            let exact = central(losses);
-            let pairs = [(&mut second, moments.relative[0]), (&mut fourth, moments.relative[2])];
-            for (((row, found), exact), exponent) in pairs.into_iter().zip(exact).zip(exponents) {
-                // What overflows must be infinite, never not a number, and nothing else may be.
-                if exponent.high > 690.0 || !exact.high.is_finite() {
-                    row.see(if found > 1e290 { 0.0 } else { f64::NAN }, place);
-                    continue;
-                }
-                if exact.high.abs() < 1e-300 {
-                    row.skip(place);
-                    continue;
-                }
-                row.see(exact.relative_error(found) / moments.error, place);
+        let losses = losses.map(|loss| loss * Wide::product(sampling, length));
+        let [j2, j3, j4] = losses;
+        let exponents = [j2, j2 * 6.0 - j3.scaled(2) + j4];
+        let pairs = [moments.relative[0], moments.relative[2]].into_iter().zip(central(losses));
+        for (row, ((found, exact), exponent)) in pairs.zip(exponents).enumerate() {
+            // What overflows must be infinite, never not a number, and nothing else may be.
+            if exponent.high > 690.0 || !exact.high.is_finite() {
+                t.see(row, if found > 1e290 { 0.0 } else { f64::NAN });
+            } else if exact.high.abs() < 1e-300 {
+                t.skip(row);
+            } else {
+                t.see(row, exact.relative_error(found) / moments.error);
             }
-        };
-        let powers = [2, 3, 4].map(|k| ratio.powi(k));
-        of_rule("ratio", &Weight, powers);
-        let mut rules = vec![Single::NonTerminating { albedo: dice.between(0.0, 1.0) }];
-        if (0.0..=2.0).contains(&ratio.high) {
-            rules.push(Single::Terminating);
         }
-        for rule in rules {
-            let outcome = Outcome::new(rule, ratio);
-            let losses = [2, 3, 4].map(|k| outcome.mean_loss(k));
-            if losses.iter().all(|loss| loss.high.is_finite()) {
-                of_rule(&format!("{rule:?}"), &rule, losses);
-            }
+    };
+    of_rule("ratio", &Weight, [2, 3, 4].map(|k| ratio.powi(k)));
+    for rule in [Some(non_terminating), terminating].into_iter().flatten() {
+        let losses = losses(rule, ratio);
+        if losses.iter().all(|loss| loss.high.is_finite()) {
+            of_rule(&format!("{rule:?}"), &rule, losses);
         }
     }
-    vec![second, fourth]
+    Some(())
 }
 
 /// T itself, and T in units of `e^{−τ}` where it underflows.
-fn transmittances(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-12 … 1e9, in units of e^{−τ} beyond 300";
-    let mut row = Row::new("transmittance", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (length, depth) = (dice.sized(-9.0, 9.0), dice.sized(-12.0, 9.0));
-        let extinction = depth / length;
-        let text = format!("medium.constant.extinction = {extinction:e}\nspan = [0, {length:e}]");
-        let Some(medium) = text::medium(&text) else {
-            row.skip(|| text.clone());
-            continue;
-        };
-        let depth = medium.optical_depth(medium.span());
-        let unit = if depth.value > 300.0 { depth.value } else { 0.0 };
-        let found = transmittance(depth, unit);
-        let exact = (Wide::from(unit) - Wide::product(extinction, length)).exp();
-        let off = (Wide::from(found.value) - exact).abs().value();
-        row.see(off / found.error, || format!("τ = {:e}", depth.value));
-    }
-    row
+fn transmittances(t: &mut Trial) -> Option<()> {
+    let (length, depth) = (t.dice.sized(-9.0, 9.0), t.dice.sized(-12.0, 9.0));
+    let extinction = depth / length;
+    let medium = homogeneous(extinction, length)?;
+    let depth = medium.optical_depth(medium.span());
+    let unit = if depth.value > 300.0 { depth.value } else { 0.0 };
+    let found = transmittance(depth, unit);
+    let exact = (unit - Wide::product(extinction, length)).exp();
+    t.place = format!("τ = {:e}", depth.value);
+    t.see(0, off(found.value, exact) / found.error);
+    Some(())
 }

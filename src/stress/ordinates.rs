@@ -16,6 +16,7 @@
 //!
 //! Source: S. Chandrasekhar, *Radiative Transfer* (Oxford University Press, 1950), chapters 2, 3 and 7.
 
+use super::series::solved;
 use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::problems::slab::Light;
@@ -59,12 +60,12 @@ impl Ordinates {
         // Light from both sides alike, and of opposite signs: their halves add up to that from above.
         let solutions = [Wide::ONE, -Wide::ONE].map(|sign| {
             let entry = |mu: Wide, k: Wide, faint: Wide| {
-                let far = faint / (Wide::ONE + k * mu);
-                Wide::ONE / (Wide::ONE - k * mu) + sign * far
+                let far = faint / (1.0 + k * mu);
+                1.0 / (1.0 - k * mu) + sign * far
             };
             let swinging = |mu: Wide, nu: Wide, [sine, cosine]: [Wide; 2]| {
                 let x = nu * mu;
-                let size = Wide::ONE + x * x;
+                let size = 1.0 + x * x;
                 let turned = [cosine - x * sine, sine + x * cosine];
                 turned[usize::from(sign.high < 0.0)] / size
             };
@@ -73,7 +74,7 @@ impl Ordinates {
                 let entries = roots.iter().zip(&faint).map(|(&k, &faint)| entry(mu, k, faint));
                 first.into_iter().chain(entries).chain([Wide::ONE]).collect()
             };
-            solved(cosines.iter().map(row).collect())
+            solved_pivoted(cosines.iter().map(row).collect())
         });
         let [same, opposite] = solutions;
         let (mut same, mut opposite) = (same?, opposite?);
@@ -99,7 +100,7 @@ impl Ordinates {
     pub fn is_positive(&self) -> bool {
         const PLACES: u32 = 64;
         (0..=PLACES).all(|i| {
-            let t = self.depth * Wide::from(f64::from(i) / f64::from(PLACES));
+            let t = self.depth * (f64::from(i) / f64::from(PLACES));
             let rest = self.depth - t;
             let swinging = self.swing.as_ref().map(|swing| {
                 let [a, b] = swing.sizes;
@@ -120,16 +121,16 @@ impl Ordinates {
         let mut leaving = [Wide::default(), straight];
         if let Some(Swing { rate, half_way: [sine, swung], sizes: [a, b] }) = self.swing {
             let x = rate * cosine;
-            let size = (Wide::ONE + x * x).scaled(1);
-            let (less, more) = (Wide::ONE - straight, Wide::ONE + straight);
+            let size = (1.0 + x * x).scaled(1);
+            let (less, more) = (1.0 - straight, 1.0 + straight);
             let even = a * (swung * less + x * sine * more) / size;
             let odd = b * (sine * more - x * swung * less) / size;
             leaving[0] += even + odd;
             leaving[1] += even - odd;
         }
         for &[k, alpha, beta, faint] in &self.parts {
-            let near = (Wide::ONE - faint * straight) / (Wide::ONE + k * cosine);
-            let away = Wide::ONE - k * cosine;
+            let near = (1.0 - faint * straight) / (1.0 + k * cosine);
+            let away = 1.0 - k * cosine;
             let x = away * self.depth / cosine;
             // (e^{−kτ} − e^{−τ/μ})/(1 − kμ), also where both are nearly one.
             let far = if x.high.abs() < 0.1 && x.high != 0.0 {
@@ -162,8 +163,8 @@ impl Ordinates {
 /// ν of an albedo above 1.
 fn swing(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Wide {
     let left = |nu: Wide| {
-        let term = |(&mu, &w): (&Wide, &Wide)| w / (Wide::ONE + (nu * mu).powi(2));
-        Wide::ONE - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
+        let term = |(&mu, &w): (&Wide, &Wide)| w / (1.0 + (nu * mu).powi(2));
+        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
     };
     let (mut low, mut high) = (Wide::default(), Wide::ONE);
     while left(high).high < 0.0 {
@@ -191,8 +192,8 @@ pub(super) fn directions(count: usize) -> (Vec<Wide>, Vec<Wide>) {
 /// steps from there, or bisected in 32 digits where doubles do not tell it from a `1/μ`.
 pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wide> {
     let left = |k: Wide| {
-        let term = |(&mu, &w): (&Wide, &Wide)| w / (Wide::ONE - (k * mu).powi(2));
-        Wide::ONE - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
+        let term = |(&mu, &w): (&Wide, &Wide)| w / (1.0 - (k * mu).powi(2));
+        1.0 - albedo * cosines.iter().zip(weights).map(term).sum::<Wide>()
     };
     let rough = |k: f64| {
         let term = |(mu, w): (&Wide, &Wide)| w.high / (1.0 - (k * mu.high).powi(2));
@@ -201,22 +202,22 @@ pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wid
     let step = |k: Wide| {
         let (mut sum, mut slope) = (Wide::default(), Wide::default());
         for (&mu, &w) in cosines.iter().zip(weights) {
-            let inverse = Wide::ONE / (Wide::ONE - (k * mu).powi(2));
+            let inverse = 1.0 / (1.0 - (k * mu).powi(2));
             sum += w * inverse;
             slope += w * (inverse * mu).powi(2);
         }
-        (Wide::ONE - albedo * sum) / (albedo * slope * k).scaled(1)
+        (1.0 - albedo * sum) / (albedo * slope * k).scaled(1)
     };
     let mut from = Wide::default();
     let between = cosines.iter().map(|&mu| {
-        let (mut low, mut high) = (from, Wide::ONE / mu);
+        let (mut low, mut high) = (from, 1.0 / mu);
         from = high;
         let mut ends = [low.high, high.high];
         for _ in 0..60 {
             let middle = 0.5 * (ends[0] + ends[1]);
             ends[usize::from(rough(middle) <= 0.0)] = middle;
         }
-        let near = [1.0 - NEAR, 1.0 + NEAR].map(|x| Wide::from(ends[0]) * Wide::from(x));
+        let near = [1.0 - NEAR, 1.0 + NEAR].map(|x| Wide::from(ends[0]) * x);
         let is_between = near[0].high > low.high && near[1].high < high.high;
         if is_between && left(near[0]).high > 0.0 && left(near[1]).high < 0.0 {
             let mut root = Wide::from(ends[0]);
@@ -238,30 +239,8 @@ pub(super) fn roots(albedo: Wide, cosines: &[Wide], weights: &[Wide]) -> Vec<Wid
     between.collect()
 }
 
-/// The solution of equations whose rows end with their right sides, by elimination with the largest pivot
-/// of a column.
-pub(super) fn solved(mut rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
-    let n = rows.len();
-    for column in 0..n {
-        let size = |i: &usize| rows[*i][column].high.abs();
-        let pivot = (column..n).max_by(|i, j| size(i).total_cmp(&size(j)))?;
-        rows.swap(column, pivot);
-        let (done, below) = rows.split_at_mut(column + 1);
-        let first = &done[column];
-        if first[column].high == 0.0 {
-            return None;
-        }
-        for row in below {
-            let factor = row[column] / first[column];
-            for (x, &y) in row.iter_mut().zip(first).skip(column) {
-                *x = *x - factor * y;
-            }
-        }
-    }
-    let mut solution = vec![Wide::default(); n];
-    for i in (0..n).rev() {
-        let known: Wide = (i + 1..n).map(|j| rows[i][j] * solution[j]).sum();
-        solution[i] = (rows[i][n] - known) / rows[i][i];
-    }
-    Some(solution)
+/// The solution of equations whose rows end with their right sides.
+pub(super) fn solved_pivoted(rows: Vec<Vec<Wide>>) -> Option<Vec<Wide>> {
+    let found = solved(rows, |x| x.high.abs(), true)?;
+    Some(found.into_iter().map(|[x]| x).collect())
 }

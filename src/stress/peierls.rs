@@ -9,6 +9,7 @@
 //! R(μ₀) = ∫ e^{−u/μ₀} s W dx/μ₀,   of light from all sides with 2E₂(u) in place of e^{−u/μ₀}/μ₀
 //! ```
 
+use super::series::solved;
 use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::problems::slab::Light;
@@ -169,7 +170,9 @@ impl<'a> Peierls<'a> {
             row.extend([above, below]);
             row
         };
-        let worth = solved(nodes.iter().enumerate().map(row).collect())?;
+        // The diagonal prevails: 1 less what comes back.
+        let rows = nodes.iter().enumerate().map(row).collect();
+        let worth: Vec<[f64; 2]> = solved(rows, |x: f64| x, false)?;
         if worth.iter().flatten().any(|&worth| worth <= 0.0) {
             return None;
         }
@@ -207,33 +210,6 @@ impl<'a> Peierls<'a> {
         }
         Some(found)
     }
-}
-
-/// The solutions of equations whose rows end with two right sides, by elimination.
-fn solved(mut rows: Vec<Vec<f64>>) -> Option<Vec<[f64; 2]>> {
-    let n = rows.len();
-    for column in 0..n {
-        // The diagonal prevails: 1 less what comes back.
-        let (done, below) = rows.split_at_mut(column + 1);
-        let first = &done[column];
-        if first[column] == 0.0 {
-            return None;
-        }
-        for row in below {
-            let factor = row[column] / first[column];
-            for (x, &y) in row.iter_mut().zip(first).skip(column) {
-                *x -= factor * y;
-            }
-        }
-    }
-    let mut solution = vec![[0.0; 2]; n];
-    for i in (0..n).rev() {
-        for side in 0..2 {
-            let known: f64 = (i + 1..n).map(|j| rows[i][j] * solution[j][side]).sum();
-            solution[i][side] = (rows[i][n + side] - known) / rows[i][i];
-        }
-    }
-    Some(solution)
 }
 
 #[cfg(test)]

@@ -10,12 +10,11 @@
 //! at n points, one walk         E[A₁^{n₁} A₂^{n₂} …], likewise
 //! ```
 
-use super::collided::central;
 use super::costs::stated;
-use super::rods::of_stated;
 use super::scattering::lit;
 use super::techniques::{Case, Wanted};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::trial::{Dice, Trial, central};
+use super::{Effort, Row, in_parts};
 use crate::media::{Control, Piecewise};
 use crate::numeric::Wide;
 use crate::problems::Problem;
@@ -23,43 +22,41 @@ use crate::theory::Mesh;
 use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Along, Camera, Node, Scene, Tracking};
 
-const PARTS: u64 = 16;
 /// Techniques that take turns where rays are deep.
 const TECHNIQUES: u64 = 6;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let [even, odd] = [0, 1].map(|rest| effort.of(u64::from(part % 2 == rest), 6));
-        let shallow = "homogeneous, 3 shadows, residuals, σ_t ℓ = 1e-12 … 10, σ̂/σ_t = 0.5 … 1e4, \
-                       light 1e-6 … 10 ℓ away";
-        let dice = &mut Dice::new(seed, "scattered", part);
-        let mut thin = kinds(shallow);
-        for _ in 0..even {
-            let setting = Setting::shallow(dice);
-            trial(dice, &setting, &|_| true, &mut thin);
-        }
-        let deep = "homogeneous, 3 shadows, residuals, σ_t ℓ = 10 … 1e3, σ̂/σ_t = 0.3 … 1e3, \
-                    light 1e-4 … 100 mean free paths away";
-        let dice = &mut Dice::new(seed, "scattered, deep", part);
-        let mut thick = kinds(deep);
-        for i in 0..odd {
-            let setting = Setting::deep(dice);
+    let trials = |part: u64, rest: u64| effort.of(u32::from(part % 2 == rest), 6);
+    let shallow = in_parts(16, "scattered", seed, |part| {
+        let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 1e-12 … 10, σ̂/σ_t = 0.5 … 1e4, \
+                     light 1e-6 … 10 ℓ away";
+        part.run(trials(part.number, 0), kinds(range), |t| {
+            let setting = Setting::shallow(t.dice);
+            trial(t, &setting, &|_| true)
+        });
+    });
+    let deep = in_parts(16, "scattered, deep", seed, |part| {
+        let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 10 … 1e3, σ̂/σ_t = 0.3 … 1e3, \
+                     light 1e-4 … 100 mean free paths away";
+        let number = part.number;
+        part.run(trials(number, 1), kinds(range), |t| {
+            let setting = Setting::deep(t.dice);
             // A chain through many mean free paths takes seconds for all techniques.
-            let turn = (part / 2 + i) % TECHNIQUES;
-            trial(dice, &setting, &|technique| technique == turn, &mut thick);
-        }
-        thin.into_iter().chain(thick).flatten().collect()
-    })
+            let turn = (number / 2 + u64::from(t.number)) % TECHNIQUES;
+            trial(t, &setting, &|technique| technique == turn)
+        });
+    });
+    shallow.into_iter().chain(deep).collect()
 }
 
 /// Rows of techniques that scatter at one point, and at many of a walk.
-fn kinds(range: &str) -> [[Row; 3]; 2] {
-    let row = |what: &str| Row::new(what, range, Measure::OfStated, 1.0);
-    ["at one point", "of walks"].map(|kind| {
-        ["variance", "fourth moment", "lookups"]
-            .map(|what| row(&format!("single scattering {kind}, {what}")))
+fn kinds(range: &str) -> [Row; 6] {
+    let whats = ["variance", "fourth moment", "lookups"];
+    std::array::from_fn(|i| {
+        let kind = ["at one point", "of walks"][i / 3];
+        Row::stated(format!("single scattering {kind}, {}", whats[i % 3]), range)
     })
 }
 
@@ -96,12 +93,8 @@ impl Setting {
     }
 }
 
-fn trial(
-    dice: &mut Dice,
-    setting: &Setting,
-    is_wanted: &dyn Fn(u64) -> bool,
-    kinds: &mut [[Row; 3]; 2],
-) {
+fn trial(t: &mut Trial, setting: &Setting, is_wanted: &dyn Fn(u64) -> bool) -> Option<()> {
+    let dice = &mut *t.dice;
     let &Setting { sigma, length, distance, foot, ratio } = setting;
     let albedo = dice.between(0.1, 1.0);
     let mut residual = || if dice.below(2) == 0 { 0.0 } else { sigma * dice.between(0.0, 1.2) };
@@ -113,18 +106,12 @@ fn trial(
         _ => Tracking::Delta { sampling: sigma * dice.sized(0.0, 1.0) },
     };
     let count = 1 + dice.below(8);
-    let place = || {
-        format!(
-            "σ_t = {sigma:e}, σ̂ = {sampling:e}, σ_c = {control:e}, {tracking:?}, D = {distance:e}, \
-             foot {foot:e}, ℓ = {length:e}"
-        )
-    };
-    let Some(problem) = lit(sigma, distance, foot, length, albedo) else {
-        for row in kinds.iter_mut().flatten() {
-            row.skip(place);
-        }
-        return;
-    };
+    let place = format!(
+        "σ_t = {sigma:e}, σ̂ = {sampling:e}, σ_c = {control:e}, {tracking:?}, D = {distance:e}, \
+         foot {foot:e}, ℓ = {length:e}"
+    );
+    t.place.clone_from(&place);
+    let problem = lit(sigma, distance, foot, length, albedo)?;
     let mut case = Case::new(&problem, (sigma, length), [sampling, control], tracking);
     let mesh = Mesh::new(problem.medium().clone());
     let flown = Piecewise::constant(sampling, mesh.support());
@@ -172,28 +159,17 @@ fn trial(
     }
     let values = case.chain.solve();
     for Wanted { name, is_walk, found, moments, lookups } in wanted {
-        let place = || format!("{name}, {}", place());
-        let [second, fourth, counts] = &mut kinds[usize::from(is_walk)];
+        t.place = format!("{name}, {place}");
+        let row = 3 * usize::from(is_walk);
         let prediction = found.prediction();
-        if let Some(known) = prediction.channels[0].moments {
-            let exact = central(moments(&values), Wide::from(known.scale));
-            let relative = [known.relative[0], known.relative[2]];
-            for ((row, found), exact) in [second, fourth].into_iter().zip(relative).zip(exact) {
-                // Beyond the range of doubles for both.
-                let is_beyond = found == f64::INFINITY && !exact.high.is_finite();
-                let off = if is_beyond { 0.0 } else { exact.relative_error(found) };
-                row.see(off / known.error, place);
-            }
-        } else {
-            // A spread that rounding hides is not told.
-            second.skip(place);
-            fourth.skip(place);
-        }
+        // A spread that rounding hides is not told.
+        t.moments(row, prediction.channels[0].moments, |scale| {
+            central(moments(&values), Wide::from(scale))
+        });
         match prediction.lookups.zip(lookups) {
-            Some((law, lookups)) => {
-                counts.see(of_stated(stated(&law), lookups(&values)), place);
-            }
-            None => counts.skip(place),
+            Some((law, lookups)) => t.stated(row + 2, stated(&law), lookups(&values)),
+            None => t.skip(row + 2),
         }
     }
+    Some(())
 }

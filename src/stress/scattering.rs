@@ -10,7 +10,9 @@
 use std::f64::consts::TAU;
 
 use super::chains::arsinh;
-use super::{Dice, Effort, Measure, Row, beyond, in_parts, text};
+use super::text;
+use super::trial::{Dice, Trial, beyond_rounding};
+use super::{Effort, Row, in_parts};
 use crate::geometry::{Point, Ray};
 use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
@@ -24,16 +26,16 @@ use crate::problems::{Problem, SingleScattering};
 use crate::theory::Mesh;
 use crate::theory::single::{Along, Camera, Scene, Tracking};
 
-const PARTS: u64 = 16;
-
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(1, 80);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "scattering", part);
-        let glances = effort.of(u32::from(part % 4 == 0), 63);
-        vec![homogeneous(dice, trials), fields(dice, glances)]
+    in_parts(16, "scattering", seed, |part| {
+        let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
+        part.run(trials, [Row::stated("single scattering, radiance", range)], homogeneous);
+        let trials = effort.of(u32::from(part.number % 4 == 0), 63);
+        let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
+        part.run(trials, [Row::stated("single scattering, fields", range)], fields);
     })
 }
 
@@ -60,48 +62,34 @@ pub(super) fn lit(
     SingleScattering::new(field, ray, lamp, albedo, phase).ok()
 }
 
-fn homogeneous(dice: &mut Dice, trials: u32) -> Row {
-    let range = "homogeneous, light 1e-6 … 10 away, σ_t ℓ = 1e-4 … 300; 32 digits";
-    let mut row = Row::new("single scattering, radiance", range, Measure::OfStated, 1.0);
-    let rule = GaussLegendre::new(20);
-    for _ in 0..trials {
-        let (albedo, length) = (dice.between(0.1, 1.0), dice.sized(-1.0, 1.5));
-        let sigma = dice.sized(-4.0, 2.4) / length;
-        let (distance, foot) = (dice.sized(-6.0, 1.0), dice.between(-0.3, 1.3) * length);
-        let place = || format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
-        let Some(problem) = lit(sigma, distance, foot, length, albedo) else {
-            row.skip(place);
-            continue;
-        };
-        let found = radiance(&problem);
-        let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
-        let ends = [0.0, length].map(|s| arsinh((Wide::from(s) - foot) / distance));
-        let width = ends[1] - ends[0];
-        let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
-        let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
-        let mut integral = Wide::default();
-        let mut panel = 0.0;
-        while panel < panels {
-            let step = width / Wide::from(panels);
-            for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
-                let x = ends[0] + step * (Wide::from(panel) + Wide::from(node));
-                let grown = x.exp();
-                let twice = grown + Wide::ONE / grown;
-                let left = (-(sigma * (foot + distance * grown))).exp();
-                integral += left.scaled(1) / twice * step * Wide::from(weight);
-            }
-            panel += 1.0;
+fn homogeneous(t: &mut Trial) -> Option<()> {
+    let (albedo, length) = (t.dice.between(0.1, 1.0), t.dice.sized(-1.0, 1.5));
+    let sigma = t.dice.sized(-4.0, 2.4) / length;
+    let (distance, foot) = (t.dice.sized(-6.0, 1.0), t.dice.between(-0.3, 1.3) * length);
+    t.place = format!("σ_t = {sigma:e}, D = {distance:e}, ℓ = {length:e}, foot {foot:e}");
+    let found = radiance(&lit(sigma, distance, foot, length, albedo)?);
+    let [sigma, distance, foot] = [sigma, distance, foot].map(Wide::from);
+    let ends = [0.0, length].map(|s| arsinh((s - foot) / distance));
+    let width = ends[1] - ends[0];
+    let grown = sigma * distance * (ends[1].exp() - ends[0].exp());
+    let panels = (3.0 * width.high + grown.high / 6.0).ceil().max(1.0);
+    let (rule, step) = (GaussLegendre::new(20), width / panels);
+    let (mut integral, mut panel) = (Wide::default(), 0.0);
+    while panel < panels {
+        for (&node, &weight) in rule.nodes.iter().zip(&rule.weights) {
+            let grown = (ends[0] + step * (Wide::from(panel) + node)).exp();
+            let twice = grown + 1.0 / grown;
+            let left = (-(sigma * (foot + distance * grown))).exp();
+            integral += left.scaled(1) / twice * step * weight;
         }
-        let scale = Wide::from(albedo) * sigma / (Wide::PI * Wide::PI * distance).scaled(4);
-        let exact = integral * scale;
-        if exact.high < 1e-290 {
-            row.skip(place);
-            continue;
-        }
-        let off = (Wide::from(found.value) - exact).abs().value();
-        row.see(beyond(off, 0.5 * f64::EPSILON * exact.high) / found.error, place);
+        panel += 1.0;
     }
-    row
+    let exact = integral * (albedo * sigma / (Wide::PI * Wide::PI * distance).scaled(4));
+    if exact.high < 1e-290 {
+        return None;
+    }
+    t.see(0, beyond_rounding(found, exact));
+    Some(())
 }
 
 const VOLUMES: [&str; 4] = [
@@ -135,21 +123,13 @@ pub(super) fn field(dice: &mut Dice) -> (String, Option<SingleScattering>) {
     (what, problem)
 }
 
-fn fields(dice: &mut Dice, trials: u32) -> Row {
-    let range = "four fields, light 1e-3 … 10 away, g to 0.8; panels of s";
-    let mut row = Row::new("single scattering, fields", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (what, problem) = field(dice);
-        let place = || what.clone();
-        let Some(problem) = problem else {
-            row.skip(place);
-            continue;
-        };
-        let found = radiance(&problem);
-        let off = (found.value - graded(&problem)).abs();
-        row.see(off / found.error, place);
-    }
-    row
+fn fields(t: &mut Trial) -> Option<()> {
+    let (what, problem) = field(t.dice);
+    t.place = what;
+    let problem = problem?;
+    let found = radiance(&problem);
+    t.see(0, (found.value - graded(&problem)).abs() / found.error);
+    Some(())
 }
 
 /// The ends of so many panels of s and more, which grow away from the light's foot and from both ends.

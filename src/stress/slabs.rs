@@ -2,8 +2,8 @@
 //! `ordinates`.
 
 use super::ordinates::Ordinates;
-use super::rods::{of_stated, share};
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::trial::{Dice, Trial, share};
+use super::{Effort, Row, in_parts};
 use crate::numeric::{Known, Wide};
 use crate::phase::{
     Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic, rayleigh::Rayleigh,
@@ -12,20 +12,21 @@ use crate::problems::slab::Light;
 use crate::theory::slab;
 use crate::theory::slab::{Resolution, layer::Slice};
 
-const PARTS: u64 = 16;
 /// Directions of the ordinates.
 const ORDINATES: usize = 72;
-
 /// Lights on one slab.
 pub(super) const LIGHTS: usize = 8;
 
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "slabs", part);
-        let some = effort.of(u32::from(part % 8 == 0), 3);
-        vec![finer(dice, some), even(dice, effort.of(u32::from(part % 4 == 0), 4))]
+    in_parts(16, "slabs", seed, |part| {
+        let some = |every: u64, full: u32| effort.of(u32::from(part.number % every == 0), full);
+        let (few, more) = (some(8, 3), some(4, 4));
+        let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.935; twice the resolution";
+        part.run(few, [Row::stated("slab, adding and doubling", range)], finer);
+        let range = "isotropic, τ = 1e-2 … 100, μ₀ = 1e-4 … 1; discrete ordinates, 32 digits";
+        part.run(more, [Row::stated("slab, another method", range)], even);
     })
 }
 
@@ -52,73 +53,63 @@ pub(super) fn phase(dice: &mut Dice) -> Phase {
     }
 }
 
-fn see(row: &mut Row, found: &slab::Answer, exact: [Wide; 3], place: &dyn Fn() -> String) {
-    let found = [found.reflected, found.transmitted, found.score];
-    for (found, exact) in found.into_iter().zip(exact) {
-        row.see(of_stated(found, exact), place);
+/// Compares what theory finds in each light with what is exact of it, R, T and collisions.
+fn compare(
+    t: &mut Trial,
+    (depth, albedo, phase, said): (f64, f64, Phase, &str),
+    lights: &[Light],
+    exact: impl FnOnce(&[slab::Answer]) -> Option<Vec<[Wide; 3]>>,
+) -> Option<()> {
+    let found = slab::answers(&phase, lights, Known::exact(depth), albedo);
+    let Some((exact, found)) = found.and_then(|found| Some((exact(&found)?, found))) else {
+        t.place = format!("τ = {depth:e}, a = {albedo:e}, {:?}{said}", lights[0]);
+        t.see(0, f64::NAN);
+        return Some(());
+    };
+    for ((found, exact), light) in found.into_iter().zip(exact).zip(lights) {
+        t.place = format!("τ = {depth:e}, a = {albedo:e}, {light:?}{said}");
+        let found = [found.reflected, found.transmitted, found.score];
+        for (found, exact) in found.into_iter().zip(exact) {
+            t.stated(0, found, exact);
+        }
     }
+    Some(())
 }
 
 /// Adding and doubling with more directions and a thinner first layer.
-fn finer(dice: &mut Dice, trials: u32) -> Row {
-    let range = "τ = 1e-6 … 100, μ₀ = 1e-4 … 1, |g| to 0.935; twice the resolution";
-    let mut row = Row::new("slab, adding and doubling", range, Measure::OfStated, 1.0);
-    let finer =
+fn finer(t: &mut Trial) -> Option<()> {
+    let resolution =
         Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14, ..Resolution::FINE };
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-6.0, 2.0), share(dice));
-        let (phase, lights) = (phase(dice), lights(dice));
-        let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 1.0 };
-        let found = slab::answers(&phase, &lights, Known::exact(depth), albedo);
-        let fine = slab::energies(&phase, &lights, &[slice], finer);
-        let place = |light: &Light| {
-            let light = *light;
-            move || format!("τ = {depth:e}, a = {albedo:e}, {light:?}, {phase:?}")
-        };
-        let Some((found, fine)) = found.zip(fine) else {
-            row.see(f64::NAN, place(&lights[0]));
-            continue;
-        };
-        for ((found, fine), light) in found.iter().zip(fine).zip(&lights) {
-            let exact = [fine.reflected, fine.transmitted, fine.score].map(Wide::from);
-            see(&mut row, found, exact, &place(light));
-        }
-    }
-    row
+    let (depth, albedo) = (t.dice.sized(-6.0, 2.0), share(t.dice));
+    let (phase, lights) = (phase(t.dice), lights(t.dice));
+    let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 1.0 };
+    let said = format!(", {phase:?}");
+    compare(t, (depth, albedo, phase, &said), &lights, |_| {
+        let fine = slab::energies(&phase, &lights, &[slice], resolution)?;
+        let all = |fine: slab::Energy| [fine.reflected, fine.transmitted, fine.score];
+        Some(fine.into_iter().map(|fine| all(fine).map(Wide::from)).collect())
+    })
 }
 
 /// Isotropic scattering by discrete ordinates.
-fn even(dice: &mut Dice, trials: u32) -> Row {
-    let range = "isotropic, τ = 1e-2 … 100, μ₀ = 1e-4 … 1; discrete ordinates, 32 digits";
-    let mut row = Row::new("slab, another method", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-2.0, 2.0), share(dice));
-        let (phase, lights) = (Phase::Isotropic(Isotropic), lights(dice));
-        let place = |light: &Light| {
-            let light = *light;
-            move || format!("τ = {depth:e}, a = {albedo:e}, {light:?}")
-        };
-        let found = slab::answers(&phase, &lights, Known::exact(depth), albedo);
-        // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
-        let grain = Wide::from(1e-20);
-        let near = match albedo {
-            0.0 => grain,
-            1.0 => Wide::ONE - grain,
-            inside => Wide::from(inside),
-        };
-        let exact = Ordinates::new(Wide::from(depth), near, ORDINATES);
-        let Some((found, exact)) = found.zip(exact) else {
-            row.see(f64::NAN, place(&lights[0]));
-            continue;
-        };
-        for (found, light) in found.iter().zip(&lights) {
+fn even(t: &mut Trial) -> Option<()> {
+    let (depth, albedo) = (t.dice.sized(-2.0, 2.0), share(t.dice));
+    let (phase, lights) = (Phase::Isotropic(Isotropic), lights(t.dice));
+    // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
+    let near = match albedo {
+        0.0 => Wide::from(1e-20),
+        1.0 => 1.0 - Wide::from(1e-20),
+        inside => Wide::from(inside),
+    };
+    compare(t, (depth, albedo, phase, ""), &lights, |found| {
+        let exact = Ordinates::new(Wide::from(depth), near, ORDINATES)?;
+        let all = |(light, found): (&Light, &slab::Answer)| {
             let [r, t] = exact.energy(*light);
-            let lost = Wide::ONE - near;
+            let lost = 1.0 - near;
             // Collisions are what is absorbed over 1 − a, of which a white slab leaves no digits.
-            let score = (Wide::ONE - r - t) / lost;
-            let score = if lost.high > 1e-9 { score } else { Wide::from(found.score.value) };
-            see(&mut row, found, [r, t, score], &place(light));
-        }
-    }
-    row
+            let score = (1.0 - r - t) / lost;
+            [r, t, if lost.high > 1e-9 { score } else { Wide::from(found.score.value) }]
+        };
+        Some(lights.iter().zip(found).map(all).collect())
+    })
 }

@@ -2,29 +2,38 @@
 
 use std::f64::consts::PI;
 
-use super::{Dice, Effort, Measure, Row, in_parts};
+use super::trial::{Trial, off};
+use super::{Effort, Row, in_parts};
 use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::stats::catoni::{Argument, PsiSums};
 use crate::stats::{anderson_darling, binomial, chi_square, normal};
 use crate::theory::CountLaw;
 
-const PARTS: u64 = 16;
-
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(4, 160);
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "tails", part);
-        let mut rows = normal_law(dice, 4 * trials);
-        rows.push(even_degrees(dice, trials));
-        rows.push(many_degrees(dice, trials / 2));
-        rows.push(binomial_ends(dice, trials / 4 + 1));
-        rows.push(poisson(dice, trials / 8 + 1));
-        rows.push(catoni(dice, trials / 4 + 1));
-        rows.push(anderson_darling(dice, trials / 16 + 1));
-        rows
+    in_parts(16, "tails", seed, |part| {
+        let rows = [
+            Row::relative("normal quantile", "levels 1e-300 … 0.5", 1e-9),
+            Row::relative("erf and erfc", "0 … 26", 4.0 * f64::EPSILON),
+        ];
+        part.run(4 * trials, rows, normal_law);
+        let range = "2 … 400 degrees, levels down to 1e-200";
+        part.run(trials, [Row::relative("χ² tail, closed form", range, 1e-10)], even_degrees);
+        let range = "100 … 1e9 degrees, levels 1e-12 … 0.3, both tails";
+        part.run(trials / 2, [Row::relative("χ² tails, many degrees", range, 1e-8)], many_degrees);
+        let range = "1e4 … 1e9 trials, levels up to 1 − 1e-12";
+        let rows = [Row::relative("Clopper–Pearson limits", range, 1e-8)];
+        part.run(trials / 4 + 1, rows, binomial_ends);
+        let range = "means 1e-3 … 2000, P > 1e-18";
+        part.run(trials / 8 + 1, [Row::relative("Poisson probabilities", range, 1e-12)], poisson);
+        let range = "4096 draws of 1e-12 … 1e150, both signs";
+        part.run(trials / 4 + 1, [Row::relative("Catoni's sums", range, 1e-13)], catoni);
+        let range = "A² = 0.1 … 700, p = 1 … 1e-300";
+        let rows = [Row::relative("Anderson–Darling tail", range, 1e-11)];
+        part.run(trials / 16 + 1, rows, anderson_darling);
     })
 }
 
@@ -35,63 +44,53 @@ pub(super) fn normal_tail(z: Wide) -> Wide {
         // ½ − φ Σ z^{2n+1}/(1·3·5…(2n+1))
         let (mut term, mut sum) = (z, z);
         for n in 1..140 {
-            term = term * z * z / Wide::from(f64::from(2 * n + 1));
+            term = term * z * z / f64::from(2 * n + 1);
             sum += term;
         }
-        return Wide::from(0.5) - density * sum;
+        return 0.5 - density * sum;
     }
-    let fraction = (1..300).rev().fold(z, |below, k| z + Wide::from(f64::from(k)) / below);
+    let fraction = (1..300).rev().fold(z, |below, k| z + f64::from(k) / below);
     density / fraction
 }
 
-fn normal_law(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "levels 1e-300 … 0.5";
-    let mut quantile = Row::new("normal quantile", range, Measure::Relative, 1e-9);
-    let mut erfc = Row::new("erf and erfc", "0 … 26", Measure::Relative, 4.0 * f64::EPSILON);
-    let half_root = Wide::from(0.5).sqrt();
-    for i in 0..trials {
-        let level = if i % 2 == 0 { dice.sized(-300.0, -0.4) } else { dice.sized(-13.0, -0.4) };
-        let z = normal::upper_quantile(level);
-        let density = (-(Wide::from(z) * Wide::from(z)).scaled(-1)).exp();
-        let density = density / Wide::PI.scaled(1).sqrt();
-        let off = (normal_tail(Wide::from(z)) - Wide::from(level)) / density;
-        quantile.see((off.value() / z).abs(), || format!("level {level:e}"));
-        let x = dice.sized(-8.0, 1.41);
-        let tail = normal_tail(Wide::from(x) / half_root).scaled(1);
-        erfc.see(tail.relative_error(libm::erfc(x)), || format!("erfc {x:e}"));
-        if (0.1..5.0).contains(&x) {
-            erfc.see((Wide::ONE - tail).relative_error(libm::erf(x)), || format!("erf {x:e}"));
-        }
+fn normal_law(t: &mut Trial) -> Option<()> {
+    let level =
+        if t.number % 2 == 0 { t.dice.sized(-300.0, -0.4) } else { t.dice.sized(-13.0, -0.4) };
+    let z = normal::upper_quantile(level);
+    let density = (-Wide::product(z, z).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
+    let off = (normal_tail(Wide::from(z)) - level) / density;
+    t.place = format!("level {level:e}");
+    t.see(0, (off.value() / z).abs());
+    let x = t.dice.sized(-8.0, 1.41);
+    let tail = normal_tail(x / Wide::from(0.5).sqrt()).scaled(1);
+    t.place = format!("erfc {x:e}");
+    t.relative(1, libm::erfc(x), tail);
+    if (0.1..5.0).contains(&x) {
+        t.place = format!("erf {x:e}");
+        t.relative(1, libm::erf(x), 1.0 - tail);
     }
-    vec![quantile, erfc]
+    Some(())
 }
 
 /// `P(χ² > x) = e^{−x/2} Σ_{j<m} (x/2)^j/j!` for 2m degrees.
-fn even_degrees(dice: &mut Dice, trials: u32) -> Row {
-    let range = "2 … 400 degrees, levels down to 1e-200";
-    let mut row = Row::new("χ² tail, closed form", range, Measure::Relative, 1e-10);
-    for _ in 0..trials {
-        let pairs = 1 + dice.below(200);
-        let x = pairs as f64 * dice.between(0.2, 2.0) + dice.sized(-1.0, 2.6);
-        let half = Wide::from(x);
-        let (mut term, mut sum) = (Wide::ONE, Wide::ONE);
-        for j in 1..pairs {
-            term = term * half / Wide::from(j as f64);
-            sum += term;
-        }
-        // Half the exponent at a time: e^{−745} has no digits left.
-        let faint = (-half.scaled(-1)).exp();
-        let exact = faint * sum * faint;
-        if exact.high <= 1e-200 {
-            row.skip(|| format!("{} degrees at {:e}", 2 * pairs, 2.0 * x));
-        } else {
-            let found = chi_square::upper(2.0 * x, 2.0 * pairs as f64);
-            row.see(exact.relative_error(found), || {
-                format!("{} degrees at {:e}", 2 * pairs, 2.0 * x)
-            });
-        }
+fn even_degrees(t: &mut Trial) -> Option<()> {
+    let pairs = 1 + t.dice.below(200);
+    let x = pairs as f64 * t.dice.between(0.2, 2.0) + t.dice.sized(-1.0, 2.6);
+    t.place = format!("{} degrees at {:e}", 2 * pairs, 2.0 * x);
+    let half = Wide::from(x);
+    let (mut term, mut sum) = (Wide::ONE, Wide::ONE);
+    for j in 1..pairs {
+        term = term * half / j as f64;
+        sum += term;
     }
-    row
+    // Half the exponent at a time: e^{−745} has no digits left.
+    let faint = (-half.scaled(-1)).exp();
+    let exact = faint * sum * faint;
+    if exact.high <= 1e-200 {
+        return None;
+    }
+    t.relative(0, chi_square::upper(2.0 * x, 2.0 * pairs as f64), exact);
+    Some(())
 }
 
 /// `∫ density` from `x` on in steps of a deviation, until nothing is left.
@@ -117,122 +116,98 @@ fn remainder(n: f64) -> f64 {
 }
 
 /// Both tails against a quadrature of the density, whose exponent has 32 digits.
-fn many_degrees(dice: &mut Dice, trials: u32) -> Row {
-    let range = "100 … 1e9 degrees, levels 1e-12 … 0.3, both tails";
-    let mut row = Row::new("χ² tails, many degrees", range, Measure::Relative, 1e-8);
-    for _ in 0..trials {
-        let a = 0.5 * dice.sized(2.0, 9.0);
-        let z = dice.sign() * dice.between(0.5, 7.0);
-        let x = a + z * a.sqrt();
-        if x <= 0.1 * a {
-            row.skip(|| format!("{:e} degrees, z = {z:.3}", 2.0 * a));
-            continue;
-        }
-        let density = |t: f64| {
-            let exponent = deviance(Wide::from(a), Wide::from(t)).value() + remainder(a);
-            if t > 0.0 { (-exponent).exp() * (a / (2.0 * PI)).sqrt() / t } else { 0.0 }
-        };
-        let step = 0.125 * z.signum() * a.sqrt();
-        let exact = integral(x, step, density);
-        let tail = if z > 0.0 { chi_square::upper } else { chi_square::lower };
-        let found = tail(2.0 * x, 2.0 * a);
-        row.see((found / exact - 1.0).abs(), || format!("{:e} degrees, z = {z:.3}", 2.0 * a));
+fn many_degrees(t: &mut Trial) -> Option<()> {
+    let a = 0.5 * t.dice.sized(2.0, 9.0);
+    let z = t.dice.sign() * t.dice.between(0.5, 7.0);
+    let x = a + z * a.sqrt();
+    t.place = format!("{:e} degrees, z = {z:.3}", 2.0 * a);
+    if x <= 0.1 * a {
+        return None;
     }
-    row
+    let density = |t: f64| {
+        let exponent = deviance(Wide::from(a), Wide::from(t)).value() + remainder(a);
+        if t > 0.0 { (-exponent).exp() * (a / (2.0 * PI)).sqrt() / t } else { 0.0 }
+    };
+    let exact = integral(x, 0.125 * z.signum() * a.sqrt(), density);
+    let tail = if z > 0.0 { chi_square::upper } else { chi_square::lower };
+    t.see(0, (tail(2.0 * x, 2.0 * a) / exact - 1.0).abs());
+    Some(())
 }
 
 /// The tail at each end of the interval, as an integral of the density of the end.
-fn binomial_ends(dice: &mut Dice, trials: u32) -> Row {
-    let range = "1e4 … 1e9 trials, levels up to 1 − 1e-12";
-    let mut row = Row::new("Clopper–Pearson limits", range, Measure::Relative, 1e-8);
-    for _ in 0..trials {
-        let n = dice.sized(4.0, 9.0).round();
-        let k = (n * dice.sized(-2.3, -0.31)).round();
-        let level = 1.0 - dice.sized(-12.0, -1.0);
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
-        let (low, high) = binomial::interval(k as u64, n as u64, level);
-        let tail = 0.5 * (1.0 - level);
-        let mass = |k: f64, p: f64| {
-            let [n, k, p] = [n, k, p].map(Wide::from);
-            let exponent = deviance(k, n * p) + deviance(n - k, n * (Wide::ONE - p));
-            let [n, k] = [n, k].map(Wide::value);
-            let scale = (2.0 * PI * k * (n - k) / n).sqrt();
-            (remainder(n) - remainder(k) - remainder(n - k) - exponent.value()).exp() / scale
-        };
-        // dP(X ≥ k)/dp = (k/p) P(X = k), dP(X ≤ k)/dp = −((n − k)/(1 − p)) P(X = k).
-        let deviation = (k * (n - k) / n).sqrt() / n;
-        let inside = |p: f64| 0.0 < p && p < 1.0;
-        let above = |p: f64| if inside(p) { k / p * mass(k, p) } else { 0.0 };
-        let below = |p: f64| if inside(p) { (n - k) / (1.0 - p) * mass(k, p) } else { 0.0 };
-        let ends = [
-            (low, integral(low, -0.125 * deviation, above), above(low)),
-            (high, integral(high, 0.125 * deviation, below), below(high)),
-        ];
-        for (end, exact, slope) in ends {
-            // How far the end is from where the tail would be right.
-            let off = (exact - tail) / slope;
-            row.see((off / end).abs(), || format!("{k} of {n}, level 1 − {:e}", 1.0 - level));
-        }
+fn binomial_ends(t: &mut Trial) -> Option<()> {
+    let n = t.dice.sized(4.0, 9.0).round();
+    let k = (n * t.dice.sized(-2.3, -0.31)).round();
+    let level = 1.0 - t.dice.sized(-12.0, -1.0);
+    t.place = format!("{k} of {n}, level 1 − {:e}", 1.0 - level);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // counts
+    let (low, high) = binomial::interval(k as u64, n as u64, level);
+    let tail = 0.5 * (1.0 - level);
+    let mass = |k: f64, p: f64| {
+        let [wide_n, wide_k, p] = [n, k, p].map(Wide::from);
+        let exponent = deviance(wide_k, wide_n * p) + deviance(wide_n - wide_k, wide_n * (1.0 - p));
+        let scale = (2.0 * PI * k * (n - k) / n).sqrt();
+        (remainder(n) - remainder(k) - remainder(n - k) - exponent.value()).exp() / scale
+    };
+    // dP(X ≥ k)/dp = (k/p) P(X = k), dP(X ≤ k)/dp = −((n − k)/(1 − p)) P(X = k).
+    let deviation = (k * (n - k) / n).sqrt() / n;
+    let inside = |p: f64| 0.0 < p && p < 1.0;
+    let above = |p: f64| if inside(p) { k / p * mass(k, p) } else { 0.0 };
+    let below = |p: f64| if inside(p) { (n - k) / (1.0 - p) * mass(k, p) } else { 0.0 };
+    let ends = [
+        (low, integral(low, -0.125 * deviation, above), above(low)),
+        (high, integral(high, 0.125 * deviation, below), below(high)),
+    ];
+    for (end, exact, slope) in ends {
+        // How far the end is from where the tail would be right.
+        t.see(0, ((exact - tail) / slope / end).abs());
     }
-    row
+    Some(())
 }
 
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
-fn poisson(dice: &mut Dice, trials: u32) -> Row {
-    let range = "means 1e-3 … 2000, P > 1e-18";
-    let mut row = Row::new("Poisson probabilities", range, Measure::Relative, 1e-12);
-    for _ in 0..trials {
-        let mean = dice.sized(-3.0, 3.3);
-        let law = CountLaw::poisson(mean);
-        let mut ln_mass = -Wide::from(mean);
-        let ln_mean = Wide::from(mean).ln();
-        for (n, &found) in law.pmf.iter().enumerate() {
-            if n > 0 {
-                ln_mass = ln_mass + ln_mean - Wide::from(n as f64).ln();
-            }
-            let exact = ln_mass.exp();
-            if exact.high > 1e-18 {
-                row.see(exact.relative_error(found), || format!("P({n}) of mean {mean:e}"));
-            }
+fn poisson(t: &mut Trial) -> Option<()> {
+    let mean = t.dice.sized(-3.0, 3.3);
+    let (mut ln_mass, ln_mean) = (-Wide::from(mean), Wide::from(mean).ln());
+    for (n, &found) in CountLaw::poisson(mean).pmf.iter().enumerate() {
+        if n > 0 {
+            ln_mass = ln_mass + ln_mean - Wide::from(n as f64).ln();
+        }
+        let exact = ln_mass.exp();
+        if exact.high > 1e-18 {
+            t.place = format!("P({n}) of mean {mean:e}");
+            t.relative(0, found, exact);
         }
     }
-    row
+    Some(())
 }
 
 /// Products of factors against sums of logarithms.
-fn catoni(dice: &mut Dice, trials: u32) -> Row {
-    let range = "4096 draws of 1e-12 … 1e150, both signs";
-    let mut row = Row::new("Catoni's sums", range, Measure::Relative, 1e-13);
-    let argument = Argument { slope: 1.0, shift: 0.0 };
-    for _ in 0..trials {
-        let widest = [3.0, 150.0][dice.below(2)];
-        let y: Vec<f64> = (0..4096).map(|_| dice.sign() * dice.sized(-12.0, widest)).collect();
-        let (mut exact, mut size) = (Wide::default(), 0.0);
-        for &y in &y {
-            let t = Wide::from(y.abs());
-            let psi = (t * (Wide::ONE + t.scaled(-1))).ln_1p();
-            size += psi.value();
-            exact += if y < 0.0 { -psi } else { psi };
-        }
-        let mut sums = PsiSums::<1>::default();
-        y.chunks(1000).for_each(|y| sums.absorb(y, &[argument]));
-        let off = (Wide::from(sums.totals()[0]) - exact).abs().value();
-        row.see(off / size, || format!("up to 1e{widest}"));
+fn catoni(t: &mut Trial) -> Option<()> {
+    let widest = [3.0, 150.0][t.dice.below(2)];
+    let y: Vec<f64> = (0..4096).map(|_| t.dice.sign() * t.dice.sized(-12.0, widest)).collect();
+    let (mut exact, mut size) = (Wide::default(), 0.0);
+    for &y in &y {
+        let size_of_y = Wide::from(y.abs());
+        let psi = (size_of_y * (1.0 + size_of_y.scaled(-1))).ln_1p();
+        size += psi.value();
+        exact += if y < 0.0 { -psi } else { psi };
     }
-    row
+    let mut sums = PsiSums::<1>::default();
+    y.chunks(1000).for_each(|y| sums.absorb(y, &[Argument { slope: 1.0, shift: 0.0 }]));
+    t.place = format!("up to 1e{widest}");
+    t.see(0, off(sums.totals()[0], exact) / size);
+    Some(())
 }
 
 /// Smirnov's sum for the upper tail against Anderson and Darling's series for the lower one, which shares
 /// no term with it, and beyond x = 40 against the first term's expansion.
-fn anderson_darling(dice: &mut Dice, trials: u32) -> Row {
-    let range = "A² = 0.1 … 700, p = 1 … 1e-300";
-    let mut row = Row::new("Anderson–Darling tail", range, Measure::Relative, 1e-11);
-    for i in 0..trials {
-        let x = if i % 2 == 0 { dice.sized(-1.0, 1.6) } else { dice.sized(1.6, 2.84) };
-        let exact = if x < 40.0 { Wide::ONE - below(x) } else { Wide::from(far_tail(x)) };
-        row.see(exact.relative_error(anderson_darling::upper_tail(x)), || format!("A² = {x:e}"));
-    }
-    row
+fn anderson_darling(t: &mut Trial) -> Option<()> {
+    let x = if t.number % 2 == 0 { t.dice.sized(-1.0, 1.6) } else { t.dice.sized(1.6, 2.84) };
+    let exact = if x < 40.0 { 1.0 - below(x) } else { Wide::from(far_tail(x)) };
+    t.place = format!("A² = {x:e}");
+    t.relative(0, anderson_darling::upper_tail(x), exact);
+    Some(())
 }
 
 /// `P(A² ≤ x)` as Anderson and Darling give it (Journal of the American Statistical Association 49,
@@ -248,24 +223,24 @@ fn below(x: f64) -> Wide {
     let mut ways = Wide::ONE;
     for j in 0..16 {
         let odd = f64::from(4 * j + 1);
-        let c = Wide::from(odd) * Wide::from(odd) * Wide::PI * Wide::PI / eighth.scaled(6);
+        let c = Wide::product(odd, odd) * Wide::PI * Wide::PI / eighth.scaled(6);
         if c.high > 90.0 {
             break;
         }
         let mut integral = (eighth - c).exp().scaled(-1);
         for i in 1.. {
             let square = Wide::product(f64::from(i), STEP) * Wide::product(f64::from(i), STEP);
-            let exponent = eighth / (square + Wide::ONE) - c * (square + Wide::ONE);
+            let exponent = eighth / (square + 1.0) - c * (square + 1.0);
             if exponent.high < -90.0 {
                 break;
             }
             integral += exponent.exp();
         }
-        sum += ways * Wide::from(odd) * integral;
+        sum += ways * odd * integral;
         let n = Wide::from(f64::from(j));
-        ways = -(ways * (n + Wide::from(0.5)) / (n + Wide::ONE));
+        ways = -(ways * (n + 0.5) / (n + 1.0));
     }
-    sum * Wide::from(STEP) * Wide::PI.scaled(1).sqrt() / Wide::from(x)
+    sum * STEP * Wide::PI.scaled(1).sqrt() / x
 }
 
 /// The first term of Smirnov's sum, with `u = 2 + q²` in panels; the second is `e^{−4x}` of it.

@@ -27,12 +27,12 @@ struct Sampled {
 impl Sampled {
     fn new(sigma: f64, sampling: f64, control: f64) -> Self {
         let [sigma, sampling, control] = wide([sigma, sampling, control]);
-        Self { sampling, control, weight: Wide::ONE - (sigma - control) / sampling }
+        Self { sampling, control, weight: 1.0 - (sigma - control) / sampling }
     }
 
     /// `kσ_c + σ̂(1 − x)`, x what is left of a weight to the power k.
     fn loss(&self, k: usize, left: Wide) -> Wide {
-        Wide::from(k as f64) * self.control + self.sampling * (Wide::ONE - left)
+        k as f64 * self.control + self.sampling * (1.0 - left)
     }
 
     fn signed(&self, k: usize) -> Wide {
@@ -76,7 +76,7 @@ pub struct Wanted {
 
 fn shadow_losses(sigma: f64, tracking: Tracking) -> [Wide; 5] {
     std::array::from_fn(|k| match tracking {
-        Tracking::Exact => Wide::from(sigma) * Wide::from(k as f64),
+        Tracking::Exact => Wide::from(sigma) * k as f64,
         Tracking::Ratio { sampling, control } => Sampled::new(sigma, sampling, control).signed(k),
         Tracking::Delta { .. } => Wide::from(if k == 0 { 0.0 } else { sigma }),
     })
@@ -89,7 +89,7 @@ fn cast(sigma: f64, tracking: Tracking) -> Vec<(Wide, i32, Wide)> {
         Tracking::Exact => Vec::new(),
         Tracking::Ratio { sampling, .. } => vec![(Wide::from(sampling), 1, nothing)],
         Tracking::Delta { sampling } => {
-            let ratio = Wide::from(sampling) / Wide::from(sigma);
+            let ratio = Wide::from(sampling) / sigma;
             vec![(ratio, 0, nothing), (-ratio, 0, Wide::from(sigma))]
         }
     }
@@ -139,7 +139,7 @@ impl Case {
         let mut known: Vec<usize> = Vec::new();
         for k in 1..5 {
             let terms = (1..=k).map(|j| {
-                let factor = Wide::from(binomial(k, j)) * power(weight, k - j) * power(gain, j);
+                let factor = binomial(k, j) * power(weight, k - j) * power(gain, j);
                 let lower = (j < k).then(|| known[k - j - 1]);
                 let kernel = (-2 * i32::try_from(j).unwrap_or(0), self.shadow[j]);
                 self.term(sampling * factor, kernel, lower)
@@ -163,9 +163,8 @@ impl Case {
         let Sampled { sampling, weight, .. } = self.walk;
         let (gain, size) = (self.scattered / sampling, weight.abs());
         let nothing = Wide::default();
-        let ways = |j: usize, n: usize| {
-            sampling * Wide::from(binomial(j, n)) * power(size, j - n) * power(gain, n)
-        };
+        let ways =
+            |j: usize, n: usize| sampling * binomial(j, n) * power(size, j - n) * power(gain, n);
         let of_power = |n: usize| -2 * i32::try_from(n).unwrap_or(0);
         let mut f: Vec<usize> = Vec::new();
         for j in 1..4 {
@@ -238,38 +237,25 @@ impl Case {
                     at[index] * power(scattered, degree) * power(at[norm], degree - points)
                 })
                 .collect();
-            let [one, two, three, four, triple, six] = wide([
-                n,
-                n * (n - 1.0),
-                n * (n - 1.0) * (n - 2.0),
-                n * (n - 1.0) * (n - 2.0) * (n - 3.0),
-                3.0,
-                6.0,
-            ]);
-            let third = one * of[3] + triple * two * of[4] + three * of[5];
-            let fourth = one * of[6]
-                + two * (of[7].scaled(2) + triple * of[8])
-                + six * three * of[9]
+            let two = n * (n - 1.0);
+            let (three, four) = (two * (n - 2.0), two * (n - 2.0) * (n - 3.0));
+            let third = n * of[3] + 3.0 * two * of[4] + three * of[5];
+            let fourth = n * of[6]
+                + two * (of[7].scaled(2) + 3.0 * of[8])
+                + 6.0 * three * of[9]
                 + four * of[10];
-            [one * of[0], one * of[1] + two * of[2], third, fourth]
-                .into_iter()
-                .zip(1..)
-                .map(|(sum, k)| sum / one.powi(k))
-                .collect::<Vec<_>>()
+            let sums = [n * of[0], n * of[1] + two * of[2], third, fourth];
+            std::array::from_fn(|k| sums[k] / power(Wide::from(n), k + 1))
         };
         Wanted {
             name: "shared walk",
             is_walk: true,
             found,
-            moments: Box::new(move |at| {
-                let all = moments(at);
-                std::array::from_fn(|k| all[k])
-            }),
-            lookups: Some(Box::new(move |at| {
-                flown + Wide::from(n) * (Wide::ONE + at[cast] / at[norm])
-            })),
+            moments: Box::new(moments),
+            lookups: Some(Box::new(move |at| flown + n * (1.0 + at[cast] / at[norm]))),
         }
     }
+
     /// Of delta tracking.
     pub fn found(&mut self, scene: &Scene) -> Wanted {
         let sigma = self.sigma;
@@ -314,7 +300,7 @@ impl Case {
         let found = Points::of(scene, &Technique { density, gain: &gain, blur, found: None });
         let none = Wide::default();
         let before = |k: usize, case: &Self| match along {
-            Along::Exact => case.sigma * Wide::from(k as f64),
+            Along::Exact => case.sigma * k as f64,
             Along::Ratio => case.walk.signed(k),
             Along::Delta => case.sigma,
         };
@@ -322,7 +308,7 @@ impl Case {
         let norm = self.add(a, Wide::ONE, (n, none), None);
         let known = [1, 2, 3, 4].map(|k: usize| {
             let whole = i32::try_from(k).unwrap_or(0);
-            let rate = before(k, self) + a - Wide::from(k as f64) * a;
+            let rate = before(k, self) + a - k as f64 * a;
             let kernel = (n - whole * (2 + n), self.shadow[k]);
             self.add(rate, power(scattered, k), kernel, None)
         });
@@ -347,7 +333,7 @@ impl Case {
             }),
             lookups: Some(Box::new(move |at| {
                 let walked = walked.map_or(ratio * (at[norm] - at[left]), |walked| at[walked]);
-                Wide::ONE + (walked + at[cast]) / at[norm]
+                1.0 + (walked + at[cast]) / at[norm]
             })),
         }
     }

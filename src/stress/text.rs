@@ -32,3 +32,13 @@ pub(super) fn volume(text: &str) -> Option<std::sync::Arc<Volume>> {
     let volume = read_volume(&Settings::new(&root, Path::new("."), &faults));
     volume.map(|(_, volume)| volume).filter(|_| faults.borrow().is_empty())
 }
+
+/// A homogeneous medium from 0 on.
+pub(super) fn homogeneous(extinction: f64, length: f64) -> Option<Medium> {
+    medium(&format!("medium.constant.extinction = {extinction:e}\nspan = [0, {length:e}]"))
+}
+
+/// As a place in a table.
+pub(super) fn one_line(text: &str) -> String {
+    text.replace('\n', ", ")
+}

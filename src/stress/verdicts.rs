@@ -10,7 +10,7 @@
 
 use rayon::prelude::*;
 
-use super::{Effort, Measure, Row, text};
+use super::{Effort, Row, text};
 use crate::harness::checks::Kind;
 use crate::harness::record::{Row as Found, Verdict};
 use crate::harness::{Amount, Options, Plan, evaluate, run, verdict};
@@ -111,7 +111,7 @@ fn runs(effort: Effort, seed: u64, cases: &[(&str, &str)]) -> Vec<(String, Vec<F
 
 fn correct(effort: Effort, seed: u64) -> Row {
     let range = "w > 2σ_t, kurtosis > 1e12, cancelling, overflowing";
-    let mut row = Row::new("correct estimators that fail", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("correct estimators that fail", range);
     for (name, rows) in runs(effort, seed, &WILD) {
         row.count(rows.is_empty(), || format!("{name}: not read"));
         for found in rows {
@@ -125,7 +125,7 @@ fn correct(effort: Effort, seed: u64) -> Row {
 /// What is not decided says why.
 fn explained(effort: Effort, seed: u64) -> Row {
     let range = "the same, one seed";
-    let mut row = Row::new("undecided without a reason", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("undecided without a reason", range);
     for (name, problem) in WILD {
         for found in judged(problem, seed, effort.of(2_000, 20_000)) {
             let is_silent = found.verdict != Some(Verdict::Pass) && found.reason.is_empty();
@@ -138,7 +138,7 @@ fn explained(effort: Effort, seed: u64) -> Row {
 /// Marching with few steps, off by 0.5 to 30 % and saying that it is not.
 fn marching(effort: Effort, seed: u64) -> Row {
     let range = "ray marching off by 0.5 … 30 %, 2e3 and 4e4 draws";
-    let mut row = Row::new("biased estimators that pass", range, Measure::Count, 0.0);
+    let mut row = Row::wrong("biased estimators that pass", range);
     let cases = [
         (
             "a blob between the steps",
@@ -165,7 +165,7 @@ fn marching(effort: Effort, seed: u64) -> Row {
 /// passes.
 fn shifted(effort: Effort, seed: u64) -> Row {
     let range = "the same, moved by ±ε; promised: 1 % pass";
-    let mut row = Row::new("scalars off by ε that pass", range, Measure::Improbability, 6.0);
+    let mut row = Row::improbable("scalars off by ε that pass", range);
     let mut jobs = Vec::new();
     for (name, problem) in WILD {
         for number in 0..effort.of(1, 32) {

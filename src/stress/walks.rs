@@ -10,13 +10,14 @@
 //! E[M] = (1 − R₀ − T₀)/(1 − Q₀ − S₀),  R₀ and T₀ those of k = 0
 //! ```
 
-use super::collided::central;
 use super::costs::stated;
 use super::ordinates::Ordinates;
 use super::peierls::Peierls;
-use super::rods::{moments_of, of_relative, of_stated};
+use super::rods::moments_of;
 use super::slabs::{LIGHTS, lights, phase};
-use super::{Dice, Effort, Measure, Row, in_parts, text};
+use super::text;
+use super::trial::{Dice, Trial, central, of_relative};
+use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Wide};
 use crate::phase::{Phase, henyey_greenstein::HenyeyGreenstein, isotropic::Isotropic};
@@ -26,7 +27,6 @@ use crate::theory::slab::layer::Slice;
 use crate::theory::slab::{self, Answer, Energy, Existence, Piece, Pieces, Resolution, Walk};
 use crate::theory::{Mesh, Moments};
 
-const PARTS: u64 = 16;
 /// Directions of the ordinates.
 const ORDINATES: usize = 48;
 /// An albedo so near to 1 is taken so far below it: at 1 two solutions are one.
@@ -42,50 +42,44 @@ const FAINT: f64 = 1e-9;
 /// All rows.
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
-    in_parts(PARTS, |part| {
-        let dice = &mut Dice::new(seed, "walks", part);
-        let some = |every: u64, full: u32| effort.of(u32::from(part % every == 0), full);
-        let mut rows = even(dice, some(4, 4));
-        rows.extend(finer(dice, some(8, 4)));
-        rows.extend(graded(dice, some(8, 3)));
-        rows.extend(ramps(dice, some(8, 1)));
-        rows
+    in_parts(16, "walks", seed, |part| {
+        let some = |every: u64, full: u32| effort.of(u32::from(part.number % every == 0), full);
+        let trials = [some(4, 4), some(8, 4), some(8, 3), some(8, 1)];
+        let range =
+            "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
+        let [second, fourth] = kinds(range);
+        let lookups = |range| Row::stated("lookups of walks in a slab", range);
+        let diverging = Row::wrong("diverging variances in slabs, wrong", range);
+        part.run(trials[0], [second, fourth, lookups(range), diverging], even);
+        let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
+        let [second, fourth] = kinds(range);
+        part.run(trials[1], [second, fourth, lookups(range)], finer);
+        let range = "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
+        part.run(trials[2], kinds(range), graded);
+        let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
+        part.run(trials[3], kinds(range), ramps);
     })
 }
 
-/// The rows of one kind of slab.
-struct Kinds {
-    second: Row,
-    fourth: Row,
+fn kinds(range: &str) -> [Row; 2] {
+    ["variance", "fourth moment"]
+        .map(|what| Row::stated(format!("{what} of walks in a slab"), range))
 }
 
-impl Kinds {
-    fn new(range: &str) -> Self {
-        let row = |what: &str| {
-            Row::new(format!("{what} of walks in a slab"), range, Measure::OfStated, 1.0)
-        };
-        Self { second: row("variance"), fourth: row("fourth moment") }
-    }
-
-    fn skip(&mut self, place: impl Fn() -> String) {
-        self.second.skip(&place);
-        self.fourth.skip(&place);
-    }
-
-    /// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to
-    /// where they become so either may be right.
-    fn see(&mut self, found: Option<Moments>, raw: &[Wide], place: &dyn Fn() -> String) {
-        let Some(Moments { scale, relative, error }) = found else { return self.skip(place) };
-        let none = Wide::from(f64::NAN);
-        let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(none));
-        let exact = central(four, Wide::from(scale));
-        let rows = [(&mut self.second, 2, relative[0]), (&mut self.fourth, 4, relative[2])];
-        for ((row, needed, found), exact) in rows.into_iter().zip(exact) {
-            match (raw.len() >= needed, found.is_finite()) {
-                (true, true) => row.see(of_relative(found, error, exact), place),
-                (false, false) => row.see(0.0, place),
-                _ => row.skip(place),
-            }
+/// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to
+/// where they become so either may be right.
+fn see(t: &mut Trial, found: Option<Moments>, raw: &[Wide]) {
+    let Some(Moments { scale, relative, error }) = found else {
+        t.skip(0);
+        return t.skip(1);
+    };
+    let four = std::array::from_fn(|k| raw.get(k).copied().unwrap_or(Wide::from(f64::NAN)));
+    let exact = central(four, Wide::from(scale));
+    for (row, needed, found) in [(0, 2, relative[0]), (1, 4, relative[2])] {
+        match (raw.len() >= needed, found.is_finite()) {
+            (true, true) => t.see(row, of_relative(found, error, exact[row])),
+            (false, false) => t.see(row, 0.0),
+            _ => t.skip(row),
         }
     }
 }
@@ -100,8 +94,8 @@ fn albedo(dice: &mut Dice) -> f64 {
 
 /// An albedo that is not 1.
 fn below_one(albedo: Wide) -> Wide {
-    let is_white = (Wide::ONE - albedo).high.abs() < WHITE;
-    if is_white { Wide::ONE - Wide::from(WHITE) } else { albedo }
+    let is_white = (1.0 - albedo).high.abs() < WHITE;
+    if is_white { 1.0 - Wide::from(WHITE) } else { albedo }
 }
 
 /// A rule that exists for ratios up to one.
@@ -114,204 +108,177 @@ fn rule(dice: &mut Dice, most: f64) -> ParticleRule {
 /// What leaves in all lights.
 type Leaving = Vec<[Wide; 2]>;
 
-/// Compares a walk in all lights with what leaves the slabs of its moments, of which the first infinite one
-/// and those beyond are not there, and the walk's lookups with others.
-fn compare(
-    (kinds, lookups): (&mut Kinds, &mut Row),
-    walk: &Walk,
-    lights: &[Light],
-    exact: &[Leaving],
-    collisions: Option<&[Wide]>,
-    what: &str,
-) {
-    let truths: Vec<Answer> = exact.first().map_or_else(Vec::new, |all| {
-        let known = |x: Wide| Known::new(x.value(), f64::EPSILON * x.value());
-        let answer = |both: &[Wide; 2]| {
-            let [reflected, transmitted] = both.map(known);
-            Answer { reflected, transmitted, score: Known::exact(0.0) }
-        };
-        all.iter().map(answer).collect()
-    });
+/// What leaves the slabs of a walk's moments, of which the first infinite one and those beyond are not there,
+/// and how often it collides; `None` where lookups have no row.
+struct Exact {
+    leaving: Vec<Leaving>,
+    collisions: Option<Option<Vec<Wide>>>,
+}
+
+/// Compares a walk in all lights.
+fn compare(t: &mut Trial, walk: &Walk, lights: &[Light], exact: Exact, what: &str) {
+    let known = |x: Wide| Known::new(x.value(), f64::EPSILON * x.value());
+    let answer = |both: &[Wide; 2]| {
+        let [reflected, transmitted] = both.map(known);
+        Answer { reflected, transmitted, score: Known::exact(0.0) }
+    };
+    let first = exact.leaving.first();
+    let truths: Vec<Answer> = first.map_or_else(Vec::new, |all| all.iter().map(answer).collect());
     let all = walk.predict_all(lights, &truths);
     for (i, (light, found)) in lights.iter().zip(all).enumerate() {
-        let place = || format!("{what}, {light:?}");
-        if truths[i].reflected.value.min(truths[i].transmitted.value) < FAINT {
-            kinds.skip(place);
-            lookups.skip(place);
-            continue;
+        t.place = format!("{what}, {light:?}");
+        let is_faint = truths[i].reflected.value.min(truths[i].transmitted.value) < FAINT;
+        if is_faint {
+            t.skip(0);
+            t.skip(1);
         }
-        for (channel, side) in found.channels.iter().zip(0..) {
-            let raw: Vec<Wide> = exact.iter().map(|all| all[i][side]).collect();
-            kinds.see(channel.moments, &raw, &|| format!("{}, {}", channel.name, place()));
+        if let Some(collisions) = &exact.collisions {
+            let known = found.lookups.zip(collisions.as_ref()).filter(|_| !is_faint);
+            match known {
+                Some((law, exact)) => t.stated(2, stated(&law), exact[i]),
+                None => t.skip(2),
+            }
         }
-        match found.lookups.zip(collisions) {
-            Some((law, exact)) => lookups.see(of_stated(stated(&law), exact[i]), place),
-            None => lookups.skip(place),
+        for (channel, side) in found.channels.iter().zip(0..).filter(|_| !is_faint) {
+            let raw: Vec<Wide> = exact.leaving.iter().map(|all| all[i][side]).collect();
+            t.place = format!("{}, {what}, {light:?}", channel.name);
+            see(t, channel.moments, &raw);
         }
     }
+}
+
+/// A walk in isotropic light or another.
+fn walk(
+    phase: Phase,
+    (albedo, rule): (f64, ParticleRule),
+    pieces: Pieces,
+    most: f64,
+    depth: f64,
+) -> Walk {
+    let incidence = Incidence { light: Light::Diffuse, phase };
+    Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, laws: false }
 }
 
 /// One ratio, isotropic scattering: discrete ordinates.
-fn even(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
-    let mut kinds = Kinds::new(range);
-    let mut lookups = Row::new("lookups of walks in a slab", range, Measure::OfStated, 1.0);
-    let mut diverging = Row::new("diverging variances in slabs, wrong", range, Measure::Count, 0.0);
-    for _ in 0..trials {
-        let (depth, albedo, ratio) = (dice.sized(-3.0, 1.48), albedo(dice), dice.sized(-1.0, 0.5));
-        let (rule, lights) = (rule(dice, ratio), &lights(dice));
-        let (phase, flown) = (Phase::Isotropic(Isotropic), depth / ratio);
-        let walk = Walk {
-            incidence: Incidence { light: Light::Diffuse, phase },
-            albedo,
-            rule,
-            pieces: Pieces::Exact(vec![Piece::of(flown, ratio)]),
-            largest_ratio: ratio,
-            depth,
-            laws: false,
-        };
-        let what = format!("{rule:?}, τ = {depth:e}, r = {ratio:e}, a = {albedo:e}");
-        let of_power = |k: u32, longer: f64| {
-            let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k);
-            let lost = Wide::ONE - q;
-            let albedo = below_one(s / lost);
-            let slab = || {
-                let depth = Wide::from(flown * longer) * lost;
-                Ordinates::new(depth, albedo, ORDINATES).filter(Ordinates::is_positive)
-            };
-            if lost.high > 0.0 { slab() } else { None }
-        };
-        let exact: Vec<Ordinates> = (1..=4).map_while(|k| of_power(k, 1.0)).collect();
-        // Within two thousandths of the critical depth either answer is right.
-        let [before, beyond] = match exact.get(1) {
-            Some(slab) if !slab.swings() => [true; 2],
-            _ => [0.998, 1.002].map(|longer| of_power(2, longer).is_some()),
-        };
-        if before == beyond {
-            let diverges = walk.second_moment() == Existence::Diverges;
-            diverging.count(diverges == before, || what.clone());
+fn even(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
+    let (depth, albedo, ratio) = (dice.sized(-3.0, 1.48), albedo(dice), dice.sized(-1.0, 0.5));
+    let (rule, lights) = (rule(dice, ratio), &lights(dice));
+    let (phase, flown) = (Phase::Isotropic(Isotropic), depth / ratio);
+    let pieces = Pieces::Exact(vec![Piece::of(flown, ratio)]);
+    let walk = walk(phase, (albedo, rule), pieces, ratio, depth);
+    let what = format!("{rule:?}, τ = {depth:e}, r = {ratio:e}, a = {albedo:e}");
+    let of_power = |k: u32, longer: f64| {
+        let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k);
+        let lost = 1.0 - q;
+        if lost.high <= 0.0 {
+            return None;
         }
-        let exact: Vec<Leaving> = exact
-            .iter()
-            .map(|slab| lights.iter().map(|&light| slab.energy(light)).collect())
-            .collect();
-        let [q, s] = moments_of(rule, Wide::from(ratio), albedo, 0);
-        let ends = Wide::ONE - q - s;
-        let ends = if ends.high.abs() < 1e-13 { (Wide::ONE - q) * Wide::from(WHITE) } else { ends };
-        let collisions = of_power(0, 1.0).map(|slab| -> Vec<Wide> {
-            let left = |&light: &Light| slab.energy(light).into_iter().sum::<Wide>();
-            lights.iter().map(|light| (Wide::ONE - left(light)) / ends).collect()
-        });
-        let rows = (&mut kinds, &mut lookups);
-        compare(rows, &walk, lights, &exact, collisions.as_deref(), &what);
+        let depth = Wide::from(flown * longer) * lost;
+        Ordinates::new(depth, below_one(s / lost), ORDINATES).filter(Ordinates::is_positive)
+    };
+    let exact: Vec<Ordinates> = (1..=4).map_while(|k| of_power(k, 1.0)).collect();
+    // Within two thousandths of the critical depth either answer is right.
+    let [before, beyond] = match exact.get(1) {
+        Some(slab) if !slab.swings() => [true; 2],
+        _ => [0.998, 1.002].map(|longer| of_power(2, longer).is_some()),
+    };
+    if before == beyond {
+        t.place.clone_from(&what);
+        t.count(3, (walk.second_moment() == Existence::Diverges) == before);
     }
-    vec![kinds.second, kinds.fourth, lookups, diverging]
+    let energy = |slab: &Ordinates| lights.iter().map(|&light| slab.energy(light)).collect();
+    let leaving = exact.iter().map(energy).collect();
+    let [q, s] = moments_of(rule, Wide::from(ratio), albedo, 0);
+    let ends = 1.0 - q - s;
+    let ends = if ends.high.abs() < 1e-13 { (1.0 - q) * WHITE } else { ends };
+    let collisions = of_power(0, 1.0).map(|slab| -> Vec<Wide> {
+        let left = |&light: &Light| slab.energy(light).into_iter().sum::<Wide>();
+        lights.iter().map(|light| (1.0 - left(light)) / ends).collect()
+    });
+    compare(t, &walk, lights, Exact { leaving, collisions: Some(collisions) }, &what);
+    Some(())
 }
 
 /// Layers of other ratios and other phase functions: the same slabs with more directions.
-fn finer(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
-    let mut kinds = Kinds::new(range);
-    let mut lookups = Row::new("lookups of walks in a slab", range, Measure::OfStated, 1.0);
-    for _ in 0..trials {
-        let (depth, albedo) = (dice.sized(-3.0, 1.48), albedo(dice));
-        let ratios: Vec<f64> = (0..=dice.below(3)).map(|_| dice.sized(-1.0, 0.3)).collect();
-        let most = ratios.iter().copied().fold(0.0, f64::max);
-        let (rule, phase, lights) = (rule(dice, most), phase(dice), &lights(dice));
-        let thin = depth / ratios.len() as f64;
-        let walk = Walk {
-            incidence: Incidence { light: Light::Diffuse, phase },
-            albedo,
-            rule,
-            pieces: Pieces::Exact(ratios.iter().map(|&r| Piece::of(thin / r, r)).collect()),
-            largest_ratio: most,
-            depth,
-            laws: false,
+fn finer(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
+    let (depth, albedo) = (dice.sized(-3.0, 1.48), albedo(dice));
+    let ratios: Vec<f64> = (0..=dice.below(3)).map(|_| dice.sized(-1.0, 0.3)).collect();
+    let most = ratios.iter().copied().fold(0.0, f64::max);
+    let (rule, phase, lights) = (rule(dice, most), phase(dice), &lights(dice));
+    let thin = depth / ratios.len() as f64;
+    let pieces = Pieces::Exact(ratios.iter().map(|&r| Piece::of(thin / r, r)).collect());
+    let walk = walk(phase, (albedo, rule), pieces, most, depth);
+    let what = format!("{rule:?}, τ = {depth:e}, r = {ratios:?}, a = {albedo:e}, {phase:?}");
+    let of_power = |k: u32| {
+        let slice = |&ratio: &f64| {
+            let [straight, scattered] =
+                moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+            Slice { flown: thin / ratio, straight, scattered, score: 1.0 }
         };
-        let what = format!("{rule:?}, τ = {depth:e}, r = {ratios:?}, a = {albedo:e}, {phase:?}");
-        let of_power = |k: u32| {
-            let slice = |&ratio: &f64| {
-                let [straight, scattered] =
-                    moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
-                Slice { flown: thin / ratio, straight, scattered, score: 1.0 }
-            };
-            let slices: Vec<Slice> = ratios.iter().map(slice).collect();
-            slab::energies(&phase, lights, &slices, FINER)
-        };
-        let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
-        let exact: Vec<Leaving> =
-            (1..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect()).collect();
-        let collisions = of_power(0)
-            .map(|all| all.iter().map(|energy| Wide::from(energy.score)).collect::<Vec<_>>());
-        let rows = (&mut kinds, &mut lookups);
-        compare(rows, &walk, lights, &exact, collisions.as_deref(), &what);
-    }
-    vec![kinds.second, kinds.fourth, lookups]
+        let slices: Vec<Slice> = ratios.iter().map(slice).collect();
+        slab::energies(&phase, lights, &slices, FINER)
+    };
+    let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
+    let score = |energy: &Energy| Wide::from(energy.score);
+    let exact = Exact {
+        leaving: (1..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect()).collect(),
+        collisions: Some(of_power(0).map(|all| all.iter().map(score).collect())),
+    };
+    compare(t, &walk, lights, exact, &what);
+    Some(())
 }
 
 /// r that varies, and other phase functions: the same layers with more directions.
-fn ramps(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
-    let mut kinds = Kinds::new(range);
-    // Lookups are not predicted here.
-    let mut none = Row::new("", "", Measure::Count, 0.0);
-    for _ in 0..trials {
-        let (flown, albedo) = (dice.sized(-3.0, 0.7), albedo(dice));
-        let ends = [dice.between(0.0, 1.4), dice.between(0.0, 1.4)];
-        let phase = match HenyeyGreenstein::new(dice.between(-0.6, 0.6)) {
-            Some(phase) if dice.below(4) > 0 => Phase::HenyeyGreenstein(phase),
-            _ => Phase::Isotropic(Isotropic),
+fn ramps(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
+    let (flown, albedo) = (dice.sized(-3.0, 0.7), albedo(dice));
+    let ends = [dice.between(0.0, 1.4), dice.between(0.0, 1.4)];
+    let phase = match HenyeyGreenstein::new(dice.between(-0.6, 0.6)) {
+        Some(phase) if dice.below(4) > 0 => Phase::HenyeyGreenstein(phase),
+        _ => Phase::Isotropic(Isotropic),
+    };
+    let (rule, lights) = (rule(dice, f64::INFINITY), &lights(dice));
+    let cut = |count: u32| -> Vec<Piece> {
+        let ratio = |place: f64| ends[0] + (ends[1] - ends[0]) * place / f64::from(count);
+        let layer = |i: u32| {
+            let middle = f64::from(i) + 0.5;
+            let nodes = [middle - 0.75f64.sqrt() / 3.0, middle + 0.75f64.sqrt() / 3.0];
+            let ratios = nodes.map(|place| [0.5, ratio(place)]).to_vec();
+            Piece { flown: flown / f64::from(count), ratios }
         };
-        let (rule, lights) = (rule(dice, f64::INFINITY), &lights(dice));
-        let cut = |count: u32| -> Vec<Piece> {
-            let ratio = |place: f64| ends[0] + (ends[1] - ends[0]) * place / f64::from(count);
-            let layer = |i: u32| {
-                let middle = f64::from(i) + 0.5;
-                let nodes = [middle - 0.75f64.sqrt() / 3.0, middle + 0.75f64.sqrt() / 3.0];
-                let ratios = nodes.map(|place| [0.5, ratio(place)]).to_vec();
-                Piece { flown: flown / f64::from(count), ratios }
-            };
-            (0..count).map(layer).collect()
+        (0..count).map(layer).collect()
+    };
+    let cuts = [cut(12), cut(24)];
+    let of_power = |k: u32| -> Option<Leaving> {
+        let slice = |piece: &Piece| {
+            let [mut straight, mut scattered] = [0.0; 2];
+            for &[share, ratio] in &piece.ratios {
+                let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+                straight += share * q;
+                scattered += share * s;
+            }
+            Slice { flown: piece.flown, straight, scattered, score: 0.0 }
         };
-        let cuts = [cut(12), cut(24)];
-        let of_power = |k: u32| -> Option<Leaving> {
-            let slice = |piece: &Piece| {
-                let moments = |&[share, ratio]: &[f64; 2]| {
-                    moments_of(rule, Wide::from(ratio), albedo, k).map(|x| share * x.value())
-                };
-                let [straight, scattered] = piece
-                    .ratios
-                    .iter()
-                    .map(moments)
-                    .fold([0.0; 2], |sums, both| [sums[0] + both[0], sums[1] + both[1]]);
-                Slice { flown: piece.flown, straight, scattered, score: 0.0 }
-            };
-            let [coarse, fine] = cuts.each_ref().map(|cut| {
-                let slices: Vec<Slice> = cut.iter().map(slice).collect();
-                slab::energies(&phase, lights, &slices, LAYERED)
-            });
-            let both = |(coarse, fine): (Energy, Energy)| {
-                let sides =
-                    [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
-                sides.map(|[coarse, fine]| Wide::from(fine + (fine - coarse) / 3.0))
-            };
-            Some(coarse?.into_iter().zip(fine?).map(both).collect())
+        let [coarse, fine] = cuts.each_ref().map(|cut| {
+            let slices: Vec<Slice> = cut.iter().map(slice).collect();
+            slab::energies(&phase, lights, &slices, LAYERED)
+        });
+        let both = |(coarse, fine): (Energy, Energy)| {
+            let sides =
+                [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
+            sides.map(|[coarse, fine]| Wide::from(fine + (fine - coarse) / 3.0))
         };
-        let exact: Vec<Leaving> = (1..=4).map_while(of_power).collect();
-        let walk = Walk {
-            incidence: Incidence { light: Light::Diffuse, phase },
-            albedo,
-            rule,
-            // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
-            largest_ratio: 1.4,
-            pieces: Pieces::Graded(cuts.clone()),
-            depth: 0.5 * flown * (ends[0] + ends[1]),
-            laws: false,
-        };
-        let what = format!("{rule:?}, ∫σ̂ = {flown:e}, r = {ends:?}, a = {albedo:e}, {phase:?}");
-        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
-    }
-    vec![kinds.second, kinds.fourth]
+        Some(coarse?.into_iter().zip(fine?).map(both).collect())
+    };
+    // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
+    let depth = 0.5 * flown * (ends[0] + ends[1]);
+    let walk = walk(phase, (albedo, rule), Pieces::Graded(cuts.clone()), 1.4, depth);
+    let what = format!("{rule:?}, ∫σ̂ = {flown:e}, r = {ends:?}, a = {albedo:e}, {phase:?}");
+    let leaving = (1..=4).map_while(of_power).collect();
+    compare(t, &walk, lights, Exact { leaving, collisions: None }, &what);
+    Some(())
 }
 
 /// Lights that graze, or none of them: layers are thinner for all where one does.
@@ -326,70 +293,52 @@ fn alike(dice: &mut Dice) -> Vec<Light> {
 }
 
 /// r that varies: Peierls' equation.
-fn graded(dice: &mut Dice, trials: u32) -> Vec<Row> {
-    let range =
-        "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
-    let mut kinds = Kinds::new(range);
-    // Lookups are not predicted here.
-    let mut none = Row::new("", "", Measure::Count, 0.0);
-    for _ in 0..trials {
-        let (albedo, most) = (albedo(dice), dice.between(0.2, 1.4));
-        // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
-        let weighted = most > 1.0 && dice.below(2) == 0;
-        let rule = if weighted { ParticleRule::Weighted } else { ParticleRule::NonTerminating };
-        let cuts = 1 + dice.below(3);
-        let knots: Vec<f64> = (0..=cuts).map(|i| i as f64 / cuts as f64).collect();
-        let sampling = dice.sized(-2.0, 0.7) / most;
-        let mut values: Vec<f64> =
-            (0..=cuts).map(|_| sampling * most * dice.between(0.0, 1.0)).collect();
-        let highest = dice.below(cuts + 1);
-        values[highest] = sampling * most;
-        let lights = &alike(dice);
-        let text = format!(
-            "medium.piecewise-linear = {{ knots = {knots:?}, values = {values:?} }}\nspan = [0, 1]"
-        );
-        let what = format!("{rule:?}, a = {albedo:e}, σ̂ = {sampling:e}, {knots:?}, {values:?}");
-        let Some(medium) = text::medium(&text) else {
-            kinds.skip(|| what.clone());
-            continue;
-        };
-        let mesh = Mesh::new(medium);
-        let (flown, extinction) =
-            (Piecewise::constant(sampling, mesh.support()), Piecewise::lines(&knots, &values));
-        // Where r passes 1 its moments have kinks.
-        let mut breaks = knots.clone();
-        for (knots, values) in knots.windows(2).zip(values.windows(2)) {
-            let share = (sampling - values[0]) / (values[1] - values[0]);
-            if share > 0.0 && share < 1.0 {
-                breaks.push(knots[0] + share * (knots[1] - knots[0]));
-            }
+fn graded(t: &mut Trial) -> Option<()> {
+    let dice = &mut *t.dice;
+    let (albedo, most) = (albedo(dice), dice.between(0.2, 1.4));
+    // Other walks know σ_t alone where r is nowhere above 1, as on one layer.
+    let weighted = most > 1.0 && dice.below(2) == 0;
+    let rule = if weighted { ParticleRule::Weighted } else { ParticleRule::NonTerminating };
+    let cuts = 1 + dice.below(3);
+    let knots: Vec<f64> = (0..=cuts).map(|i| i as f64 / cuts as f64).collect();
+    let sampling = dice.sized(-2.0, 0.7) / most;
+    let mut values: Vec<f64> =
+        (0..=cuts).map(|_| sampling * most * dice.between(0.0, 1.0)).collect();
+    values[dice.below(cuts + 1)] = sampling * most;
+    let lights = &alike(dice);
+    let text = format!(
+        "medium.piecewise-linear = {{ knots = {knots:?}, values = {values:?} }}\nspan = [0, 1]"
+    );
+    let what = format!("{rule:?}, a = {albedo:e}, σ̂ = {sampling:e}, {knots:?}, {values:?}");
+    t.place.clone_from(&what);
+    let mesh = Mesh::new(text::medium(&text)?);
+    let (flown, extinction) =
+        (Piecewise::constant(sampling, mesh.support()), Piecewise::lines(&knots, &values));
+    // Where r passes 1 its moments have kinks.
+    let mut breaks = knots.clone();
+    for (knots, values) in knots.windows(2).zip(values.windows(2)) {
+        let share = (sampling - values[0]) / (values[1] - values[0]);
+        if share > 0.0 && share < 1.0 {
+            breaks.push(knots[0] + share * (knots[1] - knots[0]));
         }
-        let of_power = |k: u32| {
-            let rates = |x: f64| {
-                let ratio = extinction.value(x) / sampling;
-                let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
-                [sampling * (1.0 - q), sampling * s]
-            };
-            let grows = (0..=200).any(|i| rates(f64::from(i) / 200.0)[0] <= 0.0);
-            if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
-        };
-        let leaving = |both: &[f64; 2]| both.map(Wide::from);
-        let depth = mesh.optical_depth().value;
-        let truth = Ordinates::new(Wide::from(depth), below_one(Wide::from(albedo)), ORDINATES);
-        let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
-        let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(leaving).collect());
-        let exact: Vec<Leaving> = truth.into_iter().chain(higher).collect();
-        let phase = Phase::Isotropic(Isotropic);
-        let walk = Walk {
-            incidence: Incidence { light: Light::Diffuse, phase },
-            albedo,
-            rule,
-            pieces: Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights),
-            largest_ratio: most,
-            depth,
-            laws: false,
-        };
-        compare((&mut kinds, &mut none), &walk, lights, &exact, None, &what);
     }
-    vec![kinds.second, kinds.fourth]
+    let of_power = |k: u32| {
+        let rates = |x: f64| {
+            let ratio = extinction.value(x) / sampling;
+            let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
+            [sampling * (1.0 - q), sampling * s]
+        };
+        let grows = (0..=200).any(|i| rates(f64::from(i) / 200.0)[0] <= 0.0);
+        if grows { None } else { Peierls::new(&rates, &breaks).leaving(lights) }
+    };
+    let wide = |both: &[f64; 2]| both.map(Wide::from);
+    let depth = mesh.optical_depth().value;
+    let truth = Ordinates::new(Wide::from(depth), below_one(Wide::from(albedo)), ORDINATES);
+    let truth = truth.map(|slab| lights.iter().map(|&light| slab.energy(light)).collect());
+    let higher = (2..=4).map_while(of_power).map(|all| all.iter().map(wide).collect());
+    let leaving = truth.into_iter().chain(higher).collect();
+    let pieces = Pieces::new(&mesh, &flown, &rule.kinks(albedo), lights);
+    let walk = walk(Phase::Isotropic(Isotropic), (albedo, rule), pieces, most, depth);
+    compare(t, &walk, lights, Exact { leaving, collisions: None }, &what);
+    Some(())
 }
