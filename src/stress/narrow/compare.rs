@@ -3,7 +3,7 @@
 use super::precision::Precision;
 use super::scene::Scene;
 use super::trail::Trail;
-use super::{DRAWS, Trial};
+use super::{DRAWS, Point, Trial};
 use crate::numeric::Narrow as F32;
 use crate::stress::Dice;
 
@@ -18,90 +18,78 @@ const PILOTS: u64 = 12;
 /// What a walk costs beside its collisions, in collisions.
 const OVERHEAD: f64 = 4.0;
 
-/// What theory says of a draw with averaged decisions.
+/// What theory says of an estimator.
 #[derive(Debug, Clone, Copy)]
-pub struct Known {
-    /// The mean.
-    pub truth: f64,
-    /// `V/truth²` of the estimator.
-    pub variance: f64,
-    /// That of what is drawn here.
-    pub drawn: Drawn,
+pub struct Theory {
+    /// The mean; of walks where it is not known, that of the doubles takes its place and is not tested.
+    pub truth: Option<f64>,
+    /// `V/truth²`; of walks where it is not known, that of the doubles takes its place.
+    pub variance: Option<f64>,
+    /// What is known of the doubles' own spread.
+    pub spread: Spread,
 }
 
 /// What is known of the doubles' own spread.
-#[derive(Debug, Clone, Copy)]
-pub enum Drawn {
-    /// Its variance, relative to truth², is at most this.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Spread {
+    /// Averaged decisions leave at most this variance, relative to truth².
     Within(f64),
     /// The same, made by draws so rare that few walks do not see it.
     Rare(f64),
-    /// It is of no use: the estimator is biased.
-    Biased,
+    /// It is of no use: the estimator is biased, or theory has lost the variance.
+    Useless,
+    /// That of the draws, of walks that scatter.
+    Seen,
 }
 
-/// What theory says of a walk that scatters.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Stated {
-    /// The mean; where it is not known, that of the doubles takes its place and is not tested.
-    pub truth: Option<f64>,
-    /// `V/truth²`; where it is not known, that of the doubles takes its place.
-    pub variance: Option<f64>,
-}
-
-/// What a comparison came to, relative to the truth.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Compared {
-    /// How many walks.
-    pub walks: f64,
-    /// The bias of single precision.
-    pub bias: f64,
-    /// Its standard error.
-    pub error: f64,
-    /// The standard error of 1e8 draws; not a number where it is not known.
-    pub noise: f64,
-    /// The doubles' own mean against the truth, in standard errors; not for a biased estimator.
-    pub z: Option<f64>,
-}
-
-/// An estimator whose decisions are averaged, in either precision.
-pub trait Averaged: Sync {
-    /// What theory says; `None` where it has lost the variance.
-    fn known(&self, scene: &Scene) -> Option<Known>;
-    /// What a draw costs, in collisions.
-    fn cost(&self, scene: &Scene) -> f64 {
-        scene.collisions
+impl Theory {
+    /// Of averaged decisions: the truth, `V/truth²` of the estimator and that of what is drawn here.
+    pub fn averaged(truth: f64, variance: f64, drawn: f64) -> Self {
+        Self { truth: Some(truth), variance: Some(variance), spread: Spread::Within(drawn) }
     }
-    /// A draw.
-    fn draw<P: Precision>(&self, scene: &Scene, dice: &mut Dice) -> f64;
+
+    /// Where nothing is known.
+    pub const UNKNOWN: Self = Self { truth: None, variance: None, spread: Spread::Useless };
 }
 
-/// A walk that scatters, in either precision.
-pub trait Walk: Sync {
+/// An estimator in either precision.
+pub trait Estimator: Sync {
     /// What theory says.
-    fn stated(&self, scene: &Scene) -> Stated;
+    fn theory(&self, scene: &Scene) -> Theory;
+    /// What a draw costs, in collisions; `None` where walks have to tell.
+    fn cost(&self, scene: &Scene) -> Option<f64> {
+        Some(scene.collisions)
+    }
     /// Where walks have the same variance and are short, to find it.
     fn pilots(&self, scene: Scene) -> Scene {
         scene
     }
-    /// A draw, weighted by the chances of what was decided.
+    /// A draw; that of a walk is weighted by the chances of what was decided.
     fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64;
+}
+
+/// An estimator of which only the comparison is asked for.
+pub trait Compare: Sync {
+    /// Compares both precisions; the point does not know yet what was varied.
+    fn compare(&self, trial: Trial) -> Point;
 }
 
 /// A flight of an optical depth of mean 1; 1 − u lies in (0, 1].
 #[inline(always)]
-pub fn flight<P: Precision>(dice: &mut Dice) -> P {
-    let u = P::uniform(dice.word());
+pub fn flight<P: Precision>(trail: &mut Trail) -> P {
+    let u = trail.uniform::<P>();
     -(u.each(1.0) - u).ln()
 }
 
-/// All tentative collisions of a constant σ̂.
+/// All tentative collisions of a constant σ̂ from a place to another.
 #[inline(always)]
-pub fn fly<P: Precision>(scene: &Scene, dice: &mut Dice, mut collide: impl FnMut(P)) {
-    let (end, path) = (P::of(scene.from + 1.0), P::of(1.0 / scene.collisions));
-    let mut t = P::of(scene.from);
+pub fn fly<P: Precision>(
+    trail: &mut Trail,
+    [mut t, end, path]: [P; 3],
+    mut collide: impl FnMut(P),
+) {
     loop {
-        t = t + flight::<P>(dice) * path;
+        t = t + flight::<P>(trail) * path;
         if !t.below(end) {
             return;
         }
@@ -118,13 +106,19 @@ struct Sums {
 }
 
 impl Sums {
-    fn see(&mut self, double: f64, narrow: f64) {
-        let off = narrow - double;
-        self.walks += 1.0;
-        for (sums, x) in [(&mut self.double, double), (&mut self.difference, off)] {
-            sums[0] += x;
-            sums[1] += x * x;
+    /// Of both precisions of so many walks.
+    fn of(walks: u64, mut draw: impl FnMut(u64) -> [f64; 2]) -> Self {
+        let mut all = Self::default();
+        for number in 0..walks {
+            let [double, narrow] = draw(number);
+            all.walks += 1.0;
+            let off = narrow - double;
+            for (sums, x) in [(&mut all.double, double), (&mut all.difference, off)] {
+                sums[0] += x;
+                sums[1] += x * x;
+            }
         }
+        all
     }
 
     /// A mean and the standard error of it.
@@ -140,83 +134,62 @@ impl Sums {
     }
 }
 
+/// How many walks a budget pays for: those that scatter say by some pilots what they cost.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
-fn walks(budget: f64, cost: f64, least: f64) -> u64 {
-    (budget / cost).clamp(least, MOST) as u64
-}
-
-/// Compares both precisions of an estimator with averaged decisions.
-pub fn compare<E: Averaged>(estimator: &E, trial: Trial) -> Compared {
-    let Trial { scene, seed, budget } = trial;
-    let known = estimator.known(&scene);
-    let truth = known.map_or(1.0, |known| known.truth);
-    let mut sums = Sums::default();
-    for number in 0..walks(budget, estimator.cost(&scene), LEAST) {
-        let dice = || Dice::new(seed, "narrow", number);
-        let double = estimator.draw::<f64>(&scene, &mut dice()) / truth;
-        sums.see(double, estimator.draw::<F32>(&scene, &mut dice()) / truth);
+fn walks<E: Estimator>(estimator: &E, Trial { scene, seed, budget }: Trial) -> u64 {
+    if let Some(cost) = estimator.cost(&scene) {
+        return (budget / cost).clamp(LEAST, MOST) as u64;
     }
-    let [bias, error] = sums.mean(sums.difference);
-    let (drawn, is_seen) = match known.map_or(Drawn::Biased, |known| known.drawn) {
-        Drawn::Within(variance) => (Some(variance), true),
-        Drawn::Rare(variance) => (Some(variance), sums.sees(variance)),
-        Drawn::Biased => (None, true),
-    };
-    let off = sums.double[0] / sums.walks - 1.0;
-    Compared {
-        walks: sums.walks,
-        bias,
-        error,
-        // Without a variance nothing exceeds it, and nothing holds.
-        noise: known.filter(|_| is_seen).map_or(f64::NAN, |known| (known.variance / DRAWS).sqrt()),
-        z: drawn.filter(|_| is_seen).map(|variance| off / (variance / sums.walks).sqrt()),
-    }
-}
-
-/// The decisions of a walk, on average, and what it costs besides.
-fn cost<W: Walk>(walk: &W, scene: &Scene, seed: u64) -> f64 {
     let pilot = |number: u64| {
         let mut trail = Trail::new(Dice::new(seed, "narrow-cost", number));
-        walk.draw::<f64>(scene, &mut trail);
+        estimator.draw::<f64>(&scene, &mut trail);
         trail.length()
     };
-    (0..PILOTS).map(pilot).sum::<f64>() / PILOTS as f64 + OVERHEAD
+    let cost = (0..PILOTS).map(pilot).sum::<f64>() / PILOTS as f64 + OVERHEAD;
+    (budget / cost).clamp(LEAST_BY_CHANCE, MOST) as u64
 }
 
-/// Compares both precisions of a walk that scatters.
-///
-/// Where so few walks reach what is sought that their spread is not seen, nothing is said of the noise.
-pub fn compare_walks<W: Walk>(walk: &W, trial: Trial) -> Compared {
-    let Trial { scene, seed, budget } = trial;
-    let cost = cost(walk, &scene, seed);
-    let mut sums = Sums::default();
-    for number in 0..walks(budget, cost, LEAST_BY_CHANCE) {
-        let dice = || Dice::new(seed, "narrow", number);
-        let mut trail = Trail::new(dice());
-        let double = walk.draw::<f64>(&scene, &mut trail);
-        let narrow = walk.draw::<F32>(&scene, &mut trail.again(dice()));
-        sums.see(double, narrow);
-    }
-    let stated = walk.stated(&scene);
-    let [mean, spread] = sums.mean(sums.double);
-    let truth = stated.truth.unwrap_or(mean);
-    let [bias, error] = sums.mean(sums.difference).map(|x| x / truth);
-    let variance = stated.variance.unwrap_or_else(|| {
-        let scene = walk.pilots(scene);
-        let mut pilots = Sums::default();
-        for number in 0..walks(budget, self::cost(walk, &scene, seed), LEAST_BY_CHANCE) {
-            let mut trail = Trail::by_chance(Dice::new(seed, "narrow-pilot", number));
-            pilots.see(walk.draw::<f64>(&scene, &mut trail), 0.0);
-        }
-        let [_, spread] = pilots.mean(pilots.double);
-        spread * spread * (pilots.walks - 1.0) / (truth * truth)
+/// The variance of walks that decide all by chance, as estimators do.
+fn own_variance<E: Estimator>(estimator: &E, trial: Trial) -> f64 {
+    let scene = estimator.pilots(trial.scene);
+    let pilots = Sums::of(walks(estimator, Trial { scene, ..trial }), |number| {
+        let mut trail = Trail::by_chance(Dice::new(trial.seed, "narrow-pilot", number));
+        [estimator.draw::<f64>(&scene, &mut trail), 0.0]
     });
-    let is_seen = sums.sees(variance);
-    Compared {
-        walks: sums.walks,
-        bias,
-        error,
-        noise: if is_seen { (variance / DRAWS).sqrt() } else { f64::NAN },
-        z: stated.truth.filter(|_| is_seen && spread > 0.0).map(|truth| (mean - truth) / spread),
+    let [_, spread] = pilots.mean(pilots.double);
+    spread * spread * (pilots.walks - 1.0)
+}
+
+impl<E: Estimator> Compare for E {
+    /// Where so few walks reach what is sought that their spread is not seen, nothing is said of the noise.
+    fn compare(&self, trial: Trial) -> Point {
+        let Trial { scene, seed, .. } = trial;
+        let Theory { truth, mut variance, spread } = self.theory(&scene);
+        let scatters = spread == Spread::Seen;
+        let unit = if scatters { 1.0 } else { truth.unwrap_or(1.0) };
+        let sums = Sums::of(walks(self, trial), |number| {
+            let dice = || Dice::new(seed, "narrow", number);
+            let mut trail = Trail::new(dice());
+            let double = self.draw::<f64>(&scene, &mut trail) / unit;
+            [double, self.draw::<F32>(&scene, &mut trail.again(dice())) / unit]
+        });
+        let [mean, own] = sums.mean(sums.double);
+        let exact = if scatters { truth.unwrap_or(mean) } else { 1.0 };
+        let [bias, error] = sums.mean(sums.difference).map(|x| x / exact);
+        if scatters && variance.is_none() {
+            variance = Some(own_variance(self, trial) / (exact * exact));
+        }
+        let error_of = |variance: f64| Some((variance / sums.walks).sqrt());
+        let (is_seen, own) = match spread {
+            Spread::Within(drawn) => (true, error_of(drawn)),
+            Spread::Rare(drawn) => (sums.sees(drawn), error_of(drawn)),
+            Spread::Useless => (true, None),
+            Spread::Seen => (variance.is_some_and(|v| sums.sees(v)), (own > 0.0).then_some(own)),
+        };
+        // Without a variance nothing exceeds it, and nothing holds.
+        let noise = variance.filter(|_| is_seen).map_or(f64::NAN, |v| (v / DRAWS).sqrt());
+        let own = own.filter(|_| is_seen && truth.is_some());
+        let z = own.map(|own| (mean - exact) / own);
+        Point { x: f64::NAN, walks: sums.walks, bias, error, noise, z }
     }
 }

@@ -20,22 +20,20 @@
 //! variance notice it first.
 
 mod compare;
-mod flights;
+mod layers;
 mod place;
 mod precision;
-mod products;
-mod rods;
 mod scene;
 mod single_scattering;
-mod slabs;
 mod space;
 mod trail;
+mod transmittance;
 
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use self::compare::{Compared, Stated};
+use self::compare::{Compare, Spread, Theory};
 use self::scene::Scene;
 use super::{Effort, Measure, Row, text};
 use crate::rng::Address;
@@ -124,84 +122,61 @@ pub struct Trial {
     budget: f64,
 }
 
-/// An estimator in the list of its family.
-#[derive(Clone, Copy)]
-pub struct Entry {
-    name: &'static str,
-    compare: fn(Trial) -> Compared,
-    along: &'static [Along],
-}
+/// An estimator in the list of its family, and what is varied.
+type Entry = (&'static str, &'static dyn Compare, &'static [Along]);
 
+/// All that can be varied.
+const EVERY: &[Along] = &Along::ALL;
 /// Without σ̂ there are no collisions.
 const NO_STEPS: &[Along] = &[Along::Depth, Along::Origin];
 /// Without an end there is no depth.
 const NO_DEPTH: &[Along] = &[Along::Steps, Along::Origin];
 
-/// A line of a family's list.
-macro_rules! entry {
-    ($name:expr, $compare:expr) => {
-        entry!($name, $compare, &$crate::stress::narrow::Along::ALL)
-    };
-    ($name:expr, $compare:expr, $along:expr) => {
-        Entry { name: $name, compare: $compare, along: $along }
-    };
-}
-use entry;
-
-/// Estimators that are drawn in one row of panels.
+/// Estimators of one kind of problem.
 struct Family {
     title: &'static str,
     entries: &'static [Entry],
-    full: Values,
-    quick: Values,
-    /// How many collisions a point may cost.
+    /// In the short form and the full one.
+    values: [Values; 2],
+    /// How many collisions a point may cost, likewise.
     budget: [f64; 2],
+}
+
+const fn family(
+    title: &'static str,
+    entries: &'static [Entry],
+    values: [Values; 2],
+    budget: [f64; 2],
+) -> Family {
+    Family { title, entries, values, budget }
 }
 
 const SHORT: [f64; 2] = [3e4, 3e5];
 const LONG: [f64; 2] = [2e4, 3e5];
 
 const FAMILIES: &[Family] = &[
-    Family {
-        title: "Transmittance by weights and chances",
-        entries: products::ALL,
-        full: FINE,
-        quick: QUICK,
-        budget: SHORT,
-    },
-    Family {
-        title: "Transmittance otherwise, free flight",
-        entries: flights::ALL,
-        full: FINE,
-        quick: QUICK,
-        budget: SHORT,
-    },
-    Family { title: "Rod", entries: rods::ALL, full: COARSE, quick: QUICK, budget: LONG },
-    Family { title: "Slab", entries: slabs::ALL, full: COARSE, quick: QUICK, budget: LONG },
-    Family {
-        title: "Single scattering",
-        entries: single_scattering::ALL,
-        full: RAYS,
-        quick: QUICK,
-        budget: SHORT,
-    },
-    Family { title: "Space", entries: space::ALL, full: BALLS, quick: QUICK_BALLS, budget: LONG },
+    family("Transmittance by weights and chances", transmittance::PRODUCTS, [QUICK, FINE], SHORT),
+    family("Transmittance otherwise, free flight", transmittance::OTHERS, [QUICK, FINE], SHORT),
+    family("Rod", layers::RODS, [QUICK, COARSE], LONG),
+    family("Slab", layers::SLABS, [QUICK, COARSE], LONG),
+    family("Single scattering", single_scattering::ALL, [QUICK, RAYS], SHORT),
+    family("Space", space::ALL, [QUICK_BALLS, BALLS], LONG),
 ];
 
 /// Pilot draws are found here, where theory has no variance.
 const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 
 /// What theory says of a channel of a case with one estimator, the only one where it has no name.
-fn stated(text: &str, channel: &str) -> Stated {
+fn stated(text: &str, channel: &str) -> Theory {
+    let nothing = Theory { truth: None, variance: None, spread: Spread::Seen };
     let prepared = text::case(text).map(|case| Arc::new(case).scenario.prepare(0, None, NOWHERE));
-    let Some(Ok(ready)) = prepared.map(|prepared| prepared.outcome) else {
-        return Stated::default();
-    };
+    let Some(Ok(ready)) = prepared.map(|prepared| prepared.outcome) else { return nothing };
     let found = ready.prediction.channels.iter().find(|found| found.name == channel);
-    let Some(found) = found else { return Stated::default() };
+    let Some(found) = found else { return nothing };
     let truth = found.truth.value;
     let variance = found.moments.map(|moments| moments.variance() / (truth * truth));
-    Stated { truth: Some(truth), variance: variance.filter(|variance| variance.is_finite()) }
+    let variance = variance.filter(|variance| variance.is_finite());
+    Theory { truth: Some(truth), variance, ..nothing }
 }
 
 /// Both precisions at one point of a curve.
@@ -222,11 +197,6 @@ pub struct Point {
 }
 
 impl Point {
-    fn of(x: f64, found: Compared) -> Self {
-        let Compared { walks, bias, error, noise, z } = found;
-        Self { x, walks, bias, error, noise, z }
-    }
-
     /// Whether the bias is certainly larger than the noise.
     #[must_use]
     pub fn exceeds(&self) -> bool {
@@ -299,34 +269,26 @@ impl Narrow {
 /// Measures all curves.
 #[must_use]
 pub fn measure(effort: Effort, seed: u64) -> Narrow {
+    let of = |values: &[&'static [f64]; 2]| effort.of(values[0], values[1]);
     let mut curves = Vec::new();
-    let mut jobs = Vec::new();
-    for family in FAMILIES {
-        let values = effort.of(family.quick, family.full);
-        let budget = effort.of(family.budget[0], family.budget[1]);
-        for (along, values) in Along::ALL.into_iter().zip(values) {
-            for entry in family.entries {
-                let values = if entry.along.contains(&along) { values } else { &[] };
-                let points = Vec::with_capacity(values.len());
-                let (family, estimator) = (family.title, entry.name);
-                curves.push((Curve { family, estimator, along, points }, values.len()));
-                jobs.extend(values.iter().map(|&x| (along, entry, x, budget)));
+    for &Family { title, entries, values: [quick, full], budget: [least, most] } in FAMILIES {
+        for (i, along) in Along::ALL.into_iter().enumerate() {
+            for &(estimator, compare, varied) in entries {
+                let values = if varied.contains(&along) { of(&[quick[i], full[i]]) } else { &[] };
+                let curve = Curve { family: title, estimator, along, points: Vec::new() };
+                curves.push((curve, values, compare, effort.of(least, most)));
             }
         }
     }
-    let points: Vec<Point> = jobs
-        .par_iter()
-        .map(|&(along, entry, x, budget)| {
-            let scene = along.scene(x);
-            Point::of(x, (entry.compare)(Trial { scene, seed, budget }))
-        })
-        .collect();
-    let mut points = points.into_iter();
-    let filled = curves.into_iter().map(|(mut curve, count)| {
-        curve.points.extend(points.by_ref().take(count));
+    let measured = curves.into_par_iter().map(|(mut curve, values, compare, budget)| {
+        let point = |&x: &f64| {
+            let found = compare.compare(Trial { scene: curve.along.scene(x), seed, budget });
+            Point { x, ..found }
+        };
+        curve.points = values.par_iter().map(point).collect();
         curve
     });
-    Narrow { curves: filled.collect() }
+    Narrow { curves: measured.collect() }
 }
 
 #[cfg(test)]
@@ -349,31 +311,31 @@ mod tests {
             let scene = Scene { depth, collisions: 9.0 * depth, from: 2.0 };
             // Enough walks for the spread that roulette makes, 15 times the squared mean.
             let trial = Trial { scene, seed: 7, budget: 16_000.0 * scene.collisions };
-            for entry in FAMILIES.iter().flat_map(|family| family.entries) {
-                let found = (entry.compare)(trial);
+            for (name, estimator, _) in FAMILIES.iter().flat_map(|family| family.entries) {
+                let found = estimator.compare(trial);
                 let Some(z) = found.z else {
-                    assert!(["regular", "ray-marching"].contains(&entry.name), "{}", entry.name);
+                    assert!(["regular", "ray-marching"].contains(name), "{name}");
                     continue;
                 };
-                assert!(z.abs() < 5.0, "{} at τ = {depth}: {z}", entry.name);
-                assert!(found.bias.abs() < 1e-4 + 5.0 * found.error, "{}: {found:?}", entry.name);
+                assert!(z.abs() < 5.0, "{name} at τ = {depth}: {z}");
+                assert!(found.bias.abs() < 1e-4 + 5.0 * found.error, "{name}: {found:?}");
             }
         }
     }
 
     #[test]
     fn what_is_far_from_the_origin_fails_in_single_precision_and_what_is_near_does_not() {
-        let at = |from: f64, entry: &Entry| {
+        let at = |from: f64, estimator: &dyn Compare| {
             let scene = Scene { depth: 2.0, collisions: 20.0, from };
-            Point::of(from, (entry.compare)(Trial { scene, seed: 3, budget: 2e5 }))
+            estimator.compare(Trial { scene, seed: 3, budget: 2e5 })
         };
         let failing = ["ratio", "next-flight", "source-driven", "attenuation-driven"];
-        for entry in FAMILIES.iter().flat_map(|family| family.entries) {
-            let near = at(0.0, entry);
-            assert!(near.holds() || entry.along != Along::ALL, "{}: {near:?}", entry.name);
-            if failing.contains(&entry.name) {
-                let far = at(1e6, entry);
-                assert!(far.exceeds(), "{}: {far:?}", entry.name);
+        for &(name, estimator, along) in FAMILIES.iter().flat_map(|family| family.entries) {
+            let near = at(0.0, estimator);
+            assert!(near.holds() || along != Along::ALL, "{name}: {near:?}");
+            if failing.contains(&name) {
+                let far = at(1e6, estimator);
+                assert!(far.exceeds(), "{name}: {far:?}");
             }
         }
     }

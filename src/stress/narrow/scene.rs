@@ -39,6 +39,11 @@ impl Scene {
         self.extinction(self.from + share)
     }
 
+    /// T.
+    pub fn transmittance(&self) -> f64 {
+        (-self.depth).exp()
+    }
+
     /// The least σ_t.
     pub fn least(&self) -> f64 {
         (1.0 - WAVE) * self.depth

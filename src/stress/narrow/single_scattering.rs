@@ -8,14 +8,14 @@
 
 use std::f64::consts::PI;
 
-use super::compare::{Averaged, Drawn, Known, compare, flight};
+use super::compare::{Estimator, Spread, Theory, fly};
 use super::precision::Precision;
 use super::scene::{FREQUENCY, Scene};
-use super::{Entry, NO_STEPS, entry, stated};
+use super::trail::Trail;
+use super::{EVERY, Entry, NO_STEPS, stated};
 use crate::media::Extinction;
 use crate::phase::PhaseFunction;
 use crate::phase::henyey_greenstein::HenyeyGreenstein;
-use crate::stress::Dice;
 
 /// D.
 const DISTANCE: f64 = 0.3;
@@ -32,7 +32,7 @@ const POINTS: usize = 4;
 
 /// How a transmittance is found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Tracking {
+enum Tracking {
     /// In closed form.
     Exact,
     /// By ratio tracking.
@@ -55,26 +55,23 @@ impl Tracking {
     fn through<P: Precision>(
         self,
         scene: &Scene,
-        dice: &mut Dice,
+        trail: &mut Trail,
         [from, slope, length]: [P; 3],
     ) -> (P, f64) {
         if self == Self::Exact {
             return (exact(scene, [from, slope, length]), 1.0);
         }
         let path = P::of(1.0 / scene.collisions);
-        let (mut t, mut weight, mut chance) = (P::of(0.0), P::of(1.0), 1.0);
-        loop {
-            t = t + flight::<P>(dice) * path;
-            if !t.below(length) {
-                return (weight, chance);
-            }
+        let (mut weight, mut chance) = (P::of(1.0), 1.0);
+        fly(trail, [P::of(0.0), length, path], |t: P| {
             let ratio = scene.extinction(from + slope * t) * path;
             if self == Self::Ratio {
                 weight = weight * (P::of(1.0) - ratio);
             } else {
                 chance *= 1.0 - ratio.chance();
             }
-        }
+        });
+        (weight, chance)
     }
 }
 
@@ -119,14 +116,14 @@ impl<'a, P: Precision> View<'a, P> {
     }
 
     /// The transmittances of a point as they are tracked: from the eye, and from the light.
-    fn camera(&self, tracking: Tracking, dice: &mut Dice, s: P) -> (P, f64) {
-        tracking.through(self.scene, dice, [self.origin, P::of(1.0), s])
+    fn camera(&self, tracking: Tracking, trail: &mut Trail, s: P) -> (P, f64) {
+        tracking.through(self.scene, trail, [self.origin, P::of(1.0), s])
     }
 
-    fn shadow(&self, tracking: Tracking, dice: &mut Dice, s: P) -> (P, f64) {
+    fn shadow(&self, tracking: Tracking, trail: &mut Trail, s: P) -> (P, f64) {
         let length = self.square(s).root();
         let slope = (self.foot - s) / length;
-        tracking.through(self.scene, dice, [self.origin + s, slope, length])
+        tracking.through(self.scene, trail, [self.origin + s, slope, length])
     }
 
     /// Both transmittances of a point in closed form.
@@ -169,23 +166,16 @@ impl<'a, P: Precision> View<'a, P> {
 
     /// All tentative collisions of a walk along the ray, with `σ_t/σ̂`.
     #[inline(always)]
-    fn fly(&self, dice: &mut Dice, mut collide: impl FnMut(P, P)) {
+    fn fly(&self, trail: &mut Trail, mut collide: impl FnMut(P, P)) {
         let path = P::of(1.0 / self.scene.collisions);
-        let mut s = P::of(0.0);
-        loop {
-            s = s + flight::<P>(dice) * path;
-            if !s.below(P::of(1.0)) {
-                return;
-            }
-            collide(s, self.extinction(s) * path);
-        }
+        fly(trail, [P::of(0.0), P::of(1.0), path], |s| collide(s, self.extinction(s) * path));
     }
 
     /// What is found at the first real collision, on average over all decisions.
     #[inline(always)]
-    fn collide(&self, dice: &mut Dice, found: impl Fn(P) -> P) -> f64 {
+    fn collide(&self, trail: &mut Trail, found: impl Fn(P) -> P) -> f64 {
         let (mut alive, mut sum) = (1.0, 0.0);
-        self.fly(dice, |s, ratio| {
+        self.fly(trail, |s, ratio| {
             let real = ratio.chance();
             sum += alive * real * found(s).double();
             alive *= 1.0 - real;
@@ -196,7 +186,7 @@ impl<'a, P: Precision> View<'a, P> {
 
 /// How scattering points are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Single {
+enum Single {
     /// At equal angles, with both transmittances tracked so.
     Source(Tracking),
     /// Where the mean σ_t scatters.
@@ -237,8 +227,8 @@ impl Single {
     }
 }
 
-impl Averaged for Single {
-    fn known(&self, scene: &Scene) -> Option<Known> {
+impl Estimator for Single {
+    fn theory(&self, scene: &Scene) -> Theory {
         let field = scene.sines(&format!("vectors = [[0, 0, {FREQUENCY:e}]]"));
         let text = format!(
             "title = \"t\"\n[problem.single-scattering]\nvolume.sines = {field}\n\
@@ -247,53 +237,54 @@ impl Averaged for Single {
              phase.henyey-greenstein = {{ g = {FORWARD} }}\nestimators = [{{ {} }}]",
             self.written(scene)
         );
-        let stated = stated(&text, "");
-        let (truth, variance) = stated.truth.zip(stated.variance)?;
+        let known = stated(&text, "");
         // Averaged decisions of delta tracking weigh like ratio tracking.
         let drawn = if *self == Self::Source(Tracking::Delta) {
-            Self::Source(Tracking::Ratio).known(scene)?.variance
+            Self::Source(Tracking::Ratio).theory(scene).variance
         } else {
-            variance
+            known.variance
         };
-        Some(Known { truth, variance, drawn: Drawn::Rare(drawn) })
-    }
-
-    fn cost(&self, scene: &Scene) -> f64 {
-        match self {
-            Self::Source(Tracking::Exact) | Self::Scattering | Self::SourceScattering => UNTRACKED,
-            _ => scene.collisions,
+        match drawn.filter(|_| known.variance.is_some()) {
+            Some(drawn) => Theory { spread: Spread::Rare(drawn), ..known },
+            None => Theory::UNKNOWN,
         }
     }
 
+    fn cost(&self, scene: &Scene) -> Option<f64> {
+        Some(match self {
+            Self::Source(Tracking::Exact) | Self::Scattering | Self::SourceScattering => UNTRACKED,
+            _ => scene.collisions,
+        })
+    }
+
     #[inline(always)]
-    fn draw<P: Precision>(&self, scene: &Scene, dice: &mut Dice) -> f64 {
+    fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64 {
         let view = View::<P>::new(scene);
-        let number = |dice: &mut Dice| P::uniform(dice.word());
         match *self {
             Self::Source(tracking) => {
-                let s = view.equiangular(number(dice));
-                let (camera, arrives) = view.camera(tracking, dice, s);
-                let (shadow, comes) = view.shadow(tracking, dice, s);
+                let s = view.equiangular(trail.uniform());
+                let (camera, arrives) = view.camera(tracking, trail, s);
+                let (shadow, comes) = view.shadow(tracking, trail, s);
                 let found = camera * (view.extinction(s) * view.source(s)) * shadow;
                 (found / view.equiangular_density(s)).double() * arrives * comes
             }
             Self::Scattering => {
-                let s = view.scattering(number(dice));
+                let s = view.scattering(trail.uniform());
                 (sent(&view, s) / view.scattering_density(s)).double()
             }
-            Self::Delta => view.collide(dice, |s| view.lit(s)),
+            Self::Delta => view.collide(trail, |s| view.lit(s)),
             Self::Attenuation => {
                 let (mut sum, mut weight) = (P::of(0.0), P::of(1.0));
-                view.fly(dice, |s, ratio| {
+                view.fly(trail, |s, ratio| {
                     sum = sum + weight * ratio * view.lit(s);
                     weight = weight * (P::of(1.0) - ratio);
                 });
                 sum.double()
             }
-            Self::Resampled => resampled(&view, dice),
-            Self::SharedWalk => shared_walk(&view, dice),
+            Self::Resampled => resampled(&view, trail),
+            Self::SharedWalk => shared_walk(&view, trail),
             Self::SourceScattering => {
-                let points = [view.equiangular(number(dice)), view.scattering(number(dice))];
+                let points = [view.equiangular(trail.uniform()), view.scattering(trail.uniform())];
                 let [one, other] = points.map(|s| {
                     let density = view.equiangular_density(s) + view.scattering_density(s);
                     sent(&view, s) / density
@@ -305,7 +296,7 @@ impl Averaged for Single {
                     let collision = view.extinction(s) * view.through(s);
                     collision * view.lit(s) / (view.equiangular_density(s) + collision)
                 };
-                at(view.equiangular(number(dice))).double() + view.collide(dice, at)
+                at(view.equiangular(trail.uniform())).double() + view.collide(trail, at)
             }
         }
     }
@@ -319,9 +310,9 @@ fn sent<P: Precision>(view: &View<P>, s: P) -> P {
 
 /// On average over which collision is chosen: the later of two with its share of the sum.
 #[inline(always)]
-fn resampled<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
+fn resampled<P: Precision>(view: &View<P>, trail: &mut Trail) -> f64 {
     let (mut sum, mut weight, mut shadow) = (P::of(0.0), P::of(1.0), 0.0);
-    view.fly(dice, |s, ratio| {
+    view.fly(trail, |s, ratio| {
         let part = weight * ratio * view.source(s);
         sum = sum + part;
         let chosen = (part / sum).chance();
@@ -332,8 +323,8 @@ fn resampled<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
 }
 
 #[inline(always)]
-fn shared_walk<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
-    let mut at: [P; POINTS] = std::array::from_fn(|_| view.equiangular(P::uniform(dice.word())));
+fn shared_walk<P: Precision>(view: &View<P>, trail: &mut Trail) -> f64 {
+    let mut at: [P; POINTS] = std::array::from_fn(|_| view.equiangular(trail.uniform()));
     at.sort_unstable_by(|a, b| a.double().total_cmp(&b.double()));
     let (mut sum, mut weight, mut next) = (P::of(0.0), P::of(1.0), 0);
     let mut pass = |reached: P, weight: P| {
@@ -344,7 +335,7 @@ fn shared_walk<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
             next += 1;
         }
     };
-    view.fly(dice, |s, ratio| {
+    view.fly(trail, |s, ratio| {
         pass(s, weight);
         weight = weight * (P::of(1.0) - ratio);
     });
@@ -354,14 +345,14 @@ fn shared_walk<P: Precision>(view: &View<P>, dice: &mut Dice) -> f64 {
 
 /// All of them.
 pub const ALL: &[Entry] = &[
-    entry!("source-driven", |x| compare(&Single::Source(Tracking::Exact), x), NO_STEPS),
-    entry!("source-driven, ratio", |x| compare(&Single::Source(Tracking::Ratio), x)),
-    entry!("source-driven, delta", |x| compare(&Single::Source(Tracking::Delta), x)),
-    entry!("scattering-driven", |x| compare(&Single::Scattering, x), NO_STEPS),
-    entry!("delta-tracking", |x| compare(&Single::Delta, x)),
-    entry!("attenuation-driven", |x| compare(&Single::Attenuation, x)),
-    entry!("attenuation-resampled", |x| compare(&Single::Resampled, x)),
-    entry!("shared-walk", |x| compare(&Single::SharedWalk, x)),
-    entry!("source-scattering-mis", |x| compare(&Single::SourceScattering, x), NO_STEPS),
-    entry!("source-delta-mis", |x| compare(&Single::SourceDelta, x)),
+    ("source-driven", &Single::Source(Tracking::Exact), NO_STEPS),
+    ("source-driven, ratio", &Single::Source(Tracking::Ratio), EVERY),
+    ("source-driven, delta", &Single::Source(Tracking::Delta), EVERY),
+    ("scattering-driven", &Single::Scattering, NO_STEPS),
+    ("delta-tracking", &Single::Delta, EVERY),
+    ("attenuation-driven", &Single::Attenuation, EVERY),
+    ("attenuation-resampled", &Single::Resampled, EVERY),
+    ("shared-walk", &Single::SharedWalk, EVERY),
+    ("source-scattering-mis", &Single::SourceScattering, NO_STEPS),
+    ("source-delta-mis", &Single::SourceDelta, EVERY),
 ];

@@ -8,12 +8,12 @@
 //! `sphere, particle` in front of another sky; `lambertian` with splitting is `furnace` with splitting.
 //! A furnace with the non-terminating rule is left out: where σ̂ ≥ σ_t each draw is 1, without noise.
 
-use super::compare::{Stated, Walk, compare_walks, flight};
+use super::compare::{Estimator, Theory, fly};
 use super::place::Place;
 use super::precision::Precision;
 use super::scene::Scene;
 use super::trail::{Flown, Trail};
-use super::{Entry, NO_DEPTH, entry, stated};
+use super::{EVERY, Entry, NO_DEPTH, stated};
 use crate::phase::PhaseFunction;
 use crate::phase::henyey_greenstein::HenyeyGreenstein;
 use crate::theory::ParticleRule;
@@ -32,7 +32,7 @@ const FORWARD: f64 = 0.5;
 
 /// What is sought.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sought {
+enum Sought {
     /// The radiance in a furnace.
     Furnace,
     /// The path under light from all sides.
@@ -49,7 +49,7 @@ pub enum Sought {
 
 /// A walk through space.
 #[derive(Debug, Clone, Copy)]
-pub struct Space {
+struct Space {
     sought: Sought,
     rule: ParticleRule,
     /// How often both of what a collision leaves are followed.
@@ -157,20 +157,16 @@ impl Space {
         let cosine = trail.uniform::<P>() * 2.0 - 1.0;
         let direction = Place::of([0.0, 0.0, 1.0]).turned(cosine, trail.uniform::<P>());
         let exit = ball.exit(place, direction);
-        let (mut t, mut weight, mut chance) = (P::of(0.0), P::of(1.0), 1.0);
-        let mut dice = trail.apart();
-        loop {
-            t = t + flight::<P>(&mut dice) * ball.path;
-            if !t.below(exit) {
-                return weight.double() * chance;
-            }
+        let (mut weight, mut chance) = (P::of(1.0), 1.0);
+        fly(&mut trail.apart(), [P::of(0.0), exit, ball.path], |t: P| {
             let ratio = ball.extinction(place.plus(direction, t)) * ball.path;
             if self.sought == Sought::Ratio {
                 weight = weight * (P::of(1.0) - ratio);
             } else {
                 chance *= 1.0 - ratio.chance();
             }
-        }
+        });
+        weight.double() * chance
     }
 
     /// Follows a particle until it is scattered or gone; what it scores is added.
@@ -243,8 +239,8 @@ impl Space {
     }
 }
 
-impl Walk for Space {
-    fn stated(&self, scene: &Scene) -> Stated {
+impl Estimator for Space {
+    fn theory(&self, scene: &Scene) -> Theory {
         let shape: Vec<String> = SHAPE.iter().map(|x| format!("{:e}", x * scene.depth)).collect();
         let ball = format!(
             "volume.radial = {{ centre = [0, 0, 0], radius = {RADIUS}, coefficients = [{}] }}\n\
@@ -295,6 +291,10 @@ impl Walk for Space {
         stated(&text, channel)
     }
 
+    fn cost(&self, _: &Scene) -> Option<f64> {
+        None
+    }
+
     fn pilots(&self, scene: Scene) -> Scene {
         // With a majorant, neither analog nor weighted walks depend on it.
         let depends = self.splits > 0 || self.sought == Sought::Ratio;
@@ -328,28 +328,16 @@ const fn space(sought: Sought, rule: ParticleRule) -> Space {
 
 /// All of them.
 pub const ALL: &[Entry] = &[
-    entry!("furnace, analog", |x| {
-        compare_walks(&space(Sought::Furnace, ParticleRule::Analog), x)
-    }),
-    entry!("furnace, weighted", |x| {
-        compare_walks(&space(Sought::Furnace, ParticleRule::Weighted), x)
-    }),
-    entry!("furnace, splitting", |x| {
-        compare_walks(&Space { splits: 3, ..space(Sought::Furnace, ParticleRule::Analog) }, x)
-    }),
-    entry!("lambertian, analog", |x| {
-        compare_walks(&space(Sought::Lambertian, ParticleRule::Analog), x)
-    }),
-    entry!(
-        "infinite medium, analog",
-        |x| compare_walks(&space(Sought::Infinite, ParticleRule::Analog), x),
-        NO_DEPTH
+    ("furnace, analog", &space(Sought::Furnace, ParticleRule::Analog), EVERY),
+    ("furnace, weighted", &space(Sought::Furnace, ParticleRule::Weighted), EVERY),
+    (
+        "furnace, splitting",
+        &Space { splits: 3, ..space(Sought::Furnace, ParticleRule::Analog) },
+        EVERY,
     ),
-    entry!("sphere, particle", |x| compare_walks(&space(Sought::Met, ParticleRule::Analog), x)),
-    entry!("sphere, next-event, ratio", |x| {
-        compare_walks(&space(Sought::Ratio, ParticleRule::Weighted), x)
-    }),
-    entry!("sphere, next-event, delta", |x| {
-        compare_walks(&space(Sought::Delta, ParticleRule::Analog), x)
-    }),
+    ("lambertian, analog", &space(Sought::Lambertian, ParticleRule::Analog), EVERY),
+    ("infinite medium, analog", &space(Sought::Infinite, ParticleRule::Analog), NO_DEPTH),
+    ("sphere, particle", &space(Sought::Met, ParticleRule::Analog), EVERY),
+    ("sphere, next-event, ratio", &space(Sought::Ratio, ParticleRule::Weighted), EVERY),
+    ("sphere, next-event, delta", &space(Sought::Delta, ParticleRule::Analog), EVERY),
 ];

@@ -77,8 +77,8 @@ impl Trail {
     }
 
     /// Random numbers for what may take more of them in one precision than in the other.
-    pub fn apart(&mut self) -> Dice {
-        Dice::new(self.dice.word(), "narrow-apart", 0)
+    pub fn apart(&mut self) -> Self {
+        Self::new(Dice::new(self.dice.word(), "narrow-apart", 0))
     }
 
     /// A uniform number.
