@@ -1,4 +1,5 @@
-//! Single precision as a plot: a row of panels for each family of estimators, a column for each quantity.
+//! Single precision as a plot: a panel for each quantity that is varied, with the estimator of each family
+//! whose bias outgrows the noise first.
 
 use plotters::style::Color;
 
@@ -11,13 +12,15 @@ use crate::report::plots::{Axis, Panel, Sheet};
 use crate::stress::narrow::{Along, Curve, Point};
 
 const LEFT: f64 = 84.0;
-const TOP: f64 = 132.0;
-const PANEL: [f64; 2] = [400.0, 250.0];
-const PITCH: [f64; 2] = [494.0, 350.0];
-/// The width of legends beside a row, and what keeps them off the last panel.
-const LEGEND: [f64; 2] = [310.0, 26.0];
+const TOP: f64 = 138.0;
+const PANEL: [f64; 2] = [400.0, 300.0];
+const PITCH: f64 = 494.0;
+/// From the bottom of a panel to its legend.
+const BELOW: f64 = 76.0;
+/// What is drawn of a point: below a thousandth the bias is nothing.
+const FLOOR: f64 = 1e-3;
 
-/// Bias over noise of every estimator along every quantity: above 1 single precision is wrong.
+/// Bias over noise along every quantity: above 1 single precision is wrong.
 ///
 /// # Errors
 ///
@@ -29,69 +32,93 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
     })?;
     let mut families: Vec<&str> = curves.iter().map(|curve| curve.family).collect();
     families.dedup();
-    let beside = LEFT + 2.0 * PITCH[0] + PANEL[0] + LEGEND[1];
-    let height = TOP + families.len() as f64 * PITCH[1];
-    let mut sheet = Sheet::new(beside + LEGEND[0], height);
-    let title = "Single precision: its bias beside the statistical error of 1e8 draws";
-    let words = "Points: |mean of X₂₄ − X₅₃|/E[X] over √(V/1e8)/E[X], from the same random words; bars: two \
-                 standard errors of the bias. Above 1, rounding outgrows the noise.";
-    let more =
-        "Pale points: the walks were too few to tell. Below 0.001 the bias is drawn as nothing.";
-    let span = beside + LEGEND[0] - LEFT - 18.0;
-    let lines = [(30.0, title, 20.0, DARK), (57.0, words, 13.0, GREY), (77.0, more, 13.0, GREY)];
+    let panels = Along::ALL.map(|along| first_to_fail(curves, &families, along));
+    let most = panels.iter().map(Vec::len).max().unwrap_or(0);
+    let width = LEFT + 2.0 * PITCH + PANEL[0] + 26.0;
+    let mut sheet = Sheet::new(width, TOP + PANEL[1] + BELOW + (most as f64 + 0.5) * LINE);
+    let lines = [
+        (30.0, "Single precision: its bias beside the statistical error of 1e8 draws", 20.0, DARK),
+        (
+            57.0,
+            "Points: |mean of X₂₄ − X₅₃|/E[X] over √(V/1e8)/E[X], from the same random words; bars: two \
+             standard errors of the bias. Above 1, rounding outgrows the noise.",
+            13.0,
+            GREY,
+        ),
+        (
+            77.0,
+            "Of each family the estimator that fails first; those without a curve fail nowhere here. Pale \
+             points: the walks were too few to tell. Below 0.001 the bias is drawn as nothing.",
+            13.0,
+            GREY,
+        ),
+    ];
     for (y, text, size, colour) in lines {
-        sheet.text([LEFT, y], fit(&face, text, size, span), size, colour, Align::Start);
+        let words = fit(&face, text, size, width - LEFT - 18.0);
+        sheet.text([LEFT, y], words, size, colour, Align::Start);
     }
-    for (row, family) in families.into_iter().enumerate() {
-        let top = TOP + row as f64 * PITCH[1];
-        let of = |along: Along| -> Vec<&Curve> {
-            curves.iter().filter(|c| c.family == family && c.along == along).collect()
-        };
-        for (column, along) in Along::ALL.into_iter().enumerate() {
-            let left = LEFT + column as f64 * PITCH[0];
-            let head = format!(
-                "{family}: {}",
-                ["τ = 2", "σ\u{302} = 20 max σₜ", "τ = 2, 40 collisions"][column]
-            );
-            one_panel(&mut sheet, [left, top], (&head, along), &of(along));
-        }
-        let shown = of(Along::Steps);
-        let entries: Vec<Entry> = shown.iter().enumerate().map(entry).collect();
-        let place = [beside, top + 0.5 * LINE];
-        legend::draw(&face, &mut sheet, place, &entries, LEGEND[0] - 8.0);
+    for (column, (along, shown)) in Along::ALL.into_iter().zip(&panels).enumerate() {
+        let left = LEFT + column as f64 * PITCH;
+        let all = curves.iter().filter(|curve| curve.along == along);
+        one_panel(&mut sheet, left, along, (shown, all.flat_map(|curve| &curve.points)));
+        let entries: Vec<Entry> = shown.iter().map(entry).collect();
+        legend::draw(&face, &mut sheet, [left, TOP + PANEL[1] + BELOW], &entries, PANEL[0]);
     }
     Ok(sheet)
 }
 
-fn entry((index, curve): (usize, &&Curve)) -> Entry {
-    let Style { colour, marker, .. } = Style::of(index);
+/// Of each family the curve whose bias is certainly larger than the noise at the least value, and there the
+/// most, with the number of its family; none where none fails.
+fn first_to_fail<'a>(
+    curves: &'a [Curve],
+    families: &[&str],
+    along: Along,
+) -> Vec<(usize, &'a Curve)> {
+    let key = |curve: &Curve| {
+        let point = curve.points.iter().find(|point| point.exceeds())?;
+        Some([point.x, -share(point.bias, point.noise)])
+    };
+    let first = |(number, family): (usize, &&str)| {
+        let of_family = curves.iter().filter(|c| c.family == *family && c.along == along);
+        let failing = of_family.filter_map(|curve| Some((key(curve)?, curve)));
+        let first =
+            failing.min_by(|(a, _), (b, _)| a.partial_cmp(b).unwrap_or(std::cmp::Ordering::Equal));
+        first.map(|(_, curve)| (number, curve))
+    };
+    families.iter().enumerate().filter_map(first).collect()
+}
+
+fn entry(&(family, curve): &(usize, &Curve)) -> Entry {
+    let Style { colour, marker, .. } = Style::of(family);
     let label = curve.estimator.to_owned();
     Entry { label, line: Some((&[], 2.0)), marker: Some(marker), colour }
 }
 
-/// What is drawn of a point: below a thousandth the bias is nothing.
-const FLOOR: f64 = 1e-3;
+fn share(bias: f64, noise: f64) -> f64 {
+    (bias.abs() / noise).max(FLOOR)
+}
 
-fn one_panel(
+/// Without a variance there is no noise to compare with.
+fn has_noise(point: &&Point) -> bool {
+    point.noise > 0.0
+}
+
+fn one_panel<'a>(
     sheet: &mut Sheet,
-    [left, top]: [f64; 2],
-    (head, along): (&str, Along),
-    curves: &[&Curve],
+    left: f64,
+    along: Along,
+    (curves, all): (&[(usize, &Curve)], impl Iterator<Item = &'a Point>),
 ) {
-    // Without a variance there is no noise to compare with.
-    let has_noise = |point: &&Point| point.noise > 0.0;
-    let points = || curves.iter().flat_map(|curve| &curve.points).filter(has_noise);
-    let share = |bias: f64, noise: f64| (bias.abs() / noise).max(FLOOR);
-    let x = Axis::around(along.title(), true, 0.04, points().map(|point| point.x));
+    let points = || curves.iter().flat_map(|(_, curve)| &curve.points).filter(has_noise);
+    let x = Axis::around(along.title(), true, 0.04, all.map(|point| point.x));
     let shares = points().map(|point| share(point.bias, point.noise)).filter(|y| y.is_finite());
     let y = Axis::around("bias / noise", true, 0.04, shares.chain([FLOOR, 10.0]));
-    let panel = Panel { left, top, right: left + PANEL[0], bottom: top + PANEL[1], x, y };
+    let panel = Panel { left, top: TOP, right: left + PANEL[0], bottom: TOP + PANEL[1], x, y };
     panel.grid(sheet);
     let edges = [panel.x.low, panel.x.high].map(|x| (x, 1.0));
     panel.line(sheet, edges, (&[], 1.6, GREY));
-    for (i, curve) in curves.iter().enumerate() {
-        // Markers tell the curves apart; dashes would be most of the file.
-        let Style { colour, marker, .. } = Style::of(i);
+    for &(family, curve) in curves {
+        let Style { colour, marker, .. } = Style::of(family);
         let shown = || curve.points.iter().filter(has_noise);
         let line = shown().map(|point| (point.x, share(point.bias, point.noise)));
         panel.line(sheet, line, (&[], 1.4, colour.mix(0.6)));
@@ -105,5 +132,10 @@ fn one_panel(
             panel.point(sheet, spot, marker, 4.0, colour);
         }
     }
+    let head = match along {
+        Along::Steps => "τ = 2",
+        Along::Depth => "σ\u{302} = 20 max σₜ",
+        Along::Origin => "τ = 2, 40 collisions",
+    };
     panel.frame(sheet, head);
 }
