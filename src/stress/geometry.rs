@@ -1,7 +1,7 @@
 //! Chords of spheres and boxes: rays that graze, that start far away, that are very long or short.
 
 use super::text::{self, one_line};
-use super::trial::{Dice, Trial, beyond_rounding, of_allowed, off};
+use super::trial::{Dice, Trial, beyond, of_allowed, off};
 use super::{Effort, Row, in_parts};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::double_double::{two_prod, two_sum};
@@ -128,7 +128,9 @@ fn depth(t: &mut Trial) -> Option<()> {
     // Reading the direction normalises it once more: the ray is the one that was read.
     let ray = Ray { direction: scene.ray.direction.normalised()?, ..scene.ray };
     let [from, to] = Scene { ray, ..scene }.exact()?;
-    t.see(0, beyond_rounding(medium.optical_depth(medium.span()), to - from));
+    let found = medium.optical_depth(medium.span());
+    let rounding = 0.5 * f64::EPSILON * found.value;
+    t.see(0, beyond(off(found.value, to - from), rounding) / found.error);
     Some(())
 }
 

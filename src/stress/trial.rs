@@ -183,8 +183,12 @@ pub fn of_relative(found: f64, error: f64, exact: Wide) -> f64 {
 /// The same beyond half a unit in the last place, which the nearest double may be off; what is no number
 /// stays none.
 pub fn beyond_rounding(found: Known, exact: Wide) -> f64 {
-    let (off, rounding) = (off(found.value, exact), 0.5 * f64::EPSILON * exact.high);
-    (if off <= rounding { 0.0 } else { off - rounding }) / found.error
+    beyond(off(found.value, exact), 0.5 * f64::EPSILON * exact.high) / found.error
+}
+
+/// By how much an error is beyond what may be off anyway.
+pub fn beyond(off: f64, slack: f64) -> f64 {
+    if off <= slack { 0.0 } else { off - slack }
 }
 
 /// From raw moments `m₂ − m₁²` and the fourth central moment, in a unit.
