@@ -40,11 +40,7 @@ fn trial(t: &mut Trial) -> Option<()> {
     }
     let sampling = t.dice.sized(-1.0, 1.08) / breaks[layers];
     let values: Vec<f64> = (0..layers).map(|_| sampling * t.dice.between(0.0, 1.7)).collect();
-    let text = format!(
-        "medium.piecewise-constant = {{ breaks = {breaks:?}, values = {values:?} }}\n\
-         span = [0, {:e}]",
-        breaks[layers]
-    );
+    let text = text::layers(&breaks, &values);
     t.place = format!("not read, σ̂ = {sampling:e}, {}", one_line(&text));
     let mesh = Mesh::new(text::medium(&text)?);
     let sources: [(&str, &dyn Source, bool); 2] =

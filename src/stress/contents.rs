@@ -12,7 +12,7 @@
 //! Over a box all but the radial field are products of integrals along its edges.
 
 use super::bodies::{Body, dot, sinc, sine_over, sinh_over, sinhc};
-use super::tails::normal_tail;
+use super::tails::normal_between;
 use super::text;
 use super::trial::{Dice, Trial, beyond_rounding};
 use super::{Effort, Row, in_parts};
@@ -77,17 +77,6 @@ fn sines(dice: &mut Dice) -> (String, Wide) {
     (field, waves + even)
 }
 
-/// `Φ(b) − Φ(a)`, a ≤ b.
-fn share(a: Wide, b: Wide) -> Wide {
-    if a.high > 0.0 {
-        normal_tail(a) - normal_tail(b)
-    } else if b.high < 0.0 {
-        normal_tail(-b) - normal_tail(-a)
-    } else {
-        1.0 - normal_tail(-a) - normal_tail(b)
-    }
-}
-
 fn gaussian(dice: &mut Dice) -> (String, Wide) {
     let body = Body::of(dice);
     let (peak, width) = (dice.sized(-6.0, 6.0), dice.sized(-1.0, 1.5) * body.size());
@@ -100,13 +89,13 @@ fn gaussian(dice: &mut Dice) -> (String, Wide) {
             let reach = Wide::from(radius) / w;
             let (b, a) = (reach - delta, reach + delta);
             let density = |x: Wide| (-(x * x).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
-            let inside = share(-a, b) - (density(b) - density(a)) / delta;
+            let inside = normal_between(-a, b) - (density(b) - density(a)) / delta;
             inside * (Wide::PI.scaled(1).sqrt() * w).powi(3)
         }
         Body::Box(low, high) => {
             let edge = |i: usize| {
                 let z = |x: f64| (Wide::from(x) - centre[i]) / w;
-                share(z(low[i]), z(high[i])) * Wide::PI.scaled(1).sqrt() * w
+                normal_between(z(low[i]), z(high[i])) * Wide::PI.scaled(1).sqrt() * w
             };
             edge(0) * edge(1) * edge(2)
         }

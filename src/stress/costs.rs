@@ -49,11 +49,7 @@ fn flights(t: &mut Trial) -> Option<()> {
         let is_empty = t.dice.below(4) == 0;
         values.push(if is_empty { 0.0 } else { t.dice.sized(-9.0, 2.0) / width });
     }
-    let text = format!(
-        "medium.piecewise-constant = {{ breaks = {breaks:?}, values = {values:?} }}\n\
-         span = [0, {:e}]",
-        breaks[count]
-    );
+    let text = text::layers(&breaks, &values);
     t.place = one_line(&text);
     let medium = text::medium(&text)?;
     let (mut exact, mut alive) = (Wide::default(), Wide::ONE);

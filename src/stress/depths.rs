@@ -1,7 +1,7 @@
 //! Optical depths of every field, thick and thin, long and short, against closed forms in 32 digits,
 //! and those of 3-D fields without one against quadrature of their lookups.
 
-use super::tails::normal_tail;
+use super::tails::normal_between;
 use super::text::{self, one_line};
 use super::trial::{Dice, Trial, beyond_rounding, of_allowed};
 use super::{Effort, Row, in_parts};
@@ -128,16 +128,8 @@ fn gaussian(dice: &mut Dice) -> (String, Wide) {
     let centre = dice.sign() * dice.sized(-3.0, 2.0);
     let from = centre + dice.between(-30.0, 30.0) * width;
     let to = from + dice.sized(-3.0, 1.5) * width;
-    // Q on both sides of the foot, by reflection.
-    let tail = |s: f64| {
-        let z = (Wide::from(s) - centre) / width;
-        if z.high < 0.0 { (normal_tail(-z), true) } else { (normal_tail(z), false) }
-    };
-    let share = match (tail(from), tail(to)) {
-        ((a, false), (b, _)) => a - b,
-        ((a, true), (b, true)) => b - a,
-        ((a, true), (b, false)) => 1.0 - a - b,
-    };
+    let z = |s: f64| (Wide::from(s) - centre) / width;
+    let share = normal_between(z(from), z(to));
     let exact = share * Wide::PI.scaled(1).sqrt() * width * peak;
     let field = format!("gaussian = {{ peak = {peak:e}, centre = {centre:e}, width = {width:e} }}");
     (spanned(&field, [from, to]), exact)
@@ -229,8 +221,7 @@ fn quadrature(medium: &Medium) -> f64 {
     ends.extend([support.from, support.to]);
     ends.sort_by(f64::total_cmp);
     let panel = |a: f64, b: f64| {
-        let at: Vec<f64> = rule.nodes.iter().map(|x| a + (b - a) * x).collect();
-        let values = medium.extinctions(&at);
+        let values = medium.extinctions(&rule.nodes_on(Span::new(a, b)));
         (b - a) * rule.weights.iter().zip(values).map(|(w, v)| w * v).sum::<f64>()
     };
     let mut sum = Sum::default();

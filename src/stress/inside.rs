@@ -13,6 +13,7 @@
 use std::cell::OnceCell;
 
 use super::rods::{moments_of, rod_with, rule};
+use super::series::power;
 use super::trial::{Dice, Trial, central, of_relative, share};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
@@ -244,10 +245,10 @@ impl Line {
                 if c.high == 0.0 {
                     return sum;
                 }
-                let whole = c.powi(u32::try_from(j).unwrap_or(0));
+                let whole = power(c, j);
                 (sum[0][0], sum[1][0]) = (whole, whole);
                 for i in 1..j {
-                    let factor = binomial(j, i) * c.powi(u32::try_from(j - i).unwrap_or(0));
+                    let factor = binomial(j, i) * power(c, j - i);
                     let after = self.after(stretch.odds[i], &found[i - 1][at]);
                     for (sum, after) in sum.iter_mut().flatten().zip(after.iter().flatten()) {
                         *sum += factor * *after;

@@ -5,6 +5,11 @@ use std::ops::{Div, Mul, Sub};
 
 use crate::numeric::Wide;
 
+/// `xᵏ`.
+pub(super) fn power(x: Wide, k: usize) -> Wide {
+    (0..k).fold(Wide::ONE, |power, _| power * x)
+}
+
 /// The n-th coefficient of a product.
 pub(super) fn coefficient(a: &[Wide], b: &[Wide], n: usize) -> Wide {
     (0..=n).map(|i| a[i] * b[n - i]).sum()

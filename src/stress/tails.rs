@@ -53,6 +53,17 @@ pub(super) fn normal_tail(z: Wide) -> Wide {
     density / fraction
 }
 
+/// `Φ(b) − Φ(a)` in 32 digits, a ≤ b, on one side of 0 by the tails there.
+pub(super) fn normal_between(a: Wide, b: Wide) -> Wide {
+    if a.high > 0.0 {
+        normal_tail(a) - normal_tail(b)
+    } else if b.high < 0.0 {
+        normal_tail(-b) - normal_tail(-a)
+    } else {
+        1.0 - normal_tail(-a) - normal_tail(b)
+    }
+}
+
 fn normal_law(t: &mut Trial) -> Option<()> {
     let level =
         if t.number % 2 == 0 { t.dice.sized(-300.0, -0.4) } else { t.dice.sized(-13.0, -0.4) };

@@ -1,6 +1,7 @@
 //! Techniques of single scattering in a homogeneous medium, as theory has them and as chains, see `scattered`.
 
 use super::chains::{Chain, Term};
+use super::series::power;
 use crate::numeric::Wide;
 use crate::problems::SingleScattering;
 use crate::theory::raw::{added, poisson};
@@ -10,10 +11,6 @@ use crate::theory::volterra::binomial;
 
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)
-}
-
-fn power(x: Wide, k: usize) -> Wide {
-    x.powi(u32::try_from(k).unwrap_or(0))
 }
 
 /// A homogeneous medium with its σ̂ and its control, in 32 digits.

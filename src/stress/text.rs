@@ -42,3 +42,12 @@ pub(super) fn homogeneous(extinction: f64, length: f64) -> Option<Medium> {
 pub(super) fn one_line(text: &str) -> String {
     text.replace('\n', ", ")
 }
+
+/// Layers from 0 on, as text.
+pub(super) fn layers(breaks: &[f64], values: &[f64]) -> String {
+    let end = breaks[breaks.len() - 1];
+    format!(
+        "medium.piecewise-constant = {{ breaks = {breaks:?}, values = {values:?} }}\n\
+         span = [0, {end:e}]"
+    )
+}
