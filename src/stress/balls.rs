@@ -130,7 +130,7 @@ fn place(dice: &mut Dice, core: f64) -> f64 {
 }
 
 /// Homogeneous balls under the sky.
-fn even(t: &mut Trial) -> Option<()> {
+fn even(t: &mut Trial) {
     let (depth, albedo) = (t.dice.sized(-2.0, 1.3), share(t.dice).max(1e-9));
     let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(t.dice, 0.0))).collect();
     for _ in 0..4 {
@@ -155,7 +155,6 @@ fn even(t: &mut Trial) -> Option<()> {
         };
         t.stated(row, found[i], exact);
     }
-    Some(())
 }
 
 /// σ_t of a ball of radius 1: a polynomial of r², or a Gaussian.
@@ -194,7 +193,7 @@ fn questions(dice: &mut Dice, core: f64) -> Vec<Asked> {
 }
 
 /// Where nothing can be seen.
-fn white(t: &mut Trial) -> Option<()> {
+fn white(t: &mut Trial) {
     let ((said, extinction), (centre, core)) = (field(t.dice), centre(t.dice));
     let asked = questions(t.dice, core);
     let ball = Ball { radius: 1.0, centre, extinction: &*extinction };
@@ -207,7 +206,6 @@ fn white(t: &mut Trial) -> Option<()> {
             None => t.see(0, f64::NAN),
         }
     }
-    Some(())
 }
 
 /// Nodes, directions and grading of which the answers are good to a small part of what is stated.
@@ -215,7 +213,7 @@ const FINER: Resolution =
     Resolution { nodes: 9, directions: 9, surface: 11, core: 14, centre: 23, chance: 1e-10 };
 
 /// Other albedos and lights, by a finer solution.
-fn finer(t: &mut Trial) -> Option<()> {
+fn finer(t: &mut Trial) {
     let ((said, extinction), (centre, core)) = (field(t.dice), centre(t.dice));
     let albedo = share(t.dice);
     let mut asked = questions(t.dice, core);
@@ -227,7 +225,7 @@ fn finer(t: &mut Trial) -> Option<()> {
     let Some((found, fine)) = of(Resolution::COARSE).zip(of(FINER)) else {
         t.place = said;
         t.see(0, f64::NAN);
-        return Some(());
+        return;
     };
     for ((asked, found), fine) in asked.iter().zip(found).zip(fine) {
         t.place = format!("{said}, {asked:?}");
@@ -238,7 +236,6 @@ fn finer(t: &mut Trial) -> Option<()> {
             t.stated(0, found, Wide::from(fine.value));
         }
     }
-    Some(())
 }
 
 /// A point source at the centre, order by order.

@@ -109,7 +109,7 @@ fn hyperbolic(y: Wide) -> (Wide, Wide) {
     ((grown + grown * inverse).scaled(-1), (grown + 1.0 + inverse).scaled(-1))
 }
 
-fn case(t: &mut Trial, nodes: &[Node]) -> Option<()> {
+fn case(t: &mut Trial, nodes: &[Node]) {
     let albedo = share(t.dice).min(1.0 - 1e-15);
     let c = n(albedo);
     let of_node = |node: &Node| {
@@ -128,7 +128,6 @@ fn case(t: &mut Trial, nodes: &[Node]) -> Option<()> {
         t.place = format!("c = {albedo:e}, σ_t r = {near:e}");
         t.stated(1, infinite::fluence(albedo, near), around(n(near), nodes, &g, pole, c));
     }
-    Some(())
 }
 
 fn collisions(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide) -> Wide {
@@ -151,14 +150,13 @@ fn around(r: Wide, nodes: &[Node], g: &[Wide], pole: Option<[Wide; 2]>, c: Wide)
 }
 
 /// The square of the distance where collisions end.
-fn totals(t: &mut Trial) -> Option<()> {
+fn totals(t: &mut Trial) {
     let albedo = share(t.dice).min(1.0 - 1e-15);
     let cosine = t.dice.between(-1.0, 1.0);
     let exact = 2.0 / ((1.0 - n(albedo)) * (1.0 - Wide::product(albedo, cosine)));
     let found = infinite::square_at_absorption(albedo, cosine);
     t.place = format!("a = {albedo:e}, g = {cosine:e}");
     t.stated(0, Known::new(found, infinite::ROUNDING * found), exact);
-    Some(())
 }
 
 /// x, its arc tangent over x, and `dx`.
@@ -188,7 +186,7 @@ fn bent(&[x, ratio, _]: &[Wide; 3]) -> Wide {
     terms.fold(Wide::default(), |sum, term| sum * (x * x) + term) * (x * x)
 }
 
-fn half_space(t: &mut Trial, angles: &[[Wide; 3]]) -> Option<()> {
+fn half_space(t: &mut Trial, angles: &[[Wide; 3]]) {
     let albedo = share(t.dice);
     let log = |angle| ((1.0 - n(albedo)) + albedo * bent(angle)).ln();
     let logs: Vec<Wide> = angles.iter().map(log).collect();
@@ -202,7 +200,6 @@ fn half_space(t: &mut Trial, angles: &[[Wide; 3]]) -> Option<()> {
         t.place = format!("a = {albedo:e}, μ = {cosine:e}");
         t.relative(0, h_function(albedo, cosine), (-(mu * integral / Wide::PI)).exp());
     }
-    Some(())
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ impl Case {
     }
 }
 
-fn truths(t: &mut Trial) -> Option<()> {
+fn truths(t: &mut Trial) {
     let depth = t.dice.sized(-6.0, 1.48);
     #[allow(clippy::cast_possible_truncation)] // six
     let case = Case::new(t.dice, depth, HIGHEST_ORDER as usize);
@@ -94,10 +94,9 @@ fn truths(t: &mut Trial) -> Option<()> {
             None => t.skip(row),
         }
     }
-    Some(())
 }
 
-fn moments(t: &mut Trial) -> Option<()> {
+fn moments(t: &mut Trial) {
     let (depth, ratio) = (t.dice.sized(-3.0, 1.0), t.dice.sized(-1.0, 0.5));
     let order = 1 + t.dice.below(3);
     let case = Case::new(t.dice, depth, order);
@@ -129,7 +128,6 @@ fn moments(t: &mut Trial) -> Option<()> {
             t.skip(row + 3);
         }
     }
-    Some(())
 }
 
 type Series = [Wide; TERMS];

@@ -19,7 +19,7 @@ use crate::theory::{Mesh, Rule};
 #[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(6, 200);
-    let ranges: [(&str, fn(&mut Dice) -> Case); 2] = [
+    let ranges: [(&str, Draw); 2] = [
         ("τ = 1e-12 … 1e3, σ̂/σ_t = 1e-9 … 1e9", of_any_size),
         ("r near 0, 1, 2, ±1e3; τ = 1e-6 … 50 collisions", of_special_ratios),
     ];
@@ -40,6 +40,9 @@ struct Case {
     sampling: f64,
     length: f64,
 }
+
+/// Draws parameters.
+type Draw = fn(&mut Dice) -> Case;
 
 fn of_any_size(dice: &mut Dice) -> Case {
     let length = dice.sized(-9.0, 9.0);
@@ -85,7 +88,7 @@ fn central([j2, j3, j4]: [Wide; 3]) -> [Wide; 2] {
     [u, fourth]
 }
 
-fn products(t: &mut Trial, draw: fn(&mut Dice) -> Case) -> Option<()> {
+fn products(t: &mut Trial, draw: Draw) -> Option<()> {
     let case = draw(t.dice);
     let Case { extinction, control, sampling, length } = case;
     t.place = format!("{case:?}");

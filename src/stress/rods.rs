@@ -133,13 +133,12 @@ fn solved(t: &mut Trial) -> Option<()> {
 pub(super) fn moments_of(rule: ParticleRule, ratio: Wide, albedo: f64, k: u32) -> [Wide; 2] {
     let (left, scattered) = (1.0 - ratio, albedo * ratio);
     let signed = |x: Wide, size: Wide| if x.high < 0.0 && k % 2 == 1 { -size } else { size };
-    let (chances, sum) = match rule {
-        ParticleRule::Terminating => ([left, scattered].map(Wide::abs), Wide::ONE),
-        _ => {
-            let other = if rule == ParticleRule::Weighted { ratio } else { scattered };
-            let sum = left.abs() + other.abs();
-            ([left.abs() / sum, other.abs() / sum], sum)
-        }
+    let (chances, sum) = if rule == ParticleRule::Terminating {
+        ([left, scattered].map(Wide::abs), Wide::ONE)
+    } else {
+        let other = if rule == ParticleRule::Weighted { ratio } else { scattered };
+        let sum = left.abs() + other.abs();
+        ([left.abs() / sum, other.abs() / sum], sum)
     };
     let of_weight = if rule == ParticleRule::Weighted { albedo } else { 1.0 };
     [signed(left, chances[0] * sum.powi(k)), signed(ratio, chances[1] * (sum * of_weight).powi(k))]

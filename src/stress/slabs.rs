@@ -59,12 +59,12 @@ fn compare(
     (depth, albedo, phase, said): (f64, f64, Phase, &str),
     lights: &[Light],
     exact: impl FnOnce(&[slab::Answer]) -> Option<Vec<[Wide; 3]>>,
-) -> Option<()> {
+) {
     let found = slab::answers(&phase, lights, Known::exact(depth), albedo);
     let Some((exact, found)) = found.and_then(|found| Some((exact(&found)?, found))) else {
         t.place = format!("τ = {depth:e}, a = {albedo:e}, {:?}{said}", lights[0]);
         t.see(0, f64::NAN);
-        return Some(());
+        return;
     };
     for ((found, exact), light) in found.into_iter().zip(exact).zip(lights) {
         t.place = format!("τ = {depth:e}, a = {albedo:e}, {light:?}{said}");
@@ -73,11 +73,10 @@ fn compare(
             t.stated(0, found, exact);
         }
     }
-    Some(())
 }
 
 /// Adding and doubling with more directions and a thinner first layer.
-fn finer(t: &mut Trial) -> Option<()> {
+fn finer(t: &mut Trial) {
     let resolution =
         Resolution { faintest: 1e-14, directions: 72, first_layer: 1e-14, ..Resolution::FINE };
     let (depth, albedo) = (t.dice.sized(-6.0, 2.0), share(t.dice));
@@ -88,11 +87,11 @@ fn finer(t: &mut Trial) -> Option<()> {
         let fine = slab::energies(&phase, &lights, &[slice], resolution)?;
         let all = |fine: slab::Energy| [fine.reflected, fine.transmitted, fine.score];
         Some(fine.into_iter().map(|fine| all(fine).map(Wide::from)).collect())
-    })
+    });
 }
 
 /// Isotropic scattering by discrete ordinates.
-fn even(t: &mut Trial) -> Option<()> {
+fn even(t: &mut Trial) {
     let (depth, albedo) = (t.dice.sized(-2.0, 2.0), share(t.dice));
     let (phase, lights) = (Phase::Isotropic(Isotropic), lights(t.dice));
     // At a = 0 and a = 1 two solutions are one: a grain beside it, 1e-20, nobody sees.
@@ -111,5 +110,5 @@ fn even(t: &mut Trial) -> Option<()> {
             [r, t, if lost.high > 1e-9 { score } else { Wide::from(found.score.value) }]
         };
         Some(lights.iter().zip(found).map(all).collect())
-    })
+    });
 }

@@ -64,9 +64,12 @@ pub(super) fn normal_between(a: Wide, b: Wide) -> Wide {
     }
 }
 
-fn normal_law(t: &mut Trial) -> Option<()> {
-    let level =
-        if t.number % 2 == 0 { t.dice.sized(-300.0, -0.4) } else { t.dice.sized(-13.0, -0.4) };
+fn normal_law(t: &mut Trial) {
+    let level = if t.number.is_multiple_of(2) {
+        t.dice.sized(-300.0, -0.4)
+    } else {
+        t.dice.sized(-13.0, -0.4)
+    };
     let z = normal::upper_quantile(level);
     let density = (-Wide::product(z, z).scaled(-1)).exp() / Wide::PI.scaled(1).sqrt();
     let off = (normal_tail(Wide::from(z)) - level) / density;
@@ -80,7 +83,6 @@ fn normal_law(t: &mut Trial) -> Option<()> {
         t.place = format!("erf {x:e}");
         t.relative(1, libm::erf(x), 1.0 - tail);
     }
-    Some(())
 }
 
 /// `P(χ² > x) = e^{−x/2} Σ_{j<m} (x/2)^j/j!` for 2m degrees.
@@ -146,7 +148,7 @@ fn many_degrees(t: &mut Trial) -> Option<()> {
 }
 
 /// The tail at each end of the interval, as an integral of the density of the end.
-fn binomial_ends(t: &mut Trial) -> Option<()> {
+fn binomial_ends(t: &mut Trial) {
     let n = t.dice.sized(4.0, 9.0).round();
     let k = (n * t.dice.sized(-2.3, -0.31)).round();
     let level = 1.0 - t.dice.sized(-12.0, -1.0);
@@ -173,11 +175,10 @@ fn binomial_ends(t: &mut Trial) -> Option<()> {
         // How far the end is from where the tail would be right.
         t.see(0, ((exact - tail) / slope / end).abs());
     }
-    Some(())
 }
 
 /// Probabilities by recurrence from the mode against `e^{−m} mⁿ/n!`.
-fn poisson(t: &mut Trial) -> Option<()> {
+fn poisson(t: &mut Trial) {
     let mean = t.dice.sized(-3.0, 3.3);
     let (mut ln_mass, ln_mean) = (-Wide::from(mean), Wide::from(mean).ln());
     for (n, &found) in CountLaw::poisson(mean).pmf.iter().enumerate() {
@@ -190,11 +191,10 @@ fn poisson(t: &mut Trial) -> Option<()> {
             t.relative(0, found, exact);
         }
     }
-    Some(())
 }
 
 /// Products of factors against sums of logarithms.
-fn catoni(t: &mut Trial) -> Option<()> {
+fn catoni(t: &mut Trial) {
     let widest = [3.0, 150.0][t.dice.below(2)];
     let y: Vec<f64> = (0..4096).map(|_| t.dice.sign() * t.dice.sized(-12.0, widest)).collect();
     let (mut exact, mut size) = (Wide::default(), 0.0);
@@ -208,17 +208,16 @@ fn catoni(t: &mut Trial) -> Option<()> {
     y.chunks(1000).for_each(|y| sums.absorb(y, &[Argument { slope: 1.0, shift: 0.0 }]));
     t.place = format!("up to 1e{widest}");
     t.see(0, off(sums.totals()[0], exact) / size);
-    Some(())
 }
 
 /// Smirnov's sum for the upper tail against Anderson and Darling's series for the lower one, which shares
 /// no term with it, and beyond x = 40 against the first term's expansion.
-fn anderson_darling(t: &mut Trial) -> Option<()> {
-    let x = if t.number % 2 == 0 { t.dice.sized(-1.0, 1.6) } else { t.dice.sized(1.6, 2.84) };
+fn anderson_darling(t: &mut Trial) {
+    let x =
+        if t.number.is_multiple_of(2) { t.dice.sized(-1.0, 1.6) } else { t.dice.sized(1.6, 2.84) };
     let exact = if x < 40.0 { 1.0 - below(x) } else { Wide::from(far_tail(x)) };
     t.place = format!("A² = {x:e}");
     t.relative(0, anderson_darling::upper_tail(x), exact);
-    Some(())
 }
 
 /// `P(A² ≤ x)` as Anderson and Darling give it (Journal of the American Statistical Association 49,

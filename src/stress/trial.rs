@@ -70,6 +70,24 @@ pub fn in_parts(
     joined((0..parts).into_par_iter().map(part).collect())
 }
 
+/// What a trial answers: nothing, or `None` where there was nothing to compare.
+pub trait Outcome {
+    /// Whether it is skipped in all rows.
+    fn skips(self) -> bool;
+}
+
+impl Outcome for () {
+    fn skips(self) -> bool {
+        false
+    }
+}
+
+impl Outcome for Option<()> {
+    fn skips(self) -> bool {
+        self.is_none()
+    }
+}
+
 /// A part of a page: the rows of its table, one group after the other.
 pub struct Part {
     /// Which part.
@@ -80,18 +98,18 @@ pub struct Part {
 
 impl Part {
     /// Rows that the same trials fill. A trial that answers `None` is skipped in all of them.
-    pub fn run<const N: usize>(
+    pub fn run<const N: usize, O: Outcome>(
         &mut self,
         trials: u32,
         rows: [Row; N],
-        trial: impl Fn(&mut Trial) -> Option<()>,
+        trial: impl Fn(&mut Trial) -> O,
     ) {
         let (place, mut rows) = (String::new(), rows);
         let mut at = Trial { number: 0, dice: &mut self.dice, rows: &mut rows, place };
         for number in 0..trials {
             at.number = number;
             at.place.clear();
-            if trial(&mut at).is_none() {
+            if trial(&mut at).skips() {
                 (0..N).for_each(|row| at.skip(row));
             }
         }
@@ -119,6 +137,11 @@ impl Trial<'_> {
     /// Whether something is wrong.
     pub fn count(&mut self, row: usize, is_wrong: bool) {
         self.rows[row].count(is_wrong, || self.place.clone());
+    }
+
+    /// Whether there is such a row.
+    pub fn has(&self, row: usize) -> bool {
+        row < self.rows.len()
     }
 
     /// Nothing to compare.
@@ -223,7 +246,6 @@ mod tests {
             part.run(1, [Row::new("q", "r", Measure::Absolute, 9.0)], |t| {
                 t.place.clone_from(&said);
                 t.see(0, error);
-                Some(())
             });
         });
         assert_eq!((rows[0].trials, rows[0].place.as_str()), (5, "3"));

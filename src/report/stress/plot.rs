@@ -99,6 +99,7 @@ fn share(bias: f64, noise: f64) -> f64 {
 }
 
 /// Without a variance there is no noise to compare with.
+#[allow(clippy::trivially_copy_pass_by_ref)] // what filters hand over
 fn has_noise(point: &&Point) -> bool {
     point.noise > 0.0
 }

@@ -39,9 +39,10 @@ struct Layer {
 impl Estimator for Layer {
     fn theory(&self, scene: &Scene) -> Theory {
         let field = scene.sines(&format!("frequencies = [{FREQUENCY:e}]"));
-        let (name, settings) = match self.roulette {
-            true => ("roulette", format!("below = {BELOW}, ")),
-            false => (self.rule.name(), String::new()),
+        let (name, settings) = if self.roulette {
+            ("roulette", format!("below = {BELOW}, "))
+        } else {
+            (self.rule.name(), String::new())
         };
         let (problem, scattering) = if self.is_slab {
             let light = format!("incidence.collimated = {{ cosine = {COSINE} }}");

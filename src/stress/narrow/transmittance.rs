@@ -250,9 +250,9 @@ impl Estimator for Inversion {
         for _ in 0..STEPS {
             let off = scene.depth_to(s) - depth;
             if off.below(zero) {
-                low = s
+                low = s;
             } else {
-                high = s
+                high = s;
             }
             let next = s - off / scene.extinction(s + scene.from);
             let is_within = low.at_most(next) && next.at_most(high);
