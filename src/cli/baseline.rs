@@ -1,11 +1,12 @@
 //! Options of commands that draw: store a run, compare with a stored one.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Args;
-use trueflight::harness::baseline::{Baseline, fingerprint};
-use trueflight::harness::baseline::{Comparison, Rules, compare};
+use trueflight::harness::baseline::{
+    Baseline, BaselineError, Comparison, Rules, compare, fingerprint,
+};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
 use trueflight::report::diff;
@@ -33,10 +34,59 @@ pub struct BaselineArguments {
 /// The tolerance of times where none is given.
 const TIME_TOLERANCE: f64 = 0.25;
 
+/// What a result is compared with, and where it is stored: names and files.
+pub struct Files<T> {
+    /// What it is compared with.
+    pub stored: Option<(String, PathBuf, T)>,
+    /// Where it is stored.
+    pub save: Option<(String, PathBuf)>,
+}
+
+impl<T> Files<T> {
+    /// Reads the one and tries the other, where there are names.
+    pub fn open(
+        [stored, save]: [Option<&String>; 2],
+        path: impl Fn(&str) -> Result<PathBuf, BaselineError>,
+        read: impl Fn(&str, &Path) -> anyhow::Result<T>,
+    ) -> anyhow::Result<Self> {
+        let stored = stored.map(|name| -> anyhow::Result<_> {
+            let path = path(name)?;
+            let stored = read(name, &path)?;
+            Ok((name.clone(), path, stored))
+        });
+        let save = save.map(|name| -> anyhow::Result<_> {
+            let path = path(name)?;
+            Baseline::writable(&path)?;
+            Ok((name.clone(), path))
+        });
+        Ok(Self { stored: stored.transpose()?, save: save.transpose()? })
+    }
+
+    /// An error where nothing was compared: why, and what to do in its place.
+    pub fn complaint(&self, nothing: &str, cure: &str) -> Option<anyhow::Error> {
+        let (_, path, _) = self.stored.as_ref()?;
+        let path = path.display();
+        Some(anyhow!("{path}: {nothing}; {cure}, or make it anew with --save-baseline"))
+    }
+
+    /// Stores the result where that is wished, unless there is a reason not to. Answers what to print.
+    pub fn store(
+        &self,
+        why_not: Option<&str>,
+        write: impl FnOnce(&Path) -> Result<(), BaselineError>,
+    ) -> anyhow::Result<String> {
+        let Some((name, path)) = &self.save else { return Ok(String::new()) };
+        if let Some(why) = why_not {
+            return Ok(format!("baseline {name} not stored: {why}\n"));
+        }
+        write(path)?;
+        Ok(format!("baseline {name} stored in {}\n", path.display()))
+    }
+}
+
 /// What the drawing must be compared with, and where it is stored; known before the first draw.
 pub struct Baselines {
-    stored: Option<(String, PathBuf, Baseline)>,
-    save: Option<(String, PathBuf)>,
+    files: Files<Baseline>,
     executable: String,
     time_tolerance: Option<f64>,
 }
@@ -49,35 +99,30 @@ impl BaselineArguments {
 
     /// Reads the baseline and tries the folder, before anything is drawn.
     pub fn open(&self) -> anyhow::Result<Baselines> {
-        let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
-            let path = Baseline::path(&self.baselines, name)?;
-            let stored = Baseline::read(&path)?;
-            Ok((name.clone(), path, stored))
-        });
-        let save = self.save_baseline.as_ref().map(|name| -> anyhow::Result<_> {
-            let path = Baseline::path(&self.baselines, name)?;
-            Baseline::writable(&path)?;
-            Ok((name.clone(), path))
-        });
-        let (stored, save) = (stored.transpose()?, save.transpose()?);
+        let files = Files::open(
+            [self.baseline.as_ref(), self.save_baseline.as_ref()],
+            |name| Baseline::path(&self.baselines, name),
+            |_, path| Ok(Baseline::read(path)?),
+        )?;
         let executable = if self.is_used() { fingerprint()? } else { String::new() };
-        Ok(Baselines { stored, save, executable, time_tolerance: self.time_tolerance })
+        Ok(Baselines { files, executable, time_tolerance: self.time_tolerance })
     }
 }
 
 impl Baselines {
     /// Compares a run with the stored one, if there is one; answers what to store.
     pub fn compare(&self, mut record: Record, cases: &[Case]) -> (Record, Option<Baseline>) {
-        if self.stored.is_none() && self.save.is_none() {
+        let Files { stored, save } = &self.files;
+        if stored.is_none() && save.is_none() {
             return (record, None);
         }
         let mut run = Baseline::of(&record, cases, &self.executable);
-        if let Some((name, _, stored)) = &self.stored {
+        if let Some((name, _, stored)) = stored {
             let time_tolerance = self.time_tolerance.unwrap_or(TIME_TOLERANCE);
             let rules = Rules { alpha: record.results.alpha, time_tolerance };
             let (comparison, next) = compare(name, stored, &run, &rules);
             record.comparison = Some(comparison);
-            if self.save.as_ref().is_some_and(|(save, _)| save == name) {
+            if save.as_ref().is_some_and(|(save, _)| save == name) {
                 run = next;
             }
         }
@@ -86,12 +131,9 @@ impl Baselines {
 
     /// What is wrong with a comparison that was asked for and says nothing.
     pub fn complaint(&self, record: &Record) -> Option<anyhow::Error> {
-        let (comparison, (_, path, _)) = record.comparison.as_ref().zip(self.stored.as_ref())?;
+        let comparison = record.comparison.as_ref()?;
         if let Some(nothing) = diff::nothing(comparison) {
-            return Some(anyhow!(
-                "{}: {nothing}; run the cases of the baseline, or make it anew with --save-baseline",
-                path.display()
-            ));
+            return self.files.complaint(&nothing, "run the cases of the baseline");
         }
         let wanted = self.time_tolerance.filter(|_| comparison.rules.asks_for_times())?;
         let no_times = diff::no_times(comparison)?;
@@ -104,22 +146,17 @@ impl Baselines {
     /// Stores a run where that is wished; what fails or became worse is not stored. Answers what to
     /// print.
     pub fn store(&self, record: &Record, run: Option<&Baseline>) -> anyhow::Result<String> {
-        let (Some((name, path)), Some(run)) = (&self.save, run) else { return Ok(String::new()) };
-        if record.comparison.as_ref().is_some_and(Comparison::fails) {
-            return Ok(format!("baseline {name} not stored: something became worse\n"));
-        }
-        if record.comparison.as_ref().is_some_and(Comparison::is_empty) {
-            return Ok(format!("baseline {name} not stored: nothing was compared\n"));
-        }
-        if run.entries.is_empty() {
-            return Ok(format!("baseline {name} not stored: nothing was drawn\n"));
-        }
+        let Some(run) = run else { return Ok(String::new()) };
+        let comparison = record.comparison.as_ref();
         let mut rows = record.results.cases.iter().flat_map(|case| &case.rows);
-        if rows.any(|row| row.verdict == Some(Verdict::Fail)) {
-            return Ok(format!("baseline {name} not stored: something fails\n"));
-        }
-        run.write(path)?;
-        Ok(format!("baseline {name} stored in {}\n", path.display()))
+        let reasons = [
+            (comparison.is_some_and(Comparison::fails), "something became worse"),
+            (comparison.is_some_and(Comparison::is_empty), "nothing was compared"),
+            (run.entries.is_empty(), "nothing was drawn"),
+            (rows.any(|row| row.verdict == Some(Verdict::Fail)), "something fails"),
+        ];
+        let why_not = reasons.into_iter().find(|reason| reason.0).map(|reason| reason.1);
+        self.files.store(why_not, |path| run.write(path))
     }
 }
 

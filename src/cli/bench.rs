@@ -2,19 +2,19 @@
 
 use std::path::PathBuf;
 
-use anyhow::{anyhow, bail};
+use anyhow::bail;
 use clap::Args;
 use trueflight::bench::compare::{Comparison, compare};
 use trueflight::bench::record::Bench;
 use trueflight::bench::stored::Stored;
 use trueflight::bench::{Amounts, measure};
-use trueflight::harness::baseline::Baseline;
 use trueflight::harness::{Amount, Plan};
-use trueflight::report::{self, bench as page};
+use trueflight::report::bench as page;
 
-use super::output::{self, Format};
+use super::Console;
+use super::baseline::{self, Files};
+use super::output::{self, Errors, Format};
 use super::selection::{self, Experiments};
-use super::{Console, USAGE, baseline};
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]
@@ -78,35 +78,25 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         .as_ref()
         .map(|(name, _, stored)| compare(name, stored, &now, arguments.time_tolerance));
     let is_worse = bench.comparison.as_ref().is_some_and(Comparison::fails);
-    // What cannot be written keeps nothing else from being told.
-    let mut errors = Vec::new();
-    errors.extend(baselines.complaint(&bench));
-    let files = page::render(&bench).map(|artifacts| {
-        let failed = report::write(&artifacts, &arguments.out);
-        let written = artifacts.len() - failed.len();
-        errors.extend(failed.into_iter().map(anyhow::Error::from));
-        written
-    });
-    errors.extend(arguments.print(&bench, console).err());
-    let keeps = match &bench.comparison {
-        Some(comparison) if comparison.fails() => Err("something became slower"),
-        Some(comparison) if comparison.is_empty() => Err("nothing was compared"),
-        _ => Ok(()),
+    let mut errors = Errors::default();
+    let nothing = bench.comparison.as_ref().and_then(page::diff::nothing);
+    let complain =
+        |nothing: String| baselines.complaint(&nothing, "time the cases of the baseline");
+    errors.extend(nothing.and_then(complain));
+    let files = errors.write(page::render(&bench), &arguments.out);
+    errors.keep(arguments.print(&bench, console));
+    let why_not = match &bench.comparison {
+        Some(comparison) if comparison.fails() => Some("something became slower"),
+        Some(comparison) if comparison.is_empty() => Some("nothing was compared"),
+        _ => None,
     };
-    let stored = baselines.store(&now, keeps).unwrap_or_else(|error| {
-        errors.push(error);
-        String::new()
-    });
-    match files {
-        Ok(files) if arguments.format == Format::Table && !console.quiet => {
-            let said = format!("{files} files in {}\n{stored}", arguments.out.display());
-            errors.extend(output::print(&said).err());
-        }
-        Ok(_) => {}
-        Err(error) => errors.push(error.into()),
+    let stored = errors.keep(baselines.store(why_not, |path| now.write(path)));
+    let is_told = arguments.format == Format::Table && !console.quiet;
+    if let Some(files) = files.filter(|_| is_told) {
+        let said = format!("{files} files in {}\n{stored}", arguments.out.display());
+        errors.keep(output::print(&said));
     }
-    errors.iter().for_each(output::complain);
-    Ok(if errors.is_empty() { u8::from(is_worse) } else { USAGE })
+    Ok(errors.close(u8::from(is_worse)))
 }
 
 /// How many experiments can be timed; none is an error.
@@ -119,53 +109,23 @@ fn drawable(plan: &Plan) -> anyhow::Result<u64> {
     }
 }
 
-/// What is compared with, and where it is stored; known before anything is timed.
-struct Baselines {
-    stored: Option<(String, PathBuf, Stored)>,
-    save: Option<(String, PathBuf)>,
-}
-
-impl Baselines {
-    /// What is wrong with a comparison that was asked for and says nothing.
-    fn complaint(&self, bench: &Bench) -> Option<anyhow::Error> {
-        let (comparison, (_, path, _)) = bench.comparison.as_ref().zip(self.stored.as_ref())?;
-        let nothing = page::diff::nothing(comparison)?;
-        Some(anyhow!(
-            "{}: {nothing}; time the cases of the baseline, or make it anew with --save-baseline",
-            path.display()
-        ))
-    }
-
-    /// Stores the times where that is wished, unless there is a reason not to. Answers what to print.
-    fn store(&self, now: &Stored, keeps: Result<(), &str>) -> anyhow::Result<String> {
-        let Some((name, path)) = &self.save else { return Ok(String::new()) };
-        if let Err(why) = keeps {
-            return Ok(format!("baseline {name} not stored: {why}\n"));
-        }
-        now.write(path)?;
-        Ok(format!("baseline {name} stored in {}\n", path.display()))
-    }
-}
-
 impl Arguments {
     /// Reads the baseline and tries the folder.
-    fn open(&self) -> anyhow::Result<Baselines> {
-        let stored = self.baseline.as_ref().map(|name| -> anyhow::Result<_> {
-            let path = Stored::path(&self.baselines, name)?;
-            let stored = Stored::read(&path)?;
-            let threads = usize::from(self.threads);
-            if stored.threads != threads {
+    fn open(&self) -> anyhow::Result<Files<Stored>> {
+        Files::open(
+            [self.baseline.as_ref(), self.save_baseline.as_ref()],
+            |name| Stored::path(&self.baselines, name),
+            |name, path| {
+                let stored = Stored::read(path)?;
                 let theirs = stored.threads;
-                bail!("baseline {name} was timed with {theirs} threads; give --threads {theirs}");
-            }
-            Ok((name.clone(), path, stored))
-        });
-        let save = self.save_baseline.as_ref().map(|name| -> anyhow::Result<_> {
-            let path = Stored::path(&self.baselines, name)?;
-            Baseline::writable(&path)?;
-            Ok((name.clone(), path))
-        });
-        Ok(Baselines { stored: stored.transpose()?, save: save.transpose()? })
+                if theirs != usize::from(self.threads) {
+                    bail!(
+                        "baseline {name} was timed with {theirs} threads; give --threads {theirs}"
+                    );
+                }
+                Ok(stored)
+            },
+        )
     }
 
     fn print(&self, bench: &Bench, console: &Console) -> anyhow::Result<()> {

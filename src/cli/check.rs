@@ -11,12 +11,11 @@ use anyhow::Context;
 use clap::Args;
 use trueflight::files;
 use trueflight::harness::{Case, Options, Record};
-use trueflight::report::{
-    self, Artifact, Report, annotations, console, junit, markdown, record_json,
-};
+use trueflight::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
 
 use super::baseline::BaselineArguments;
 use super::drawing::{self, Budget};
+use super::output::Errors;
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
 use super::{Console, output};
@@ -80,21 +79,18 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     };
     arguments.writable(&cases)?;
     let baselines = arguments.baseline.open()?;
-    let record = selection.on_threads(|| {
-        let plan = selection.plan(&cases, &options)?;
-        Ok(drawing::draw(&plan, console))
-    })?;
+    let record = selection.with_plan(&cases, &options, |plan| Ok(drawing::draw(plan, console)))?;
     let (record, run) = baselines.compare(record, &cases);
-    let mut errors = arguments.write(&record);
-    errors.extend(arguments.print(&record, console).err());
+    let mut errors = Errors::default();
+    arguments.write(&record, &mut errors);
+    errors.keep(arguments.print(&record, console));
     errors.extend(baselines.complaint(&record));
-    match baselines.store(&record, run.as_ref()) {
-        Ok(stored) if !console.quiet => errors.extend(output::print(&stored).err()),
-        Ok(_) => {}
-        Err(error) => errors.push(error),
+    let stored = errors.keep(baselines.store(&record, run.as_ref()));
+    if !console.quiet {
+        errors.keep(output::print(&stored));
     }
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
-        errors.extend(output::print(&annotations::text(&record)).err());
+        errors.keep(output::print(&annotations::text(&record)));
         summarise(&record);
     }
     Ok(verdict::close(&record, arguments.inconclusive, &errors))
@@ -131,9 +127,8 @@ impl Arguments {
         self.out.as_deref().map_or(Ok(()), output::writable)
     }
 
-    /// Writes all that can be written, and tells what could not.
-    fn write(&self, record: &Record) -> Vec<anyhow::Error> {
-        let mut errors = Vec::new();
+    /// Writes all that can be written.
+    fn write(&self, record: &Record, errors: &mut Errors) {
         for (flag, path) in self.files() {
             let text = match flag {
                 "--junit" => junit::text(record, Inconclusive::in_junit(self.inconclusive)),
@@ -144,17 +139,13 @@ impl Arguments {
                 .map_err(anyhow::Error::from)
                 .and_then(|text| Ok(files::replace(path, text.as_bytes())?))
                 .with_context(|| format!("cannot write {} ({flag})", path.display()));
-            errors.extend(written.err());
+            errors.keep(written);
         }
         if let Some(out) = &self.out {
-            match results(record) {
-                Ok(artifacts) => {
-                    errors.extend(report::write(&artifacts, out).into_iter().map(Into::into));
-                }
-                Err(error) => errors.push(error),
-            }
+            let pages: [&dyn Report; 2] = [&summary_csv::SummaryCsv, &record_json::RecordJson];
+            let files: Result<Vec<_>, _> = pages.iter().map(|page| page.render(record)).collect();
+            errors.write(files.map(|files| files.concat()), out);
         }
-        errors
     }
 
     fn print(&self, record: &Record, options: &Console) -> anyhow::Result<()> {
@@ -168,12 +159,6 @@ impl Arguments {
             console::brief(record, pen)
         })
     }
-}
-
-fn results(record: &Record) -> anyhow::Result<Vec<Artifact>> {
-    let mut artifacts = report::summary_csv::SummaryCsv.render(record)?;
-    artifacts.extend(record_json::RecordJson.render(record)?);
-    Ok(artifacts)
 }
 
 /// Adds the summary to the page of the job. Without it the verdict is still the verdict.

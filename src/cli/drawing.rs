@@ -16,7 +16,7 @@ use trueflight::harness::{Plan, run, verdict};
 use super::{Console, output};
 
 /// The file beside the results that keeps what was drawn.
-const KEPT: &str = "draws.bin";
+const CACHE: &str = "draws.bin";
 
 /// Draws a plan and judges it.
 pub fn draw(plan: &Plan, console: &Console) -> Record {
@@ -24,18 +24,18 @@ pub fn draw(plan: &Plan, console: &Console) -> Record {
 }
 
 /// Draws what has not been kept, keeps it, and judges all.
-pub fn draw_uncached(plan: &Plan, kept: &mut Cache, console: &Console) -> Record {
+pub fn draw_uncached(plan: &Plan, cache: &mut Cache, console: &Console) -> Record {
     let begin = Instant::now();
     let bar = progress(plan, console);
-    let draws = run::draw_uncached(plan, kept, &|draws| bar.inc(draws));
+    let draws = run::draw_uncached(plan, cache, &|draws| bar.inc(draws));
     bar.finish_and_clear();
-    kept.keep(plan, &draws);
+    cache.keep(plan, &draws);
     verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
 }
 
 /// What this program has drawn for the results in a folder.
-pub fn kept(out: &Path) -> anyhow::Result<Cache> {
-    let path = out.join(KEPT);
+pub fn cached(out: &Path) -> anyhow::Result<Cache> {
+    let path = out.join(CACHE);
     let bytes = match fs::read(&path) {
         Ok(bytes) => bytes,
         // There is nothing to reuse, and that is no mistake.
@@ -49,9 +49,9 @@ pub fn kept(out: &Path) -> anyhow::Result<Cache> {
 }
 
 /// Writes what was drawn beside the results.
-pub fn keep(kept: &Cache, out: &Path) -> anyhow::Result<()> {
-    let path = out.join(KEPT);
-    let bytes = kept.bytes().with_context(|| format!("cannot encode {}", path.display()))?;
+pub fn keep(cache: &Cache, out: &Path) -> anyhow::Result<()> {
+    let path = out.join(CACHE);
+    let bytes = cache.bytes().with_context(|| format!("cannot encode {}", path.display()))?;
     files::replace(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))
 }
 

@@ -7,11 +7,11 @@ use std::time::Duration;
 use anyhow::Context;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use trueflight::harness::Record;
+use trueflight::harness::{CaseError, Record};
 use trueflight::report::console::{self, View, layout::Pen};
-use trueflight::report::rows;
+use trueflight::report::{self, Artifact, ReportError, rows};
 
-use super::Console;
+use super::{Console, USAGE};
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]
@@ -77,6 +77,54 @@ pub fn print(text: &str) -> anyhow::Result<()> {
 pub fn complain(error: &anyhow::Error) {
     // With stderr gone there is nobody left to tell.
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
+}
+
+/// What went wrong beside the verdicts: it keeps nothing else from being told.
+#[derive(Debug, Default)]
+pub struct Errors(Vec<anyhow::Error>);
+
+impl Errors {
+    /// Keeps an error, in whose place there is a default value.
+    pub fn keep<T: Default, E: Into<anyhow::Error>>(&mut self, result: Result<T, E>) -> T {
+        result.unwrap_or_else(|error| {
+            self.extend([error]);
+            T::default()
+        })
+    }
+
+    /// Keeps errors.
+    pub fn extend<E: Into<anyhow::Error>>(&mut self, errors: impl IntoIterator<Item = E>) {
+        self.0.extend(errors.into_iter().map(Into::into));
+    }
+
+    /// Writes files below a folder; answers how many were written, `None` where none could be rendered.
+    pub fn write(
+        &mut self,
+        artifacts: Result<Vec<Artifact>, ReportError>,
+        out: &Path,
+    ) -> Option<usize> {
+        let artifacts = self.keep(artifacts.map(Some))?;
+        let failed = report::write(&artifacts, out);
+        let written = artifacts.len() - failed.len();
+        self.extend(failed);
+        Some(written)
+    }
+
+    /// Tells all on stderr; answers the exit code.
+    pub fn close(&self, code: u8) -> u8 {
+        self.0.iter().for_each(complain);
+        if self.0.is_empty() { code } else { USAGE }
+    }
+}
+
+/// Shows mistakes in files in place; the error that says how many there are in files of what kind.
+pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::Error {
+    let colour = console.color.colours(std::io::stderr().is_terminal());
+    let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
+    // With stderr gone there is nobody left to tell.
+    let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
+    let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
+    anyhow::anyhow!("{mistakes} mistake(s) in {} {kind}", errors.len())
 }
 
 /// Writes a warning to stderr.

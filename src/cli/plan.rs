@@ -27,13 +27,11 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
-    let options = selection.options(DRAWS)?;
-    let (record, kept) = selection.on_threads(|| {
-        let plan = selection.plan(&cases, &options)?;
-        Ok((verdict::planned(&plan), drawing::kept(&arguments.out)?.count(&plan)))
-    })?;
+    let (record, [kept, ready]) =
+        selection.with_plan(&cases, &selection.options(DRAWS)?, |plan| {
+            Ok((verdict::planned(plan), drawing::cached(&arguments.out)?.count(plan)))
+        })?;
     output::print_record(&record, View::Plan, arguments.format, console)?;
-    let [kept, ready] = kept;
     if kept > 0 && arguments.format == Format::Table && !console.quiet {
         let folder = arguments.out.display();
         output::print(&format!(

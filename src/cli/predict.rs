@@ -29,13 +29,10 @@ pub struct Arguments {
 pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(console)?;
+    let predict =
+        if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
     let options = selection.options(DRAWS)?;
-    let record = selection.on_threads(|| {
-        let plan = selection.plan(&cases, &options)?;
-        let predict =
-            if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
-        Ok(predict(&plan))
-    })?;
+    let record = selection.with_plan(&cases, &options, |plan| Ok(predict(plan)))?;
     let view = if arguments.moments { View::Moments } else { View::Predict };
     output::print_record(&record, view, arguments.format, console)?;
     Ok(0)

@@ -1,7 +1,6 @@
 //! `trueflight render`: pictures of estimators side by side.
 
-use std::fmt::Write as _;
-use std::io::{IsTerminal, Write as _};
+use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -82,12 +81,7 @@ fn read(names: &[String], console: &Console) -> anyhow::Result<Vec<Picture>> {
     if errors.is_empty() {
         return Ok(pictures);
     }
-    let colour = console.color.colours(std::io::stderr().is_terminal());
-    let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
-    // With stderr gone there is nobody left to tell.
-    let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
-    let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
-    bail!("{mistakes} mistake(s) in {} picture file(s); nothing was rendered", errors.len())
+    Err(output::mistakes(&errors, console, "picture file(s); nothing was rendered"))
 }
 
 fn write(artifacts: &[Artifact], out: &std::path::Path) -> anyhow::Result<()> {

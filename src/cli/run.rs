@@ -9,7 +9,7 @@ use trueflight::harness::options::DRAWS;
 use trueflight::report::{self, console::View};
 
 use super::baseline::BaselineArguments;
-use super::output::{self, Format};
+use super::output::{self, Errors, Format};
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing};
@@ -57,44 +57,31 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
     let baselines = arguments.baseline.open()?;
-    let mut kept = drawing::kept(&arguments.out)?;
+    let mut cache = drawing::cached(&arguments.out)?;
     // A comparison wants times and evidence of its own.
-    kept.is_fresh = arguments.fresh || arguments.baseline.is_used();
-    let (record, [reused, ready]) = selection.on_threads(|| {
-        let plan = selection.plan(&cases, &options)?;
-        let counts = kept.count(&plan);
-        Ok((drawing::draw_uncached(&plan, &mut kept, console), counts))
+    cache.is_fresh = arguments.fresh || arguments.baseline.is_used();
+    let (record, [reused, ready]) = selection.with_plan(&cases, &options, |plan| {
+        let counts = cache.count(plan);
+        Ok((drawing::draw_uncached(plan, &mut cache, console), counts))
     })?;
     let (record, run) = baselines.compare(record, &cases);
-    let mut errors = Vec::new();
-    let files = report::render(&record).map(|artifacts| {
-        let failed = report::write(&artifacts, &arguments.out);
-        let written = artifacts.len() - failed.len();
-        errors.extend(failed.into_iter().map(anyhow::Error::from));
-        written
-    });
-    errors.extend(drawing::keep(&kept, &arguments.out).err());
-    errors.extend(output::print_record(&record, View::Run, arguments.format, console).err());
+    let mut errors = Errors::default();
+    let files = errors.write(report::render(&record), &arguments.out);
+    errors.keep(drawing::keep(&cache, &arguments.out));
+    errors.keep(output::print_record(&record, View::Run, arguments.format, console));
     errors.extend(baselines.complaint(&record));
-    let stored = baselines.store(&record, run.as_ref()).unwrap_or_else(|error| {
-        errors.push(error);
-        String::new()
-    });
-    match files {
-        Ok(files) if arguments.format == Format::Table && !console.quiet => {
-            let mut said = format!("{files} files in {}\n", arguments.out.display());
-            if reused > 0 {
-                let _ = writeln!(
-                    said,
-                    "{reused} of {ready} experiments have not changed since the last run there: their \
-                     draws were reused (--fresh makes them anew)"
-                );
-            }
-            said.push_str(&stored);
-            errors.extend(output::print(&said).err());
+    let stored = errors.keep(baselines.store(&record, run.as_ref()));
+    let is_told = arguments.format == Format::Table && !console.quiet;
+    if let Some(files) = files.filter(|_| is_told) {
+        let mut said = format!("{files} files in {}\n", arguments.out.display());
+        if reused > 0 {
+            let _ = writeln!(
+                said,
+                "{reused} of {ready} experiments have not changed since the last run there: their \
+                 draws were reused (--fresh makes them anew)"
+            );
         }
-        Ok(_) => {}
-        Err(error) => errors.push(error.into()),
+        errors.keep(output::print(&(said + &stored)));
     }
     Ok(verdict::close(&record, arguments.inconclusive, &errors))
 }

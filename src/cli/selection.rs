@@ -1,6 +1,5 @@
 //! Which cases, and how they are drawn.
 
-use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 use anyhow::Context;
@@ -10,7 +9,7 @@ use trueflight::harness::case::Case;
 use trueflight::harness::source::CaseError;
 use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
-use super::Console;
+use super::{Console, output};
 
 /// Which experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]
@@ -66,12 +65,7 @@ impl Experiments {
         if errors.is_empty() {
             return distinct(cases);
         }
-        let colour = console.color.colours(std::io::stderr().is_terminal());
-        let shown: Vec<String> = errors.iter().map(|error| error.render(colour)).collect();
-        // With stderr gone there is nobody left to tell.
-        let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
-        let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
-        anyhow::bail!("{mistakes} mistake(s) in {} case file(s); nothing was run", errors.len())
+        Err(output::mistakes(&errors, console, "case file(s); nothing was run"))
     }
 
     /// The options of a plan that draws so much.
@@ -109,17 +103,16 @@ impl Selection {
         Ok(Options { alpha: self.alpha, ..options })
     }
 
-    /// Plans the cases; a selection that keeps nothing is an error.
-    pub fn plan<'a>(&self, cases: &'a [Case], options: &Options) -> anyhow::Result<Plan<'a>> {
-        self.experiments.plan(cases, options)
-    }
-
-    /// Calls `f` on as many threads as wished.
-    pub fn on_threads<T: Send>(
+    /// Calls `f` with the plan of the cases, on as many threads as wished.
+    pub fn with_plan<T: Send>(
         &self,
-        f: impl FnOnce() -> anyhow::Result<T> + Send,
+        cases: &[Case],
+        options: &Options,
+        f: impl FnOnce(&Plan) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
-        on_threads(self.threads.map_or(0, usize::from), f)
+        on_threads(self.threads.map_or(0, usize::from), || {
+            f(&self.experiments.plan(cases, options)?)
+        })
     }
 }
 

@@ -5,7 +5,8 @@ use trueflight::harness::baseline::Comparison;
 use trueflight::harness::record::{Record, Verdict};
 use trueflight::report::junit;
 
-use super::{USAGE, output};
+use super::USAGE;
+use super::output::{self, Errors};
 
 /// What an inconclusive experiment does to the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -28,10 +29,10 @@ impl Inconclusive {
 }
 
 /// The exit code at the end of a command, with what went wrong beside the verdicts.
-pub fn close(record: &Record, inconclusive: Option<Inconclusive>, errors: &[anyhow::Error]) -> u8 {
-    errors.iter().for_each(output::complain);
+pub fn close(record: &Record, inconclusive: Option<Inconclusive>, errors: &Errors) -> u8 {
+    let errors_first = errors.close(0);
     let code = exit_code(record, inconclusive);
-    if errors.is_empty() { code } else { USAGE }
+    if errors_first == 0 { code } else { errors_first }
 }
 
 /// Fail, or worse than a stored run, before refused cases before inconclusive before pass.
