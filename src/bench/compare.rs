@@ -7,60 +7,8 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use serde::Serialize;
-
-use super::spread::Spread;
+use super::comparison::{Change, Comparison};
 use super::stored::{Stored, Timed};
-
-/// What changed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Comparison {
-    /// What the stored bench is called.
-    pub name: String,
-    /// How much more time is no regression, as a share.
-    pub tolerance: f64,
-    /// How many experiments were compared.
-    pub compared: usize,
-    /// What became slower or faster.
-    pub changes: Vec<Change>,
-    /// Experiments of this bench that the stored one has not.
-    pub added: Vec<String>,
-    /// Experiments of the stored bench that this one has not.
-    pub missing: Vec<String>,
-    /// Experiments whose case has another text.
-    pub rewritten: Vec<String>,
-    /// The vector hardware of both, where it differs.
-    pub levels: Option<[String; 2]>,
-}
-
-/// A time per draw that changed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Change {
-    /// The experiment.
-    pub id: String,
-    /// Nanoseconds of a draw, stored and now.
-    pub ns_per_draw: [Spread; 2],
-    /// The speedup over the plain loop, stored and now.
-    pub speedup: [Spread; 2],
-    /// Now over stored, of the medians of the times.
-    pub ratio: f64,
-    /// Whether it became slower.
-    pub is_regression: bool,
-}
-
-impl Comparison {
-    /// Whether anything became slower.
-    #[must_use]
-    pub fn fails(&self) -> bool {
-        self.changes.iter().any(|change| change.is_regression)
-    }
-
-    /// Whether nothing was compared with anything: such a comparison says nothing.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.compared == 0
-    }
-}
 
 /// Compares a bench with the stored one called `name`.
 #[must_use]
@@ -112,6 +60,7 @@ fn change(stored: &Timed, now: &Timed, tolerance: f64) -> Option<Change> {
 mod tests {
     use super::*;
     use crate::bench::clock::Clock;
+    use crate::bench::spread::Spread;
 
     fn stored(times: &[(&str, [f64; 3])]) -> Stored {
         let timed = times.iter().map(|&(id, rounds)| Timed {

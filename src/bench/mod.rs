@@ -18,6 +18,7 @@
 
 pub mod clock;
 pub mod compare;
+pub mod comparison;
 pub mod curve;
 pub mod figures;
 pub mod record;

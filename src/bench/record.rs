@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use super::clock::Clock;
-use super::compare::Comparison;
+use super::comparison::Comparison;
 use super::spread::Spread;
 
 /// A finished bench.

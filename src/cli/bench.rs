@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
-use trueflight::bench::compare::{Comparison, compare};
+use trueflight::bench::compare::compare;
+use trueflight::bench::comparison::Comparison;
 use trueflight::bench::record::Bench;
 use trueflight::bench::stored::Stored;
 use trueflight::bench::{Amounts, measure};

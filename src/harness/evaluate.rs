@@ -53,11 +53,9 @@ fn of_experiment(
     let mut findings: Vec<Finding> = both
         .filter_map(|(question, total)| of_question(plan, case, planned, drawn, question, total))
         .collect();
-    rely_on_variance(&mut findings);
-    acquit(plan, &mut findings);
-    rely_on_pilots(planned, &mut findings);
+    qualify_means(plan, planned, &mut findings);
     if planned.expect_biased {
-        shown_anywhere(&mut findings);
+        show_anywhere(&mut findings);
     }
     findings
 }
@@ -269,68 +267,47 @@ fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String)
     }
 }
 
-/// A mean passes if the variance of its channel does, or could not be tested.
-fn rely_on_variance(findings: &mut [Finding]) {
-    let variances: Vec<(String, Verdict)> = findings
-        .iter()
-        .filter(|finding| finding.check == "variance" && finding.verdict != Verdict::Pass)
-        .map(|finding| (finding.channel.clone(), finding.verdict))
-        .collect();
-    for finding in findings.iter_mut() {
-        let relies = finding.check == "mean" && finding.verdict == Verdict::Pass;
-        let variance = variances.iter().find(|(channel, _)| *channel == finding.channel);
-        let Some((_, verdict)) = variance.filter(|_| relies && !finding.expects_bias) else {
-            continue;
+/// What the verdict on a mean is worth, by that on the variance of its channel.
+///
+/// A mean passes if its variance does, could not be tested, or is that of pilot draws. A mean that is off
+/// only in units of a variance that is refuted as too small is not accused: were its spread what the
+/// draws show, it would not fail.
+fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
+    let variances = findings.iter().filter(|f| f.check == "variance" && f.verdict != Verdict::Pass);
+    let variances: Vec<Finding> = variances.cloned().collect();
+    let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
+    let is_piloted = |name: &str| channels.iter().any(|c| c.by_pilots && c.name == name);
+    for mean in findings.iter_mut().filter(|finding| finding.check == "mean") {
+        let variance = variances.iter().find(|variance| variance.channel == mean.channel);
+        let (verdict, reason) = match (mean.verdict, variance.filter(|_| !mean.expects_bias)) {
+            (Verdict::Pass, Some(variance)) if variance.verdict != Verdict::Underpowered => {
+                (Verdict::Inconclusive, "the mean relies on a variance that does not pass")
+            }
+            (Verdict::Pass, Some(_)) => (Verdict::Pass, ASSUMED),
+            (Verdict::Pass, None) if is_piloted(&mean.channel) => (Verdict::Pass, ASSUMED),
+            (Verdict::Fail, Some(variance)) if rests_on(plan, mean, variance) => {
+                (Verdict::Inconclusive, "the mean rests on a variance that is refuted")
+            }
+            _ => continue,
         };
-        if *verdict == Verdict::Underpowered {
-            ASSUMED.clone_into(&mut finding.reason);
-        } else {
-            finding.verdict = Verdict::Inconclusive;
-            "the mean relies on a variance that does not pass".clone_into(&mut finding.reason);
-        }
+        mean.verdict = verdict;
+        reason.clone_into(&mut mean.reason);
     }
 }
 
-/// A mean that is off only in units of a variance that is refuted as too small is not accused: were its
-/// spread what the draws show, it would not fail.
-fn acquit(plan: &Plan, findings: &mut [Finding]) {
-    let refuted: Vec<(String, f64)> = findings
-        .iter()
-        .filter(|finding| finding.check == "variance" && finding.verdict == Verdict::Fail)
-        .filter_map(|finding| Some((finding.channel.clone(), finding.gate?.mean)))
-        .filter(|(_, excess)| *excess > 0.0)
-        .collect();
-    for finding in findings.iter_mut() {
-        let accused = finding.check == "mean" && finding.verdict == Verdict::Fail;
-        let excess = refuted.iter().find(|(channel, _)| *channel == finding.channel);
-        let Some(((_, excess), gate)) = excess.zip(finding.gate).filter(|_| accused) else {
-            continue;
-        };
-        let observed = gate.variance * (1.0 + excess) - gate.mean * gate.mean;
-        let evidence = 0.5 * gate.mean * gate.mean * gate.draws as f64;
-        if evidence < plan.levels.ln_fail * observed && !finding.expects_bias {
-            finding.verdict = Verdict::Inconclusive;
-            "the mean rests on a variance that is refuted".clone_into(&mut finding.reason);
-        }
-    }
-}
-
-/// A pass by the variance of pilot draws says so.
-fn rely_on_pilots(planned: &Planned, findings: &mut [Finding]) {
-    let Ok(ready) = &planned.outcome else { return };
-    let piloted = ready.prediction.channels.iter().filter(|channel| channel.by_pilots);
-    for name in piloted.map(|channel| &channel.name) {
-        let relies = |finding: &&mut Finding| {
-            finding.check == "mean" && finding.channel == *name && finding.verdict == Verdict::Pass
-        };
-        for finding in findings.iter_mut().filter(relies) {
-            ASSUMED.clone_into(&mut finding.reason);
-        }
-    }
+/// Whether a mean fails only by a variance that is refuted as too small.
+fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
+    let (Some(gate), Some(excess)) = (mean.gate, variance.gate.map(|gate| gate.mean)) else {
+        return false;
+    };
+    let observed = gate.variance * (1.0 + excess) - gate.mean * gate.mean;
+    let evidence = 0.5 * gate.mean * gate.mean * gate.draws as f64;
+    let is_refuted = variance.verdict == Verdict::Fail && excess > 0.0;
+    is_refuted && evidence < plan.levels.ln_fail * observed
 }
 
 /// A bias somewhere on a curve is a bias; it need not be everywhere.
-fn shown_anywhere(findings: &mut [Finding]) {
+fn show_anywhere(findings: &mut [Finding]) {
     let shown = |finding: &Finding| finding.check == "mean" && finding.verdict == Verdict::Pass;
     if findings.iter().any(shown) {
         for finding in findings.iter_mut().filter(|finding| finding.check == "mean") {

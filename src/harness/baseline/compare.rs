@@ -23,7 +23,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::comparison::{Change, Comparison, Drift, LeftOut, Quantity, Rules, Sequel};
+use super::comparison::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use super::scope::{Measured, is_comparable, left_out};
 use super::stored::{Baseline, Entry, Evidence};
 use crate::stats::normal;
@@ -43,21 +43,7 @@ pub fn compare(
     let before: BTreeMap<&str, &Entry> =
         stored.entries.iter().map(|entry| (entry.id.as_str(), entry)).collect();
     let ids: BTreeSet<&str> = run.entries.iter().map(|entry| entry.id.as_str()).collect();
-    let mut comparison = Comparison {
-        name: name.to_owned(),
-        rules: *rules,
-        sequel: sequel(stored, run),
-        compared: 0,
-        times: 0,
-        multiplied: 0,
-        blunt: 0,
-        left_out: LeftOut::default(),
-        changes: Vec::new(),
-        drifts: Vec::new(),
-        added: Vec::new(),
-        missing: Vec::new(),
-        rewritten: Vec::new(),
-    };
+    let mut comparison = Comparison::new(name, rules, sequel(stored, run));
     let missing = stored.entries.iter().filter(|entry| !ids.contains(entry.id.as_str()));
     comparison.missing = missing.map(|entry| entry.id.clone()).collect();
     let mut pairs = Vec::new();
@@ -73,11 +59,13 @@ pub fn compare(
     comparison.left_out = left_out(&pairs, rules);
     comparison.blunt = comparison.left_out.blunt.len();
     let z = normal::two_sided(rules.alpha / questions.len().max(1) as f64);
-    comparison.changes = questions.iter().filter_map(|question| question.answer(z)).collect();
-    let times: Vec<_> =
-        pairs.iter().filter_map(|(before, now)| times(before, now, rules)).collect();
-    comparison.times = times.len();
-    comparison.changes.extend(times.iter().filter_map(|times| times.answer(rules.time_tolerance)));
+    comparison.changes = questions.iter().filter_map(|question| answer(question, z)).collect();
+    for (before, now) in pairs.iter().filter(|_| rules.asks_for_times()) {
+        let Some((earlier, later)) = before.nanoseconds().zip(now.nanoseconds()) else { continue };
+        comparison.times += 1;
+        let tolerance = rules.time_tolerance;
+        comparison.changes.extend(time_change(now, [earlier, later], tolerance));
+    }
     let mut next = run.clone();
     if comparison.sequel != Sequel::OtherProgram {
         next.ln_e_limit = next.ln_e_limit.max(stored.ln_e_limit);
@@ -147,15 +135,7 @@ fn not_drawn(stored: &Baseline, run: &Baseline) -> Vec<Entry> {
     kept.cloned().collect()
 }
 
-/// One comparison.
-struct Question<'e> {
-    entry: &'e Entry,
-    quantity: Quantity,
-    before: Measured,
-    now: Measured,
-}
-
-/// What two entries can be compared in.
+/// What of two entries can be compared: the quantity, then and now.
 fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
     if !is_comparable(before, now) {
         return Vec::new();
@@ -163,61 +143,41 @@ fn questions<'e>(before: &Entry, now: &'e Entry) -> Vec<Question<'e>> {
     let is_sharp = before.is_sharp() && now.is_sharp();
     let variance = before.variance().zip(now.variance()).filter(|_| is_sharp);
     let lookups = before.lookups().zip(now.lookups());
-    let question =
-        |quantity| move |(before, now_)| Question { entry: now, quantity, before, now: now_ };
-    let variance = variance.map(question(Quantity::Variance));
-    variance.into_iter().chain(lookups.map(question(Quantity::Lookups))).collect()
+    let both = [(Quantity::Variance, variance), (Quantity::Lookups, lookups)];
+    both.into_iter().filter_map(|(quantity, both)| Some((now, quantity, both?))).collect()
 }
 
-impl Question<'_> {
-    /// What changed, if anything.
-    fn answer(&self, z: f64) -> Option<Change> {
-        let (before, now) = (self.before, self.now);
-        let ratio = now.0 / before.0;
-        let error = z * before.1.hypot(now.1) + ROUNDING;
-        if ratio.ln().abs() <= error {
-            return None;
-        }
-        Some(Change {
-            id: self.entry.id.clone(),
-            quantity: self.quantity,
-            before: [before.0, before.0 * before.1],
-            now: [now.0, now.0 * now.1],
-            ratio,
-            interval: Some([ratio * (-error).exp(), ratio * error.exp()]),
-            is_regression: ratio > 1.0,
-            command: self.entry.command.clone(),
-        })
-    }
+/// An entry, the quantity that is compared, its values then and now.
+type Question<'e> = (&'e Entry, Quantity, (Measured, Measured));
+
+/// What changed by more than its error, if anything.
+fn answer(&(entry, quantity, (before, now)): &Question, z: f64) -> Option<Change> {
+    let ratio = now.0 / before.0;
+    let error = z * before.1.hypot(now.1) + ROUNDING;
+    (ratio.ln().abs() > error).then(|| Change {
+        id: entry.id.clone(),
+        quantity,
+        before: [before.0, before.0 * before.1],
+        now: [now.0, now.0 * now.1],
+        ratio,
+        interval: Some([ratio * (-error).exp(), ratio * error.exp()]),
+        is_regression: ratio > 1.0,
+        command: entry.command.clone(),
+    })
 }
 
-/// Two times per draw, in nanoseconds.
-struct Times<'e> {
-    entry: &'e Entry,
-    before: f64,
-    now: f64,
-}
-
-/// What two entries took, where a time can fail and both are long enough.
-fn times<'e>(before: &Entry, now: &'e Entry, rules: &Rules) -> Option<Times<'e>> {
-    let both = before.nanoseconds().zip(now.nanoseconds()).filter(|_| rules.asks_for_times());
-    both.map(|(before, later)| Times { entry: now, before, now: later })
-}
-
-impl Times<'_> {
-    /// A time that changed by more than the tolerance, in either direction.
-    fn answer(&self, tolerance: f64) -> Option<Change> {
-        let ratio = self.now / self.before;
-        let is_regression = ratio > 1.0 + tolerance;
-        (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
-            id: self.entry.id.clone(),
-            quantity: Quantity::Time,
-            before: [self.before, f64::NAN],
-            now: [self.now, f64::NAN],
-            ratio,
-            interval: None,
-            is_regression,
-            command: self.entry.command.clone(),
-        })
-    }
+/// A time that changed by more than the tolerance, in either direction.
+fn time_change(entry: &Entry, [before, now]: [f64; 2], tolerance: f64) -> Option<Change> {
+    let ratio = now / before;
+    let is_regression = ratio > 1.0 + tolerance;
+    (is_regression || ratio * (1.0 + tolerance) < 1.0).then(|| Change {
+        id: entry.id.clone(),
+        quantity: Quantity::Time,
+        before: [before, f64::NAN],
+        now: [now, f64::NAN],
+        ratio,
+        interval: None,
+        is_regression,
+        command: entry.command.clone(),
+    })
 }

@@ -111,6 +111,26 @@ pub struct Drift {
 }
 
 impl Comparison {
+    /// Of nothing yet.
+    #[must_use]
+    pub fn new(name: &str, rules: &Rules, sequel: Sequel) -> Self {
+        Self {
+            name: name.to_owned(),
+            rules: *rules,
+            sequel,
+            compared: 0,
+            times: 0,
+            multiplied: 0,
+            blunt: 0,
+            left_out: LeftOut::default(),
+            changes: Vec::new(),
+            drifts: Vec::new(),
+            added: Vec::new(),
+            missing: Vec::new(),
+            rewritten: Vec::new(),
+        }
+    }
+
     /// Whether anything became worse.
     #[must_use]
     pub fn fails(&self) -> bool {

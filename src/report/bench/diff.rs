@@ -1,6 +1,6 @@
 //! What changed since a stored bench, in words.
 
-use crate::bench::compare::{Change, Comparison};
+use crate::bench::comparison::{Change, Comparison};
 use crate::bench::spread::Spread;
 use crate::report::diff::listed;
 use crate::report::number::{fixed, short};

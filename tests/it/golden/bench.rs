@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use trueflight::bench::clock::Clock;
-use trueflight::bench::compare::{Change, Comparison};
+use trueflight::bench::comparison::{Change, Comparison};
 use trueflight::bench::record::{Bench, BenchCase, BenchRow, Conditions, CurvePoint, Times};
 use trueflight::bench::spread::Spread;
 use trueflight::report::bench::{console, render, rows};
