@@ -142,8 +142,8 @@ impl Arguments {
             errors.keep(written);
         }
         if let Some(out) = &self.out {
-            let pages: [&dyn Report; 2] = [&summary_csv::SummaryCsv, &record_json::RecordJson];
-            let files: Result<Vec<_>, _> = pages.iter().map(|page| page.render(record)).collect();
+            let pages: [Report; 2] = [summary_csv::render, record_json::render];
+            let files: Result<Vec<_>, _> = pages.iter().map(|render| render(record)).collect();
             errors.write(files.map(|files| files.concat()), out);
         }
     }

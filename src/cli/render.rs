@@ -54,8 +54,8 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         records.push(record);
     }
     bar.finish_and_clear();
-    let bytes = report::render::table::csv(&records)?.into_bytes();
-    write(&[Artifact { path: "gallery.csv".into(), bytes }], &out)?;
+    let rows = report::render::table::csv(&records)?;
+    write(&[Artifact::text("gallery.csv", rows)], &out)?;
     if !console.quiet {
         output::print(&format!("{} pictures in {}\n", records.len(), out.display()))?;
     }

@@ -44,10 +44,9 @@ use std::path::Path;
 use super::gallery;
 use super::record::PictureRecord;
 use super::scene::{Request, Scene};
-use super::subject::SubjectKind;
+use super::subject::SUBJECTS;
 use crate::catalogue::Settings;
 use crate::harness::source::{CaseError, Source};
-use crate::problems::{MultipleScattering, SingleScattering, Transmittance};
 
 /// A picture file, read.
 pub struct Picture {
@@ -58,15 +57,6 @@ pub struct Picture {
     /// What it shows: the problem's name in the catalogue.
     pub problem: String,
     scene: Scene,
-}
-
-/// What can be shown.
-fn subjects() -> [SubjectKind; 3] {
-    [
-        SubjectKind::of::<Transmittance>("transmittance"),
-        SubjectKind::of::<SingleScattering>("single-scattering"),
-        SubjectKind::of::<MultipleScattering>("multiple-scattering"),
-    ]
 }
 
 impl Picture {
@@ -100,10 +90,9 @@ impl Picture {
             return None;
         }
         let title = root.text("title");
-        let subjects = subjects();
-        let names = subjects.each_ref().map(|kind| kind.name.to_owned());
+        let names = SUBJECTS.each_ref().map(|kind| kind.name.to_owned());
         let scene = root.chosen("picture", &names).and_then(|(index, settings)| {
-            let scene = Scene::read(&subjects[index], &settings);
+            let scene = Scene::read(&SUBJECTS[index], &settings);
             settings.close();
             Some((names[index].clone(), scene?))
         });

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::budget::{Forecast, PixelDraws};
-use super::subject::{AnyRay, AnySubject, Ask};
+use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
 use crate::estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
 use crate::geometry::Ray;
@@ -56,8 +56,8 @@ pub struct Listed<'a> {
 /// A covered pixel.
 pub struct Pixel<'a> {
     view: &'a View,
-    subject: &'a dyn AnySubject,
-    ray: Box<dyn AnyRay + 'a>,
+    kind: &'a SubjectKind,
+    ray: Box<dyn AnyRay>,
     /// The sky behind it, or 1 where that is not seen.
     sky: f64,
     mesh: Arc<Mesh>,
@@ -69,11 +69,15 @@ pub struct Pixel<'a> {
 
 impl<'a> Pixel<'a> {
     /// The pixel of a number; `None` where its ray is not allowed.
-    pub fn new(view: &'a View, subject: &'a dyn AnySubject, index: usize) -> Option<Self> {
+    pub fn new(
+        view: &'a View,
+        kind: &'a SubjectKind,
+        ray_of: &RayOf,
+        index: usize,
+    ) -> Option<Self> {
         let along = view.covered(index)?;
-        let ray = subject.at(&view.volume, &along)?;
-        let traits = subject.traits();
-        let panels = if traits.along_ray { PANELS } else { 1 };
+        let ray = ray_of(&view.volume, &along)?;
+        let panels = if kind.along_ray { PANELS } else { 1 };
         let mesh = Arc::new(Mesh::even(ray.medium().clone(), panels));
         let body = |ray: Ray| {
             let (name, volume) = (view.medium.clone(), view.volume.clone());
@@ -85,8 +89,8 @@ impl<'a> Pixel<'a> {
             let mesh = Mesh::even(body.medium(), 1);
             (body, mesh)
         });
-        let sky = if traits.before_sky { view.behind(index) } else { 1.0 };
-        Some(Self { view, subject, ray, sky, mesh, body: body(along), leader, index })
+        let sky = if kind.before_sky { view.behind(index) } else { 1.0 };
+        Some(Self { view, kind, ray, sky, mesh, body: body(along), leader, index })
     }
 
     /// The exact answer, or that of a quadrature with so many panels.
@@ -102,7 +106,7 @@ impl<'a> Pixel<'a> {
     ) -> Result<Parts<'b>, Refusal> {
         let mesh = &self.mesh;
         let recipe = estimators.sampling_of(parsed);
-        let (sampling, control) = if self.subject.traits().along_ray {
+        let (sampling, control) = if self.kind.along_ray {
             let site = Site { body: &self.body, mesh, address: NOWHERE };
             let recipe_of_control = estimators.control_of(parsed);
             let control = match &self.leader {
@@ -135,8 +139,7 @@ impl<'a> Pixel<'a> {
         let [column, row] = [self.index % self.view.size[0], self.index / self.view.size[0]];
         let refused = |refusal: Refusal| format!("pixel ({column}, {row}) {refusal}");
         let parts = self.parts(estimators, listed.parsed).map_err(refused)?;
-        let is_predicted = self.subject.traits().is_predicted;
-        let ask = Ask { domain: !listed.parsed.expect_biased, prediction: is_predicted };
+        let ask = [!listed.parsed.expect_biased, self.kind.is_predicted];
         let prepared = self.ray.prepare(listed.index, parts, listed.space.as_ref(), ask);
         let (prediction, experiment) = prepared.map_err(refused)?;
         let leads = self.leader.is_none();
@@ -169,8 +172,8 @@ impl<'a> Pixel<'a> {
         draws: u64,
     ) -> Option<PixelDraws> {
         let parts = self.parts(estimators, listed.parsed).ok()?;
-        let ask = Ask { domain: false, prediction: false };
-        let prepared = self.ray.prepare(listed.index, parts, listed.space.as_ref(), ask);
+        let space = listed.space.as_ref();
+        let prepared = self.ray.prepare(listed.index, parts, space, [false; 2]);
         let address = Address { block: number as u64, ..listed.addresses[1] };
         Some(self.drawn(&*prepared.ok()?.1, draws, address))
     }

@@ -2,7 +2,8 @@
 
 use super::budget::PixelValues;
 use super::pixel::Label;
-use crate::catalogue::{Catalogue, Settings};
+use super::subject::SubjectKind;
+use crate::catalogue::Settings;
 use crate::harness::estimator::{Defaults, EntryReader, ParsedEstimator};
 use crate::media::Body;
 use crate::numeric::Known;
@@ -25,22 +26,11 @@ pub enum Reference {
     },
 }
 
-/// What of a subject the reference depends on.
-#[derive(Clone, Copy)]
-pub struct Ways<'a> {
-    /// Whether there is a closed form.
-    pub has_exact: bool,
-    /// Whether draws walk along the ray, so that there is a quadrature.
-    pub along_ray: bool,
-    /// Its estimators.
-    pub estimators: &'a Catalogue,
-}
-
 impl Reference {
     /// Reads `reference`; estimators find a σ̂ that they need in the picture if it has one.
     pub fn read(
         settings: &Settings,
-        ways: Ways,
+        (kind, has_exact): (&SubjectKind, bool),
         body: Option<&Body>,
         reader: &mut dyn EntryReader,
         defaults: Defaults,
@@ -48,13 +38,13 @@ impl Reference {
         let names = ["closed-form", "quadrature", "draws"].map(str::to_owned);
         let (index, reference) = settings.chosen("reference", &names)?;
         let read = match index {
-            0 if ways.has_exact => Some(Self::Exact),
+            0 if has_exact => Some(Self::Exact),
             0 => {
                 let help = "use `quadrature = {}` or `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no closed form", help);
                 None
             }
-            1 if !ways.along_ray => {
+            1 if !kind.along_ray => {
                 let help = "use `draws = { lookups, estimator }`";
                 reference.fault_at(reference.span.clone(), "", "there is no quadrature", help);
                 reference.has("panels");
@@ -67,7 +57,7 @@ impl Reference {
             _ => {
                 let lookups = reference.count("lookups", 1..=1_000_000_000);
                 let parsed = reference.table("estimator").and_then(|table| {
-                    ParsedEstimator::read(&table, body, defaults, ways.estimators, reader)
+                    ParsedEstimator::read(&table, body, defaults, &kind.estimators, reader)
                 });
                 let (lookups, parsed) = (lookups?, Box::new(parsed?));
                 Some(Self::Draws { lookups, parsed })

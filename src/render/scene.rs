@@ -6,8 +6,8 @@ use rayon::prelude::*;
 
 use super::budget::{PixelDraws, PixelValues, Plan};
 use super::pixel::{Label, Listed, Pixel};
-use super::reference::{Reference, Ways};
-use super::subject::{AnySubject, SubjectKind};
+use super::reference::Reference;
+use super::subject::{RayOf, SubjectKind};
 use super::view::View;
 use crate::catalogue::Settings;
 use crate::estimators::sampling;
@@ -41,8 +41,8 @@ pub struct Rendered {
 pub struct Scene {
     /// What the camera sees.
     pub view: View,
-    subject: Box<dyn AnySubject>,
-    along_ray: bool,
+    kind: &'static SubjectKind,
+    ray_of: RayOf,
     estimators: Estimators,
     lookups: u64,
     reference: Reference,
@@ -50,7 +50,7 @@ pub struct Scene {
 
 impl Scene {
     /// Reads all that `[picture.NAME]` holds.
-    pub fn read(kind: &SubjectKind, settings: &Settings) -> Option<Self> {
+    pub fn read(kind: &'static SubjectKind, settings: &Settings) -> Option<Self> {
         let view = View::read(settings, kind.shows_sky);
         // Recipes are read for the ray of the first pixel, and prepared for each.
         let body = view.as_ref().and_then(|view| {
@@ -61,17 +61,16 @@ impl Scene {
         let lookups = settings.count("lookups", 1..=1_000_000_000);
         let defaults = Defaults { sampling: settings.has("sampling"), ..Defaults::default() };
         let (mut estimators, mut reference) = (None, None);
-        let subject = (kind.read)(settings, view.as_ref(), &mut |reader, has_exact| {
+        let ray_of = (kind.read)(settings, view.as_ref(), &mut |reader, has_exact| {
             let catalogue = &kind.estimators;
             let (all, accept) = ((defaults, None), &countable);
             estimators = Estimators::read(settings, body, catalogue, reader, all, accept);
-            let ways = Ways { has_exact, along_ray: kind.along_ray, estimators: catalogue };
-            reference = Reference::read(settings, ways, body, reader, defaults);
+            reference = Reference::read(settings, (kind, has_exact), body, reader, defaults);
         });
         Some(Self {
             view: view?,
-            subject: subject?,
-            along_ray: kind.along_ray,
+            kind,
+            ray_of: ray_of?,
             estimators: estimators?,
             lookups: lookups?,
             reference: reference?,
@@ -102,7 +101,7 @@ impl Scene {
             let first = covered.partition_point(|&pixel| pixel < row * width);
             let end = covered.partition_point(|&pixel| pixel < (row + 1) * width);
             let pixels = (first..end).filter_map(|i| {
-                let pixel = Pixel::new(&self.view, &*self.subject, covered[i])?;
+                let pixel = Pixel::new(&self.view, self.kind, &self.ray_of, covered[i])?;
                 Some(f(i, &pixel))
             });
             let answers: Vec<T> = pixels.collect();
@@ -130,7 +129,7 @@ impl Scene {
                 let experiment = name_hash(&format!("picture|{}|{words}|{what}", request.name));
                 Address { seed: request.seed, experiment, block: 0, lane: 0 }
             };
-            let recipe = self.estimators.sampling_of(parsed).filter(|_| !self.along_ray);
+            let recipe = self.estimators.sampling_of(parsed).filter(|_| !self.kind.along_ray);
             let space = recipe.and_then(|recipe| recipe.in_space(&*self.view.volume)).map(Arc::new);
             let addresses = ["pilot", "draws"].map(address);
             listed.push(Listed { parsed, index, label, lookups, space, addresses });

@@ -69,80 +69,75 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
     }
 }
 
-/// What a subject is, whatever it is read from.
-#[derive(Debug, Clone, Copy)]
-pub struct Traits {
-    /// See [`Subject::BEFORE_SKY`].
-    pub before_sky: bool,
-    /// See [`Subject::ALONG_RAY`].
-    pub along_ray: bool,
-    /// See [`Subject::IS_PREDICTED`].
-    pub is_predicted: bool,
-}
-
-/// Reads the estimators of a picture; is told whether there is a closed form.
-pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader, bool);
-
 /// A subject of the catalogue, before a picture is read.
 pub struct SubjectKind {
     /// Its name in picture files.
     pub name: &'static str,
+    /// See [`Subject::BEFORE_SKY`].
+    pub before_sky: bool,
     /// See [`Subject::SHOWS_SKY`].
     pub shows_sky: bool,
     /// See [`Subject::ALONG_RAY`].
     pub along_ray: bool,
+    /// See [`Subject::IS_PREDICTED`].
+    pub is_predicted: bool,
     /// Its estimators.
     pub estimators: Catalogue,
     /// Its reader.
     pub read: Read,
 }
 
+/// Reads the estimators of a picture; is told whether there is a closed form.
+pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader, bool);
+
 /// Reads what all rays share and, by the last argument, the estimators; `None` after a mistake.
-pub type Read = fn(&Settings, Option<&View>, ReadEstimators) -> Option<Box<dyn AnySubject>>;
+pub type Read = fn(&Settings, Option<&View>, ReadEstimators) -> Option<RayOf>;
+
+/// The problem of one ray with the estimators of the picture; `None` where the ray is not allowed.
+pub type RayOf = Box<dyn Fn(&Arc<Volume>, &Ray) -> Option<Box<dyn AnyRay>> + Send + Sync>;
+
+/// What is shown, in the order of the catalogue.
+pub static SUBJECTS: [SubjectKind; 3] = [
+    SubjectKind::of::<Transmittance>("transmittance"),
+    SubjectKind::of::<SingleScattering>("single-scattering"),
+    SubjectKind::of::<MultipleScattering>("multiple-scattering"),
+];
 
 impl SubjectKind {
-    /// Of a problem.
-    #[must_use]
-    pub fn of<P: Subject>(name: &'static str) -> Self {
+    const fn of<P: Subject>(name: &'static str) -> Self {
         Self {
             name,
+            before_sky: P::BEFORE_SKY,
             shows_sky: P::SHOWS_SKY,
             along_ray: P::ALONG_RAY,
+            is_predicted: P::IS_PREDICTED,
             estimators: P::CATALOGUE,
-            read: |settings, view, read_estimators| {
-                let shared = P::read_shared(settings, view);
-                if let (Some(view), Some(shared)) = (view, &shared) {
-                    let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
-                    let refused = rays.map(|ray| P::allows(shared, &ray)).find_map(Result::err);
-                    if let Some([found, help]) = refused {
-                        settings.fault("light", found, help);
-                    }
-                }
-                let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
-                // What cannot be read has been told.
-                read_estimators(&mut entries, shared.as_ref().is_none_or(P::has_exact));
-                Some(Box::new(Shown { shared: shared?, entries }))
-            },
+            read: read::<P>,
         }
     }
 }
 
-/// A subject with the estimators of a picture, whose type is no longer visible.
-pub trait AnySubject: Send + Sync {
-    /// What it is.
-    fn traits(&self) -> Traits;
-
-    /// The problem of one ray; `None` where it is not allowed.
-    fn at(&self, volume: &Arc<Volume>, ray: &Ray) -> Option<Box<dyn AnyRay + '_>>;
-}
-
-/// What is asked before the draws.
-#[derive(Debug, Clone, Copy)]
-pub struct Ask {
-    /// Whether the estimator exists and is unbiased here.
-    pub domain: bool,
-    /// What theory says of it.
-    pub prediction: bool,
+fn read<P: Subject>(
+    settings: &Settings,
+    view: Option<&View>,
+    read_estimators: ReadEstimators,
+) -> Option<RayOf> {
+    let shared = P::read_shared(settings, view);
+    if let (Some(view), Some(shared)) = (view, &shared) {
+        let rays = (0..view.pixels()).filter_map(|pixel| view.covered(pixel));
+        let refused = rays.map(|ray| P::allows(shared, &ray)).find_map(Result::err);
+        if let Some([found, help]) = refused {
+            settings.fault("light", found, help);
+        }
+    }
+    let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();
+    // What cannot be read has been told.
+    read_estimators(&mut entries, shared.as_ref().is_none_or(P::has_exact));
+    let (shared, entries) = (shared?, Arc::new(entries));
+    Some(Box::new(move |volume, ray| {
+        let problem = Arc::new(P::at(&shared, volume, ray)?);
+        Some(Box::new(OneRay { problem, entries: entries.clone() }))
+    }))
 }
 
 /// The problem of one ray, whose type is no longer visible.
@@ -156,7 +151,8 @@ pub trait AnyRay {
     /// See [`Subject::by_quadrature`].
     fn by_quadrature(&self, panels: usize) -> Option<Known>;
 
-    /// An estimator of the picture on the ray, with σ̂ in space where that is given.
+    /// An estimator of the picture on the ray, with σ̂ in space where that is given; refused outside
+    /// its domain if the first is asked, and with what theory says of it if the second is.
     ///
     /// # Errors
     ///
@@ -166,32 +162,16 @@ pub trait AnyRay {
         estimator: usize,
         parts: Parts,
         space: Option<&Arc<Majorants>>,
-        ask: Ask,
+        ask: [bool; 2],
     ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal>;
 }
 
-struct Shown<P: Subject> {
-    shared: P::Shared,
-    entries: Vec<Box<dyn Entry<P>>>,
-}
-
-impl<P: Subject> AnySubject for Shown<P> {
-    fn traits(&self) -> Traits {
-        Traits { before_sky: P::BEFORE_SKY, along_ray: P::ALONG_RAY, is_predicted: P::IS_PREDICTED }
-    }
-
-    fn at(&self, volume: &Arc<Volume>, ray: &Ray) -> Option<Box<dyn AnyRay + '_>> {
-        let problem = Arc::new(P::at(&self.shared, volume, ray)?);
-        Some(Box::new(OneRay { problem, entries: &self.entries }))
-    }
-}
-
-struct OneRay<'a, P> {
+struct OneRay<P> {
     problem: Arc<P>,
-    entries: &'a [Box<dyn Entry<P>>],
+    entries: Arc<Vec<Box<dyn Entry<P>>>>,
 }
 
-impl<P: Subject> AnyRay for OneRay<'_, P> {
+impl<P: Subject> AnyRay for OneRay<P> {
     fn medium(&self) -> &Medium {
         self.problem.medium()
     }
@@ -209,7 +189,7 @@ impl<P: Subject> AnyRay for OneRay<'_, P> {
         estimator: usize,
         parts: Parts,
         space: Option<&Arc<Majorants>>,
-        ask: Ask,
+        [is_checked, is_predicted]: [bool; 2],
     ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal> {
         let entry = &self.entries[estimator];
         let Parts { mesh, sampling, control, recipe, .. } = parts;
@@ -221,10 +201,10 @@ impl<P: Subject> AnyRay for OneRay<'_, P> {
             None => setup.in_space(None, recipe, 1.0)?,
         };
         let setup = Setup { laws: !P::ALONG_RAY, ..setup };
-        if ask.domain {
+        if is_checked {
             entry.domain(&setup)?;
         }
-        let prediction = ask.prediction.then(|| entry.predict(&setup));
+        let prediction = is_predicted.then(|| entry.predict(&setup));
         Ok((prediction, entry.experiment(setup, Order::Along)))
     }
 }

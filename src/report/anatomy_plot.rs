@@ -12,25 +12,25 @@ use crate::report::plots::figure::{Figure, LEFT};
 use crate::report::plots::legend::{self, Entry};
 use crate::report::plots::style::{COLOURS, DARK, GREY, Marker};
 use crate::report::plots::{self, Axis, Panel, Sheet};
-use crate::report::{Artifact, Report, ReportError};
+use crate::report::{Artifact, ReportError};
 
 const RIGHT: f64 = 940.0;
 const LEGEND: f64 = 968.0;
 
 /// Two panels for each case with a curve.
-pub struct AnatomyPlot;
-
-impl Report for AnatomyPlot {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let mut artifacts = Vec::new();
-        for case in &record.results.cases {
-            if let Some(anatomy) = &case.anatomy {
-                let sheet = figure(case, anatomy)?;
-                artifacts.extend(plots::artifacts(&case.name, "anatomy.", &sheet)?);
-            }
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let mut artifacts = Vec::new();
+    for case in &record.results.cases {
+        if let Some(anatomy) = &case.anatomy {
+            let sheet = figure(case, anatomy)?;
+            artifacts.extend(plots::artifacts(&case.name, "anatomy.", &sheet)?);
         }
-        Ok(artifacts)
     }
+    Ok(artifacts)
 }
 
 fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {

@@ -7,31 +7,31 @@ use crate::harness::record::{Anatomy, CaseRecord, Record, Row, Sweep};
 use crate::report::columns::table;
 use crate::report::number::exact;
 use crate::report::rows::{JoinedRow, TIMED, columns, joined};
-use crate::report::{Artifact, Report, ReportError, case_path};
+use crate::report::{Artifact, ReportError, case_path};
 
 /// The rows, the theory's curves and the profiles of each case.
-pub struct CaseCsv;
-
-impl Report for CaseCsv {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let rows = joined(record);
-        let mut artifacts = Vec::new();
-        for case in &record.results.cases {
-            let own = rows.iter().filter(|row| std::ptr::eq(row.case, case));
-            artifacts.push(artifact(case, "csv", case_rows(case, own)?));
-            if let Some(sweep) = &case.sweep {
-                artifacts.push(artifact(case, "theory.csv", theory(case, sweep)?));
-            }
-            if let Some(anatomy) = &case.anatomy {
-                artifacts.push(artifact(case, "anatomy.csv", profiles(case, anatomy)?));
-            }
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let rows = joined(record);
+    let mut artifacts = Vec::new();
+    for case in &record.results.cases {
+        let own = rows.iter().filter(|row| std::ptr::eq(row.case, case));
+        artifacts.push(Artifact::text(case_path(&case.name, "csv"), case_rows(case, own)?));
+        if let Some(sweep) = &case.sweep {
+            artifacts
+                .push(Artifact::text(case_path(&case.name, "theory.csv"), theory(case, sweep)?));
         }
-        Ok(artifacts)
+        if let Some(anatomy) = &case.anatomy {
+            artifacts.push(Artifact::text(
+                case_path(&case.name, "anatomy.csv"),
+                profiles(case, anatomy)?,
+            ));
+        }
     }
-}
-
-fn artifact(case: &CaseRecord, ending: &str, text: String) -> Artifact {
-    Artifact { path: case_path(&case.name, ending), bytes: text.into_bytes() }
+    Ok(artifacts)
 }
 
 /// A column of deviations, for error bars.

@@ -17,10 +17,7 @@
 use crate::harness::record::{Finding, GateFinding, Record};
 use crate::report::columns::{self, Column, columns};
 use crate::report::rows::{JoinedRow, joined};
-use crate::report::{Artifact, Report, ReportError};
-
-/// One row per answer.
-pub struct ChecksCsv;
+use crate::report::{Artifact, ReportError};
 
 /// An answer with the row that it belongs to.
 struct Answer<'a> {
@@ -65,14 +62,17 @@ fn columns<'a>() -> Vec<Column<Answer<'a>>> {
     }
 }
 
-impl Report for ChecksCsv {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let rows = joined(record);
-        let answers = rows.iter().enumerate().flat_map(|(i, &of)| {
-            let is_first = i == 0 || rows[i - 1].row.stream != of.row.stream;
-            let own = move |found: &&Finding| is_first || !found.channel.is_empty();
-            of.row.findings.iter().filter(own).map(move |found| Answer { of, found })
-        });
-        Ok(vec![columns::artifact("checks.csv", &columns(), answers)?])
-    }
+/// One row per answer.
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let rows = joined(record);
+    let answers = rows.iter().enumerate().flat_map(|(i, &of)| {
+        let is_first = i == 0 || rows[i - 1].row.stream != of.row.stream;
+        let own = move |found: &&Finding| is_first || !found.channel.is_empty();
+        of.row.findings.iter().filter(own).map(move |found| Answer { of, found })
+    });
+    Ok(vec![columns::artifact("checks.csv", &columns(), answers)?])
 }

@@ -134,7 +134,7 @@ pub fn artifact<T>(
     columns: &[Column<T>],
     rows: impl IntoIterator<Item = T>,
 ) -> Result<Artifact, ReportError> {
-    Ok(Artifact { path: path.into(), bytes: csv(path, columns, rows)?.into_bytes() })
+    Ok(Artifact::text(path, csv(path, columns, rows)?))
 }
 
 /// CSV text of a header and lines; `name` is what an error speaks of.

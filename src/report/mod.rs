@@ -44,15 +44,15 @@ pub struct Artifact {
     pub bytes: Vec<u8>,
 }
 
-/// Renders files from a record.
-pub trait Report: Send + Sync {
-    /// The report's files.
-    ///
-    /// # Errors
-    ///
-    /// Where an encoder refuses the content.
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError>;
+impl Artifact {
+    /// A file of text.
+    pub fn text(path: impl Into<PathBuf>, text: String) -> Self {
+        Self { path: path.into(), bytes: text.into_bytes() }
+    }
 }
+
+/// Renders a report's files from a record.
+pub type Report = fn(&Record) -> Result<Vec<Artifact>, ReportError>;
 
 /// Why a report could not be rendered or written.
 #[derive(Debug, thiserror::Error)]
@@ -107,7 +107,7 @@ pub enum ReportError {
 ///
 /// The first error of any report.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|report| report.render(record)).collect();
+    let rendered: Result<Vec<_>, _> = REPORTS.iter().map(|render| render(record)).collect();
     Ok(rendered?.into_iter().flatten().collect())
 }
 
@@ -140,23 +140,23 @@ pub fn case_path(case: &str, ending: &str) -> PathBuf {
 /// Lists the reports: from one line each come the module and the rows below. Those after the
 /// semicolon are written only where an option asks for them.
 macro_rules! reports {
-    ($($module:ident :: $Report:ident,)*; $($asked:ident,)*) => {
+    ($($module:ident,)*; $($asked:ident,)*) => {
         /// Every page, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };
 
         /// Every report that a run writes, in the same order.
-        pub const REPORTS: &[&dyn Report] = &[$(&$module::$Report),*];
+        pub const REPORTS: &[Report] = &[$($module::render),*];
     };
 }
 
 reports! {
-    summary_csv::SummaryCsv,
-    checks_csv::ChecksCsv,
-    case_csv::CaseCsv,
-    sweep_plot::SweepPlot,
-    anatomy_plot::AnatomyPlot,
-    record_json::RecordJson,
+    summary_csv,
+    checks_csv,
+    case_csv,
+    sweep_plot,
+    anatomy_plot,
+    record_json,
     ;
     junit,
     markdown,

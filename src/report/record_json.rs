@@ -4,22 +4,19 @@
 //! any machine), `timing`, and the `comparison` with a stored run or `null`. JSON has no infinite numbers: where one stands in the record, as in a
 //! variance without bound or in evidence beyond measure, the file has `null`, as for what is unknown.
 
-use std::path::PathBuf;
-
 use serde::Serialize;
 
 use crate::harness::baseline::Comparison;
 use crate::harness::record::{Record, Results, Timing};
-use crate::report::{Artifact, Report, ReportError};
+use crate::report::{Artifact, ReportError};
 
 /// The record as one JSON object.
-pub struct RecordJson;
-
-impl Report for RecordJson {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let bytes = text(record)?.into_bytes();
-        Ok(vec![Artifact { path: PathBuf::from("record.json"), bytes }])
-    }
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    Ok(vec![Artifact::text("record.json", text(record)?)])
 }
 
 #[derive(Serialize)]

@@ -1,16 +1,13 @@
 //! `summary.csv`: every experiment and channel of the run on one line, results and timing joined.
 
-use std::path::PathBuf;
-
 use crate::harness::record::Record;
-use crate::report::{Artifact, Report, ReportError, rows};
+use crate::report::{Artifact, ReportError, rows};
 
 /// One row per experiment and channel.
-pub struct SummaryCsv;
-
-impl Report for SummaryCsv {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let text = rows::csv(record)?;
-        Ok(vec![Artifact { path: PathBuf::from("summary.csv"), bytes: text.into_bytes() }])
-    }
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    Ok(vec![Artifact::text("summary.csv", rows::csv(record)?)])
 }

@@ -10,7 +10,7 @@ use crate::report::plots::legend;
 use crate::report::plots::series::{Series, collect};
 use crate::report::plots::style::{Marker, ink};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
-use crate::report::{Artifact, Report, ReportError};
+use crate::report::{Artifact, ReportError};
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;
@@ -18,19 +18,19 @@ const PANEL: [f64; 2] = [490.0, 290.0];
 const PITCH: [f64; 2] = [600.0, 374.0];
 
 /// Four panels for each case with a sweep.
-pub struct SweepPlot;
-
-impl Report for SweepPlot {
-    fn render(&self, record: &Record) -> Result<Vec<Artifact>, ReportError> {
-        let mut artifacts = Vec::new();
-        for case in &record.results.cases {
-            if let Some(sweep) = &case.sweep {
-                let sheet = figure(case, sweep, record.results.seed)?;
-                artifacts.extend(plots::artifacts(&case.name, "", &sheet)?);
-            }
+///
+/// # Errors
+///
+/// Where an encoder or a painter gives up.
+pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
+    let mut artifacts = Vec::new();
+    for case in &record.results.cases {
+        if let Some(sweep) = &case.sweep {
+            let sheet = figure(case, sweep, record.results.seed)?;
+            artifacts.extend(plots::artifacts(&case.name, "", &sheet)?);
         }
-        Ok(artifacts)
     }
+    Ok(artifacts)
 }
 
 /// What one panel shows: as measured, with its deviation, and in theory for rows and curves.

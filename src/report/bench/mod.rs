@@ -12,8 +12,6 @@ pub mod error_csv;
 pub mod plot;
 pub mod rows;
 
-use std::path::PathBuf;
-
 use crate::bench::record::Bench;
 use crate::report::{Artifact, ReportError};
 
@@ -23,8 +21,7 @@ use crate::report::{Artifact, ReportError};
 ///
 /// Where an encoder or a painter gives up.
 pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
-    let bytes = rows::csv(bench)?.into_bytes();
-    let mut artifacts = vec![Artifact { path: PathBuf::from("bench.csv"), bytes }];
+    let mut artifacts = vec![Artifact::text("bench.csv", rows::csv(bench)?)];
     for case in bench.cases.iter().filter(|case| case.rows.iter().any(|row| !row.curve.is_empty()))
     {
         artifacts.push(error_csv::artifact(case)?);

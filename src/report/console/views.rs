@@ -4,7 +4,7 @@ use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;
-use crate::report::number::{count, fixed, short, signed};
+use crate::report::number::{count, fixed, percent, short, signed};
 
 type Spec = layout::Spec<Row>;
 
@@ -190,10 +190,6 @@ fn digits(value: Option<f64>, digits: usize) -> String {
 pub fn score(row: &Row, name: &str, z: Option<f64>) -> String {
     let text = z.map(signed).unwrap_or_default();
     if row.not_normal.contains(&name) { format!("({text})") } else { text }
-}
-
-fn percent(share: f64) -> String {
-    format!("{} %", short(100.0 * share, 3))
 }
 
 /// The measured variance over the predicted one.

@@ -43,8 +43,8 @@ pub fn svg(sheet: &Sheet) -> Result<String, String> {
 ///
 /// In words, where the backend or the encoder gives up.
 pub fn png(sheet: &Sheet) -> Result<Vec<u8>, String> {
-    let (rgb, (width, height)) = pixels_of(sheet)?;
-    encode(&rgb, width, height).map_err(in_words)
+    let (rgb, size) = pixels_of(sheet)?;
+    encode(&rgb, size, None).map_err(in_words)
 }
 
 /// Red, green and blue of the sheet's pixels row by row, and how wide and high it is.
@@ -176,14 +176,28 @@ fn halved(fine: &[u8], width: usize) -> Vec<u8> {
     coarse
 }
 
-fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+/// The bytes of a PNG file: red, green and blue of each pixel, or its number in a palette.
+///
+/// # Errors
+///
+/// Where the encoder gives up.
+pub fn encode(
+    data: &[u8],
+    (width, height): (u32, u32),
+    palette: Option<Vec<u8>>,
+) -> Result<Vec<u8>, png::EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
     encoder.set_compression(png::Compression::Best);
-    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    if let Some(palette) = palette {
+        encoder.set_color(png::ColorType::Indexed);
+        encoder.set_palette(palette);
+    } else {
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    }
     let mut writer = encoder.write_header()?;
-    writer.write_image_data(rgb)?;
+    writer.write_image_data(data)?;
     writer.finish()?;
     Ok(bytes)
 }

@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use crate::report::plots::paint;
+
 /// The most colours of a palette.
 const MOST: usize = 256;
 
@@ -11,14 +13,14 @@ const MOST: usize = 256;
 /// # Errors
 ///
 /// Where the encoder gives up.
-pub fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::EncodingError> {
+pub fn encode(rgb: &[u8], size: (u32, u32)) -> Result<Vec<u8>, png::EncodingError> {
     let coarse: Vec<[u8; 3]> =
         rgb.as_chunks::<3>().0.iter().map(|&colour| rounded(colour)).collect();
     let mut palette: BTreeMap<[u8; 3], usize> = BTreeMap::new();
     for &colour in &coarse {
         palette.entry(colour).or_insert(0);
         if palette.len() > MOST {
-            return write(rgb, width, height, None);
+            return paint::encode(rgb, size, None);
         }
     }
     for (number, entry) in palette.values_mut().enumerate() {
@@ -27,34 +29,12 @@ pub fn encode(rgb: &[u8], width: u32, height: u32) -> Result<Vec<u8>, png::Encod
     let indices: Vec<u8> =
         coarse.iter().map(|colour| u8::try_from(palette[colour]).unwrap_or(u8::MAX)).collect();
     let colours: Vec<u8> = palette.keys().flatten().copied().collect();
-    write(&indices, width, height, Some(colours))
+    paint::encode(&indices, size, Some(colours))
 }
 
 fn rounded([red, green, blue]: [u8; 3]) -> [u8; 3] {
     let is_grey = red == green && green == blue;
     if is_grey { [red | 1; 3] } else { [red, green, blue] }
-}
-
-fn write(
-    data: &[u8],
-    width: u32,
-    height: u32,
-    palette: Option<Vec<u8>>,
-) -> Result<Vec<u8>, png::EncodingError> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_compression(png::Compression::Best);
-    if let Some(palette) = palette {
-        encoder.set_color(png::ColorType::Indexed);
-        encoder.set_palette(palette);
-    } else {
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
-    }
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(data)?;
-    writer.finish()?;
-    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -74,14 +54,14 @@ mod tests {
     #[test]
     fn few_colours_make_a_palette_and_stay_what_they_are() {
         let rgb = [255, 255, 255, 10, 20, 30, 1, 1, 1, 10, 20, 30];
-        let (kind, pixels) = colours(&encode(&rgb, 2, 2).expect("encodes"));
+        let (kind, pixels) = colours(&encode(&rgb, (2, 2)).expect("encodes"));
         assert_eq!((kind, &pixels[..]), (png::ColorType::Indexed, &rgb[..]));
     }
 
     #[test]
     fn many_colours_have_no_palette() {
         let rgb: Vec<u8> = (0..2).flat_map(|j| (0..150).flat_map(move |i| [i, j, 7])).collect();
-        let (kind, pixels) = colours(&encode(&rgb, 300, 1).expect("encodes"));
+        let (kind, pixels) = colours(&encode(&rgb, (300, 1)).expect("encodes"));
         assert_eq!((kind, pixels), (png::ColorType::Rgb, rgb));
     }
 }

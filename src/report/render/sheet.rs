@@ -27,8 +27,8 @@ const LINE: f64 = 15.0;
 pub fn png(record: &PictureRecord) -> Result<Vec<u8>, String> {
     let face = Typeface::load().map_err(|error| error.to_string())?;
     let sheet = compose(record, &face);
-    let (rgb, (width, height)) = paint::pixels_of(&sheet)?;
-    palette::encode(&rgb, width, height).map_err(|error| error.to_string())
+    let (rgb, size) = paint::pixels_of(&sheet)?;
+    palette::encode(&rgb, size).map_err(|error| error.to_string())
 }
 
 /// Where a column of the sheet is.
