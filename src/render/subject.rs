@@ -70,6 +70,7 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
 }
 
 /// A subject of the catalogue, before a picture is read.
+#[allow(clippy::struct_excessive_bools)] // one for each constant of the trait
 pub struct SubjectKind {
     /// Its name in picture files.
     pub name: &'static str,
