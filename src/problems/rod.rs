@@ -37,6 +37,7 @@ use crate::catalogue::{Settings, Value};
 use crate::media::piecewise_constant::read_steps;
 use crate::media::piecewise_linear::read_lines;
 use crate::media::{Body, Medium, Piecewise};
+use crate::numeric::Span;
 
 /// The most channels that a draw can have.
 pub const MOST: usize = 20;
@@ -155,7 +156,7 @@ impl Problem for Rod {
             Some(None)
         };
         let medium = body?.medium();
-        let (albedo, forward) = (albedo?.on(&medium), forward?.on(&medium));
+        let (albedo, forward) = (albedo?, forward?);
         let channels = channels(parts? as usize, absorbed?, orders?);
         Some(Self::new(medium, &albedo, &forward, channels))
     }
@@ -171,26 +172,13 @@ impl Problem for Rod {
     }
 }
 
-/// A number in `[0, 1]`, the same everywhere or not.
-enum Share {
-    Everywhere(f64),
-    Varying(Box<Piecewise>),
-}
-
-impl Share {
-    fn on(self, medium: &Medium) -> Piecewise {
-        match self {
-            Self::Everywhere(value) => Piecewise::constant(value, medium.span()),
-            Self::Varying(pieces) => *pieces,
-        }
-    }
-}
-
 /// Reads a share, a number or a field; `default` where the key is absent.
-fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Share> {
+fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Piecewise> {
     let value = settings.entry(key).map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
-        return number(settings, key, default).map(Share::Everywhere);
+        // It goes on to both sides.
+        let everywhere = |value| Piecewise::constant(value, Span::empty(0.0));
+        return number(settings, key, default).map(everywhere);
     }
     let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
     let (index, field) = settings.chosen(key, &names)?;
@@ -202,7 +190,7 @@ fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option
         field.fault("values", message, "each value is between 0 and 1");
         return None;
     }
-    Some(Share::Varying(Box::new(pieces)))
+    Some(pieces)
 }
 
 #[cfg(test)]

@@ -199,9 +199,9 @@ impl<'a> Walk<'a> {
 
 /// m₊ and m₋ at the ends of all steps.
 #[derive(Debug, Clone)]
-pub struct Worth(Vec<[f64; 2]>);
+pub struct Importance(Vec<[f64; 2]>);
 
-impl Worth {
+impl Importance {
     /// In the middle of a step.
     #[inline]
     pub fn middle(&self, step: usize) -> [f64; 2] {
@@ -328,7 +328,7 @@ impl Grid {
         rates: impl Fn(&Step) -> [f64; 2],
         source: impl Fn(usize, &Step) -> [f64; 2],
         ends: [f64; 2],
-    ) -> Option<Worth> {
+    ) -> Option<Importance> {
         let n = self.steps.len();
         // m₊ = ρ m₋ + η at the beginning of each step, from the end of the rod backwards.
         let mut beyond = vec![[0.0, ends[1]]; n + 1];
@@ -360,6 +360,6 @@ impl Grid {
             minus = (layer.through * minus + layer.back * eta + emitted) / (1.0 - layer.back * rho);
         }
         worth.push([beyond[n][0] * minus + ends[1], minus]);
-        Some(Worth(worth))
+        Some(Importance(worth))
     }
 }

@@ -102,7 +102,7 @@ pub fn has_variance(
         Existence::Finite => Ok(()),
         Existence::Diverges(at) => Err(NoVariance::Diverges(at)),
         Existence::Unknown => Err(NoVariance::Blurred(f64::INFINITY)),
-        Existence::Near => match Found::blur(&powers(&walk, 2)) {
+        Existence::Near => match RawMoments::blur(&powers(&walk, 2)) {
             blur if blur <= RESOLVED => Ok(()),
             blur => Err(NoVariance::Blurred(blur)),
         },
@@ -131,7 +131,8 @@ pub fn predict(
     laws: bool,
 ) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let found = Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| Found::of(&walk, laws));
+    let found =
+        Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| RawMoments::of(&walk, laws));
     let channel = |(index, (seen, &truth)): (usize, (&Seen, &Known))| {
         let raw = found.as_ref().map(|found| &found.raw[index]);
         let moments = raw.map(|raw| central(truth, raw));
@@ -141,7 +142,7 @@ pub fn predict(
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
         channels: channels.collect(),
-        lookups: found.as_ref().map(Found::lookups),
+        lookups: found.as_ref().map(RawMoments::lookups),
         covariances: found
             .as_ref()
             .map_or_else(Vec::new, |found| covariances(&rod.channels, &truth, found)),
@@ -161,7 +162,7 @@ pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
 }
 
 /// Raw moments of all channels.
-struct Found {
+struct RawMoments {
     /// `E[X^k]` of each channel for the powers of [`POWERS`], with an absolute error; infinite where
     /// it diverges.
     raw: Vec<[[f64; 2]; POWERS.len()]>,
@@ -171,7 +172,7 @@ struct Found {
     joint: Option<Joint>,
 }
 
-impl Found {
+impl RawMoments {
     fn of(walk: &Walk<'_>, laws: bool) -> Option<Self> {
         let precision = if laws { Precision::FULL } else { Precision::PLOTS };
         let [second, fourth, eighth] = if laws {
@@ -281,7 +282,7 @@ fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
 
 /// The covariances of neighbouring channels. A particle leaves at one end and after one number of
 /// scatterings: the products of such channels are 0.
-fn covariances(channels: &[Seen], truth: &[Known], found: &Found) -> Vec<Covariance> {
+fn covariances(channels: &[Seen], truth: &[Known], found: &RawMoments) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {
         let means = [truth[first].value, truth[first + 1].value];

@@ -15,7 +15,7 @@
 //! Each is the expectation over what the next collision does; terms with different powers of the
 //! weight never mix, which is why the equations close.
 
-use super::grid::{Grid, Step, Walk, Worth};
+use super::grid::{Grid, Importance, Step, Walk};
 use crate::problems::Problem;
 use crate::problems::rod::Seen;
 
@@ -202,7 +202,7 @@ fn nothing(_: usize, _: &Step) -> [f64; 2] {
 }
 
 /// The worth of leaving at one end, to the k-th power of the weight.
-fn leaving(grid: &Grid, k: i32, ends: [f64; 2]) -> Option<Worth> {
+fn leaving(grid: &Grid, k: i32, ends: [f64; 2]) -> Option<Importance> {
     grid.solve(|step| step.rates(k), nothing, ends)
 }
 
@@ -229,7 +229,7 @@ pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
     Some(worth.entering())
 }
 
-fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Worth> {
+fn by_order(grid: &Grid, k: i32, ends: [f64; 2], order: usize) -> Option<Importance> {
     let rates = |step: &Step| [step.sampling * (1.0 - step.moments(k)[0]), 0.0];
     let mut worth = grid.solve(rates, nothing, ends)?;
     for _ in 0..order {
@@ -255,7 +255,7 @@ fn score_times(
     score: &Score<'_>,
     j: usize,
     end: Option<([f64; 2], i32)>,
-) -> Option<Vec<Worth>> {
+) -> Option<Vec<Importance>> {
     let k = end.map_or(0, |(_, k)| k);
     let mut found = Vec::new();
     if let Some((ends, k)) = end {
@@ -263,7 +263,7 @@ fn score_times(
     }
     for power in found.len()..=j {
         if power == 0 {
-            // Worth 1 whatever happens.
+            // Importance 1 whatever happens.
             found.push(grid.solve(|_| [0.0; 2], nothing, [1.0; 2])?);
             continue;
         }
@@ -305,7 +305,7 @@ pub fn joint(grid: &Grid, reflected: bool) -> Option<Joint> {
 /// The factorial moments `E[M(M − 1)…(M − n + 1)]` of the number of lookups, n = 1 … 4.
 pub fn lookups(grid: &Grid) -> Option<[f64; 4]> {
     let mut found = [0.0; 4];
-    let mut worth: Option<Worth> = None;
+    let mut worth: Option<Importance> = None;
     for (n, moment) in (1_i32..).zip(&mut found) {
         let source = |at: usize, step: &Step| {
             let rate = f64::from(n) * step.sampling;
