@@ -75,19 +75,7 @@ impl Mesh {
         let ends = support.cut(medium.breaks());
         let many = ends.len() > MANY;
         let nodes = if many { medium.panel_nodes().unwrap_or(NODES) } else { NODES };
-        let rule = GaussLegendre::new(nodes);
-        let tails = [legendre_row(&rule, nodes - 1), legendre_row(&rule, nodes - 2)];
-        let mut mesh = Self {
-            medium,
-            rule,
-            tails,
-            panels: Vec::new(),
-            t: Vec::new(),
-            extinction: Vec::new(),
-            adaptive: !many,
-            error: 0.0,
-            depth: None,
-        };
+        let mut mesh = Self::without_panels(medium, nodes, !many);
         let largest =
             |span: Span| mesh.medium.extinctions(&mesh.nodes(span)).into_iter().fold(0.0, f64::max);
         let scale = if many { 0.0 } else { Span::between(&ends).map(largest).fold(0.0, f64::max) };
@@ -99,24 +87,21 @@ impl Mesh {
         mesh
     }
 
+    fn without_panels(medium: Medium, nodes: usize, adaptive: bool) -> Self {
+        let rule = GaussLegendre::new(nodes);
+        let tails = [legendre_row(&rule, nodes - 1), legendre_row(&rule, nodes - 2)];
+        let (panels, t, extinction) = (Vec::new(), Vec::new(), Vec::new());
+        Self { medium, rule, tails, panels, t, extinction, adaptive, error: 0.0, depth: None }
+    }
+
     /// Cuts the support into equal panels of 16 nodes, whatever breaks the medium has: a quick look at a
     /// field of thousands of pieces. The error of integrals on it is not known: it is infinite.
     pub fn even(medium: Medium, panels: usize) -> Self {
         let support = medium.support();
-        let rule = GaussLegendre::new(NODES);
         let at = |i: usize| support.from + support.length() * (i as f64 / panels as f64);
         let panels = (0..panels).map(|i| Span::new(at(i), at(i + 1))).collect();
-        let mut mesh = Self {
-            medium,
-            rule,
-            tails: [Vec::new(), Vec::new()],
-            panels,
-            t: Vec::new(),
-            extinction: Vec::new(),
-            adaptive: false,
-            error: f64::INFINITY,
-            depth: None,
-        };
+        let bare = Self::without_panels(medium, NODES, false);
+        let mut mesh = Self { panels, error: f64::INFINITY, ..bare };
         mesh.t = mesh.panels.iter().flat_map(|&panel| mesh.nodes(panel)).collect();
         mesh.extinction = mesh.medium.extinctions(&mesh.t);
         mesh.depth = Some(Known::new(mesh.integrate(|_, sigma| sigma), f64::INFINITY));
@@ -151,10 +136,13 @@ impl Mesh {
         let mut cuts = cuts.to_vec();
         cuts.sort_by(f64::total_cmp);
         let mut fine = Self {
+            medium: self.medium.clone(),
+            rule: self.rule.clone(),
+            tails: self.tails.clone(),
             panels: Vec::with_capacity(self.panels.len()),
             t: Vec::with_capacity(self.t.len()),
             extinction: Vec::with_capacity(self.t.len()),
-            ..self.without_panels()
+            ..*self
         };
         // What is small beside the whole need not be smooth to its own last digits.
         let whole = if self.adaptive { self.whole(smooth) } else { Vec::new() };
@@ -191,20 +179,6 @@ impl Mesh {
             }
         }
         whole
-    }
-
-    fn without_panels(&self) -> Self {
-        Self {
-            medium: self.medium.clone(),
-            rule: self.rule.clone(),
-            tails: self.tails.clone(),
-            panels: Vec::new(),
-            t: Vec::new(),
-            extinction: Vec::new(),
-            adaptive: self.adaptive,
-            error: self.error,
-            depth: self.depth,
-        }
     }
 
     fn keep(&mut self, panel: Panel<'_>) {
