@@ -48,7 +48,7 @@ pub const HIGHEST_ORDER: u64 = 6;
 
 /// What a channel is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Seen {
+pub enum Quantity {
     /// The weight that leaves at the beginning after so many scatterings.
     ReflectedBy(usize),
     /// The weight that leaves at the end after so many scatterings.
@@ -63,7 +63,7 @@ pub enum Seen {
     Transmitted,
 }
 
-impl Seen {
+impl Quantity {
     /// The channel's name.
     pub fn name(self) -> String {
         match self {
@@ -85,7 +85,7 @@ pub struct Rod {
     /// `p_f`, as a function of the distance.
     pub forward: Piecewise,
     /// What the channels of a draw are about, the last two always reflectance and transmittance.
-    pub channels: Vec<Seen>,
+    pub channels: Vec<Quantity>,
     /// How many parts of the rod have their flux as a channel: 0 or all of them.
     pub parts: usize,
 }
@@ -99,10 +99,11 @@ impl Rod {
         medium: Medium,
         albedo: &Piecewise,
         forward: &Piecewise,
-        channels: Vec<Seen>,
+        channels: Vec<Quantity>,
     ) -> Self {
         let span = medium.span();
-        let parts = channels.iter().filter(|seen| matches!(seen, Seen::Flux(_))).count();
+        let parts =
+            channels.iter().filter(|quantity| matches!(quantity, Quantity::Flux(_))).count();
         Self { medium, albedo: albedo.on(span), forward: forward.on(span), channels, parts }
     }
 
@@ -126,18 +127,18 @@ impl Rod {
 }
 
 /// The channels that a case asks for.
-pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Seen> {
-    let mut channels: Vec<Seen> = (0..parts).map(Seen::Flux).collect();
+pub fn channels(parts: usize, absorbed: bool, orders: Option<usize>) -> Vec<Quantity> {
+    let mut channels: Vec<Quantity> = (0..parts).map(Quantity::Flux).collect();
     if let Some(highest) = orders {
-        channels.push(Seen::TransmittedBy(0));
+        channels.push(Quantity::TransmittedBy(0));
         for order in 1..=highest {
-            channels.extend([Seen::ReflectedBy(order), Seen::TransmittedBy(order)]);
+            channels.extend([Quantity::ReflectedBy(order), Quantity::TransmittedBy(order)]);
         }
     }
     if absorbed {
-        channels.push(Seen::Absorbed);
+        channels.push(Quantity::Absorbed);
     }
-    channels.extend([Seen::Reflected, Seen::Transmitted]);
+    channels.extend([Quantity::Reflected, Quantity::Transmitted]);
     channels
 }
 
@@ -199,10 +200,10 @@ mod tests {
 
     #[test]
     fn the_last_channels_are_what_leaves() {
-        assert_eq!(channels(0, false, None), [Seen::Reflected, Seen::Transmitted]);
+        assert_eq!(channels(0, false, None), [Quantity::Reflected, Quantity::Transmitted]);
         let all = channels(4, true, Some(6));
         assert_eq!(all.len(), MOST);
-        assert_eq!(all[MOST - 2..], [Seen::Reflected, Seen::Transmitted]);
+        assert_eq!(all[MOST - 2..], [Quantity::Reflected, Quantity::Transmitted]);
         assert_eq!(all[0].name(), "flux, part 1");
         assert_eq!(all[6].name(), "transmittance, order 1");
     }

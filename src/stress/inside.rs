@@ -18,7 +18,7 @@ use super::trial::{Dice, Trial, central, of_relative, share};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::Wide;
-use crate::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Seen};
+use crate::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
 use crate::theory::particle::ParticleRule;
 use crate::theory::rod as rods;
 use crate::theory::volterra::binomial;
@@ -47,12 +47,12 @@ const SEEN: [&str; 3] =
     ["orders of scattering in a rod", "flux inside a rod", "absorption in a rod"];
 
 /// Which of them a channel is.
-fn row_of(seen: Seen) -> Option<usize> {
+fn row_of(seen: Quantity) -> Option<usize> {
     match seen {
-        Seen::ReflectedBy(_) | Seen::TransmittedBy(_) => Some(0),
-        Seen::Flux(_) => Some(1),
-        Seen::Absorbed => Some(2),
-        Seen::Reflected | Seen::Transmitted => None,
+        Quantity::ReflectedBy(_) | Quantity::TransmittedBy(_) => Some(0),
+        Quantity::Flux(_) => Some(1),
+        Quantity::Absorbed => Some(2),
+        Quantity::Reflected | Quantity::Transmitted => None,
     }
 }
 
@@ -61,7 +61,7 @@ struct Case {
     depth: f64,
     forward: f64,
     albedo: Vec<f64>,
-    channels: Vec<Seen>,
+    channels: Vec<Quantity>,
 }
 
 impl Case {
@@ -72,7 +72,7 @@ impl Case {
         Self { depth, forward, albedo, channels }
     }
 
-    fn place(&self, seen: Seen) -> String {
+    fn place(&self, seen: Quantity) -> String {
         let Self { depth, forward, albedo, .. } = self;
         format!("{}, τ = {depth:e}, a = {albedo:?}, p_f = {forward:e}", seen.name())
     }
@@ -162,7 +162,7 @@ struct Line {
 
 impl Line {
     fn new(case: &Case, rule: ParticleRule, sampling: f64) -> Self {
-        let parts = case.channels.iter().filter(|seen| matches!(seen, Seen::Flux(_))).count();
+        let parts = case.channels.iter().filter(|seen| matches!(seen, Quantity::Flux(_))).count();
         // Twelfths hold halves, thirds and quarters.
         let forward = Wide::from(case.forward);
         let ratio = Wide::from(case.depth) / sampling;
@@ -181,8 +181,8 @@ impl Line {
             Stretch { steps, step, sampling, absorbed, part: twelfth * parts / 12, odds }
         };
         let stretches = (0..12).map(of).collect();
-        let order = |seen: &Seen| match seen {
-            Seen::ReflectedBy(order) | Seen::TransmittedBy(order) => *order,
+        let order = |seen: &Quantity| match seen {
+            Quantity::ReflectedBy(order) | Quantity::TransmittedBy(order) => *order,
             _ => 0,
         };
         let highest = case.channels.iter().map(order).max().unwrap_or(0);
@@ -190,17 +190,17 @@ impl Line {
     }
 
     /// `E[X], …, E[X^k]` of a channel, the others 0.
-    fn powers(&self, seen: Seen, k: u32) -> [Wide; 4] {
+    fn powers(&self, seen: Quantity, k: u32) -> [Wide; 4] {
         let mut powers = [Wide::default(); 4];
         match seen {
-            Seen::ReflectedBy(order) | Seen::TransmittedBy(order) => {
-                let is_back = usize::from(matches!(seen, Seen::ReflectedBy(_)));
+            Quantity::ReflectedBy(order) | Quantity::TransmittedBy(order) => {
+                let is_back = usize::from(matches!(seen, Quantity::ReflectedBy(_)));
                 for (power, k) in powers.iter_mut().zip(1..=k as usize) {
                     let orders = &self.orders[k - 1][is_back];
                     *power = orders.get_or_init(|| self.by_order(k, is_back))[order];
                 }
             }
-            Seen::Flux(part) => {
+            Quantity::Flux(part) => {
                 // σ̂c = 1/width.
                 let width = Wide::ONE / self.parts;
                 let score = |stretch: &Stretch| {
@@ -354,15 +354,15 @@ mod tests {
         let [a, p] = [albedo, forward].map(Wide::from);
         let rates = [1.0 - a * p, a * (1.0 - p)].map(|rate| rate * depth);
         let [r, t] = leaving(rates);
-        let sum = |seen: fn(usize) -> Seen| -> Wide {
+        let sum = |seen: fn(usize) -> Quantity| -> Wide {
             (0..=6).map(|order| line.powers(seen(order), 1)[0]).sum()
         };
-        assert!(t.relative_error(sum(Seen::TransmittedBy).value()) < 1e-15);
-        assert!(r.relative_error(sum(Seen::ReflectedBy).value()) < 1e-15);
+        assert!(t.relative_error(sum(Quantity::TransmittedBy).value()) < 1e-15);
+        assert!(r.relative_error(sum(Quantity::ReflectedBy).value()) < 1e-15);
         // What does not leave is absorbed, and what is absorbed is the flux times the rate.
         let lost = 1.0 - r - t;
-        let absorbed = line.powers(Seen::Absorbed, 1)[0];
-        let flux = line.powers(Seen::Flux(0), 1)[0] * depth * (1.0 - a);
+        let absorbed = line.powers(Quantity::Absorbed, 1)[0];
+        let flux = line.powers(Quantity::Flux(0), 1)[0] * depth * (1.0 - a);
         assert!((lost - absorbed).abs().value() < 1e-28 && (lost - flux).abs().value() < 1e-28);
     }
 }

@@ -13,7 +13,7 @@ use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::Wide;
 use crate::problems::Rod;
-use crate::problems::rod::{self, Seen};
+use crate::problems::rod::{self, Quantity};
 use crate::theory::particle::ParticleRule;
 use crate::theory::{Mesh, rod as rods};
 
@@ -83,7 +83,7 @@ pub(super) fn rod_with(
     depth: f64,
     albedo: &[f64],
     forward: f64,
-    channels: Vec<Seen>,
+    channels: Vec<Quantity>,
 ) -> Option<(Mesh, Rod)> {
     let medium = homogeneous(depth, 1.0)?;
     let cuts: Vec<f64> = (0..=albedo.len()).map(|i| i as f64 / albedo.len() as f64).collect();

@@ -18,7 +18,7 @@ use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Rod;
-use crate::problems::rod::{MOST_PARTS, Seen};
+use crate::problems::rod::{MOST_PARTS, Quantity};
 use crate::rng::LANES;
 use crate::theory::ParticleRule;
 
@@ -168,8 +168,8 @@ impl Ends {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
     fn fate(&self, lane: usize) -> Fate {
         let left = match (self.inside >> lane & 1, self.is_forward >> lane & 1) {
-            (0, 0) => Some(Seen::Reflected),
-            (0, _) => Some(Seen::Transmitted),
+            (0, 0) => Some(Quantity::Reflected),
+            (0, _) => Some(Quantity::Transmitted),
             _ => None,
         };
         let flux = self.flux.each_ref().map(|row| row[lane]);

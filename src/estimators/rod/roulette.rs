@@ -28,7 +28,7 @@ use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::Rod;
-use crate::problems::rod::{Seen, Values};
+use crate::problems::rod::{Quantity, Values};
 use crate::rng::Stream;
 use crate::theory::{Odds, ParticleRule, Prediction, rod};
 
@@ -72,7 +72,7 @@ impl Estimator<Rod> for Roulette {
     }
 
     fn domain(&self, setup: &Setup<Rod>) -> Result<(), Refusal> {
-        let is_score = |seen: &Seen| matches!(seen, Seen::Absorbed | Seen::Flux(_));
+        let is_score = |seen: &Quantity| matches!(seen, Quantity::Absorbed | Quantity::Flux(_));
         if setup.problem.channels.iter().any(is_score) {
             return Err(Refusal::mismatch(
                 "channels whose draws are at most 1",

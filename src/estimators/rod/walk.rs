@@ -12,7 +12,7 @@
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::problems::Rod;
-use crate::problems::rod::{MOST, MOST_PARTS, Seen, Values};
+use crate::problems::rod::{MOST, MOST_PARTS, Quantity, Values};
 use crate::rng::Stream;
 use crate::theory::ParticleRule;
 use crate::theory::particle::{Event, Odds};
@@ -55,7 +55,7 @@ impl Steps for ParticleRule {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Fate {
     /// The end at which it left; `None` if it was absorbed.
-    pub left: Option<Seen>,
+    pub left: Option<Quantity>,
     /// Its weight.
     pub weight: f64,
     /// How often it was scattered.
@@ -70,17 +70,17 @@ impl Fate {
     /// What each channel of the rod sees of it.
     #[inline(always)]
     #[must_use]
-    pub fn values(&self, channels: &[Seen]) -> Values {
+    pub fn values(&self, channels: &[Quantity]) -> Values {
         let mut values = Values { at: [0.0; MOST], count: channels.len() };
         for (value, seen) in values.at.iter_mut().zip(channels) {
             let by_order = match self.left {
-                Some(Seen::Reflected) => Some(Seen::ReflectedBy(self.order)),
-                Some(_) => Some(Seen::TransmittedBy(self.order)),
+                Some(Quantity::Reflected) => Some(Quantity::ReflectedBy(self.order)),
+                Some(_) => Some(Quantity::TransmittedBy(self.order)),
                 None => None,
             };
-            *value = if *seen == Seen::Absorbed {
+            *value = if *seen == Quantity::Absorbed {
                 self.absorbed
-            } else if let Seen::Flux(part) = *seen {
+            } else if let Quantity::Flux(part) = *seen {
                 self.flux[part]
             } else if self.left == Some(*seen) || by_order == Some(*seen) {
                 self.weight
@@ -115,7 +115,7 @@ pub fn draw(
             setup.sampling.fly_back(&mut cursor, depth)
         };
         let Some(sampling) = flown else {
-            fate.left = Some(if is_forward { Seen::Transmitted } else { Seen::Reflected });
+            fate.left = Some(if is_forward { Quantity::Transmitted } else { Quantity::Reflected });
             break;
         };
         lookups += 1;
@@ -154,7 +154,7 @@ mod tests {
     fn a_particle_is_seen_at_its_end_and_by_its_order() {
         let channels = channels(1, true, Some(2));
         let fate = Fate {
-            left: Some(Seen::Reflected),
+            left: Some(Quantity::Reflected),
             weight: 0.5,
             order: 1,
             absorbed: 0.2,

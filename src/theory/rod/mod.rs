@@ -26,7 +26,7 @@ use super::prediction::Covariance;
 use super::{Channel, CountLaw, Mesh, Moments, Prediction, Tails, moments::not_negative};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Span};
-use crate::problems::rod::Seen;
+use crate::problems::rod::Quantity;
 use crate::problems::{Problem, Rod};
 
 /// The exact answer of every channel; `None` where the rod has more steps than theory can do.
@@ -36,21 +36,21 @@ pub fn truth(mesh: &Mesh, rod: &Rod) -> Option<Vec<Known>> {
     let share = |field: &Piecewise| one_value(field, support);
     let closed = share(&rod.albedo).zip(share(&rod.forward));
     let closed = closed.map(|(albedo, forward)| closed::leaving(depth, albedo, forward));
-    let needed = |seen: &&Seen| closed.is_none() || !has_closed_form(**seen);
-    let open: Vec<Seen> = rod.channels.iter().filter(needed).copied().collect();
+    let needed = |quantity: &&Quantity| closed.is_none() || !has_closed_form(**quantity);
+    let open: Vec<Quantity> = rod.channels.iter().filter(needed).copied().collect();
     let mut solved = Vec::new();
     if !open.is_empty() {
         let walk = Walk::new(mesh, rod, None, ParticleRule::Analog)?;
         let numbers = moments::romberg(&walk, Precision::FULL, &|grid| {
-            open.iter().map(|&seen| moments::power(grid, seen, 1)).collect()
+            open.iter().map(|&quantity| moments::power(grid, quantity, 1)).collect()
         });
         solved = numbers?;
     }
     let mut solved = solved.into_iter();
-    let known = rod.channels.iter().map(|seen| match (closed, seen) {
-        (Some([r, _]), Seen::Reflected) => Some(r),
-        (Some([_, t]), Seen::Transmitted) => Some(t),
-        (Some([r, t]), Seen::Absorbed) => {
+    let known = rod.channels.iter().map(|quantity| match (closed, quantity) {
+        (Some([r, _]), Quantity::Reflected) => Some(r),
+        (Some([_, t]), Quantity::Transmitted) => Some(t),
+        (Some([r, t]), Quantity::Absorbed) => {
             // Of a white rod rounding may leave less than nothing.
             let rest = ((1.0 - r.value) - t.value).max(0.0);
             Some(Known::new(rest, r.error + t.error + f64::EPSILON))
@@ -65,8 +65,8 @@ fn truth_or_nan(mesh: &Mesh, rod: &Rod) -> Vec<Known> {
     truth(mesh, rod).unwrap_or_else(|| vec![Known::new(f64::NAN, f64::NAN); rod.channels.len()])
 }
 
-fn has_closed_form(seen: Seen) -> bool {
-    matches!(seen, Seen::Reflected | Seen::Transmitted | Seen::Absorbed)
+fn has_closed_form(quantity: Quantity) -> bool {
+    matches!(quantity, Quantity::Reflected | Quantity::Transmitted | Quantity::Absorbed)
 }
 
 /// The value of a field that has only one on a stretch.
@@ -114,7 +114,7 @@ pub fn has_variance(
 fn powers(walk: &Walk<'_>, k: i32) -> Vec<[f64; 2]> {
     let channels = &walk.rod.channels;
     let numbers = moments::next_to_divergence(walk, &|grid| {
-        channels.iter().map(|&seen| moments::power(grid, seen, k)).collect()
+        channels.iter().map(|&quantity| moments::power(grid, quantity, k)).collect()
     });
     numbers.unwrap_or_else(|| vec![[f64::INFINITY; 2]; channels.len()])
 }
@@ -133,11 +133,11 @@ pub fn predict(
     let truth = truth_or_nan(mesh, rod);
     let found =
         Walk::new(mesh, rod, Some(sampling), rule).and_then(|walk| RawMoments::of(&walk, laws));
-    let channel = |(index, (seen, &truth)): (usize, (&Seen, &Known))| {
+    let channel = |(index, (quantity, &truth)): (usize, (&Quantity, &Known))| {
         let raw = found.as_ref().map(|found| &found.raw[index]);
         let moments = raw.map(|raw| central(truth, raw));
         let tails = raw.map_or(Tails::LIGHT, tails);
-        Channel { name: seen.name(), ..Channel::unbiased(truth, moments, tails) }
+        Channel { name: quantity.name(), ..Channel::unbiased(truth, moments, tails) }
     };
     let channels = rod.channels.iter().zip(&truth).enumerate().map(channel);
     Prediction {
@@ -153,8 +153,8 @@ pub fn predict(
 /// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let truth = truth_or_nan(mesh, rod);
-    let channels = rod.channels.iter().zip(truth).map(|(seen, truth)| Channel {
-        name: seen.name(),
+    let channels = rod.channels.iter().zip(truth).map(|(quantity, truth)| Channel {
+        name: quantity.name(),
         most_variance: Some(truth.value * (1.0 - truth.value)),
         ..Channel::unbiased(truth, None, Tails::LIGHT)
     });
@@ -197,12 +197,12 @@ impl RawMoments {
         if !apart[1].as_ref().is_none_or(|found| Self::blur(found) <= RESOLVED) {
             return None;
         }
-        let is_joint = is_finite(&3) && channels.contains(&Seen::Absorbed);
+        let is_joint = is_finite(&3) && channels.contains(&Quantity::Absorbed);
         let numbers = moments::romberg(walk, precision, &|grid| {
             let mut numbers = moments::lookups(grid)?.to_vec();
-            for &seen in channels {
+            for &quantity in channels {
                 for &k in &powers {
-                    numbers.push(moments::power(grid, seen, k)?);
+                    numbers.push(moments::power(grid, quantity, k)?);
                 }
             }
             if is_joint {
@@ -282,14 +282,15 @@ fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
 
 /// The covariances of neighbouring channels. A particle leaves at one end and after one number of
 /// scatterings: the products of such channels are 0.
-fn covariances(channels: &[Seen], truth: &[Known], found: &RawMoments) -> Vec<Covariance> {
+fn covariances(channels: &[Quantity], truth: &[Known], found: &RawMoments) -> Vec<Covariance> {
     let mut covariances = Vec::new();
     for (first, pair) in channels.windows(2).enumerate() {
         let means = [truth[first].value, truth[first + 1].value];
         let squares = [found.raw[first][1][0], found.raw[first + 1][1][0]];
         let joint = match (pair, found.joint) {
-            ([Seen::Absorbed, _], Some(joint)) => joint,
-            ([Seen::Absorbed, _], None) | ([_, Seen::Absorbed] | [Seen::Flux(_), _], _) => continue,
+            ([Quantity::Absorbed, _], Some(joint)) => joint,
+            ([Quantity::Absorbed, _], None)
+            | ([_, Quantity::Absorbed] | [Quantity::Flux(_), _], _) => continue,
             _ => [[0.0; 2]; 2],
         };
         let [a, b] = means;

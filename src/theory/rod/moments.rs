@@ -17,7 +17,7 @@
 
 use super::grid::{Grid, Importance, Step, Walk};
 use crate::problems::Problem;
-use crate::problems::rod::Seen;
+use crate::problems::rod::Quantity;
 
 /// The powers whose means are found: those of the moments, and the eighth for their tails.
 pub const POWERS: [i32; 5] = [1, 2, 3, 4, 8];
@@ -210,14 +210,16 @@ const BEGINNING: [f64; 2] = [1.0, 0.0];
 const END: [f64; 2] = [0.0, 1.0];
 
 /// `E[X^k]` of a channel.
-pub fn power(grid: &Grid, seen: Seen, k: i32) -> Option<f64> {
-    let worth = match seen {
-        Seen::Reflected => leaving(grid, k, BEGINNING)?,
-        Seen::Transmitted => leaving(grid, k, END)?,
-        Seen::ReflectedBy(order) => by_order(grid, k, BEGINNING, order)?,
-        Seen::TransmittedBy(order) => by_order(grid, k, END, order)?,
-        Seen::Absorbed => score_times(grid, &absorbed, usize::try_from(k).ok()?, None)?.pop()?,
-        Seen::Flux(part) => {
+pub fn power(grid: &Grid, quantity: Quantity, k: i32) -> Option<f64> {
+    let worth = match quantity {
+        Quantity::Reflected => leaving(grid, k, BEGINNING)?,
+        Quantity::Transmitted => leaving(grid, k, END)?,
+        Quantity::ReflectedBy(order) => by_order(grid, k, BEGINNING, order)?,
+        Quantity::TransmittedBy(order) => by_order(grid, k, END, order)?,
+        Quantity::Absorbed => {
+            score_times(grid, &absorbed, usize::try_from(k).ok()?, None)?.pop()?
+        }
+        Quantity::Flux(part) => {
             let flux = move |step: &Step, power: i32| {
                 // σ̂ c = 1/width even where both c and a flight through σ̂ = 0 are infinite.
                 if step.part == part { step.sampling.powi(1 - power) } else { 0.0 }
