@@ -103,7 +103,7 @@ impl Cache {
         let numbers = (planned.draws, planned.fixed, planned.horizon, plan.options.fixed);
         let made_of =
             (&self.program, pack::word(Level::new()), case.case.digest, planned.variation);
-        let drawn_by = (planned.address, planned.places, planned.expect_biased, numbers);
+        let drawn_by = (planned.address, planned.shared, planned.expect_biased, numbers);
         let levels = plan.levels;
         Some(name_hash(&format!("{made_of:?} {drawn_by:?} {predicted:?} {asked:?} {levels:?}")))
     }

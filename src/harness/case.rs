@@ -26,7 +26,6 @@
 //! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
 //! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
 
-use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -73,21 +72,8 @@ impl Case {
     ///
     /// Every mistake in the file.
     pub fn read(source: &Source) -> Result<Self, CaseError> {
-        let faults = RefCell::default();
-        let root = source.parse(&faults);
-        let broken = !faults.borrow().is_empty();
-        let folder = source.folder();
-        let case = Self::from_root(source, &Settings::new(&root, &folder, &faults));
-        let mut faults = faults.into_inner();
-        if broken {
-            // Half a file is missing keys that the other half may hold.
-            faults.retain(|fault| fault.path.is_empty() && fault.help == "this is not TOML");
-        }
-        faults.sort_by_key(|fault| fault.span.start);
-        match case {
-            Some(case) if faults.is_empty() => Ok(Self { digest: name_hash(&source.text), ..case }),
-            _ => Err(CaseError::Faulty { source_text: source.clone(), faults }),
-        }
+        let case = source.read_as(|root| Self::from_root(source, root))?;
+        Ok(Self { digest: name_hash(&source.text), ..case })
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {

@@ -19,7 +19,7 @@ use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::rng::Streams;
 use crate::stats::Tally;
-use crate::stats::gate::{GateSums, SUMS};
+use crate::stats::gate::GateSums;
 
 /// What a block found.
 #[derive(Debug, Clone)]
@@ -39,26 +39,13 @@ pub struct Block {
 /// What a block says to one question.
 #[derive(Debug, Clone)]
 pub enum Answer {
-    /// The sums of ψ, and of y itself.
-    Gate {
-        /// The sums of ψ.
-        psi: [f64; SUMS],
-        /// The sum of y.
-        y: f64,
-    },
+    /// The sums of ψ, and that of y itself.
+    Gate(Box<GateSums>, f64),
     /// The sums of a law over the fixed draws.
     Law(Vec<f64>),
     /// The largest value.
     Largest(f64),
     /// Nothing.
-    Silent,
-}
-
-/// A question's accumulator while the block is drawn.
-enum Absorber {
-    Gate(Box<GateSums>, f64),
-    Law(Vec<f64>),
-    Largest(f64),
     Silent,
 }
 
@@ -135,7 +122,7 @@ struct Drawing<'p> {
     /// How many draws the buffer takes.
     length: u64,
     scratch: Scratch,
-    absorbers: Vec<Absorber>,
+    answers: Vec<Answer>,
     tallies: Vec<Tally>,
     lookups: Tally,
     /// The numbers of its first draw, of the next, and of the first beyond it.
@@ -156,7 +143,7 @@ impl<'p> Drawing<'p> {
             streams: planned.streams(block),
             length: DrawBuffer::length(channels) as u64,
             scratch: Scratch::take(channels),
-            absorbers: planned.questions.iter().map(|q| Absorber::new(&q.kind)).collect(),
+            answers: planned.questions.iter().map(|q| Answer::new(&q.kind)).collect(),
             tallies: vec![Tally::default(); channels],
             lookups: Tally::default(),
             start,
@@ -189,8 +176,8 @@ impl<'p> Drawing<'p> {
         let draws = Batch::new(buffer);
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let first = (self.at - self.start) as usize;
-        for (question, absorber) in self.planned.questions.iter().zip(&mut self.absorbers) {
-            absorber.absorb(&question.kind, &draws, first, is_fixed, y);
+        for (question, answer) in self.planned.questions.iter().zip(&mut self.answers) {
+            answer.absorb(&question.kind, &draws, (first, is_fixed), y);
         }
         if is_fixed {
             let prediction = &self.ready.prediction;
@@ -207,15 +194,18 @@ impl<'p> Drawing<'p> {
     fn close(self, seconds: f64) -> Block {
         #[allow(clippy::cast_possible_truncation)] // below a block's length
         let fixed = self.end.min(self.planned.fixed).saturating_sub(self.start) as usize;
-        let questions = self.planned.questions.iter().zip(self.absorbers);
-        let answers = questions.map(|(q, absorber)| absorber.answer(&q.kind, fixed)).collect();
-        let Self { tallies, lookups, .. } = self;
+        let Self { mut answers, tallies, lookups, .. } = self;
+        for (question, answer) in self.planned.questions.iter().zip(&mut answers) {
+            if let (Kind::Law(law), Answer::Law(sums), 1..) = (&question.kind, answer, fixed) {
+                law.close(fixed, sums);
+            }
+        }
         self.scratch.leave();
         Block { draws: self.end - self.start, tallies, lookups, answers, seconds }
     }
 }
 
-impl Absorber {
+impl Answer {
     fn new(kind: &Kind) -> Self {
         match kind {
             Kind::Scalar(_) => Self::Gate(Box::default(), 0.0),
@@ -229,8 +219,7 @@ impl Absorber {
         &mut self,
         kind: &Kind,
         draws: &Batch,
-        first: usize,
-        is_fixed: bool,
+        (first, is_fixed): (usize, bool),
         y: &mut Vec<f64>,
     ) {
         match (self, kind) {
@@ -259,20 +248,6 @@ impl Absorber {
                 *most = larger(*most, (always.largest)(draws.draws));
             }
             _ => {}
-        }
-    }
-
-    fn answer(self, kind: &Kind, fixed: usize) -> Answer {
-        match (self, kind) {
-            (Self::Gate(sums, y), _) => Answer::Gate { psi: sums.totals(), y },
-            (Self::Law(mut sums), Kind::Law(law)) => {
-                if fixed > 0 {
-                    law.close(fixed, &mut sums);
-                }
-                Answer::Law(sums)
-            }
-            (Self::Largest(most), _) => Answer::Largest(most),
-            _ => Answer::Silent,
         }
     }
 }

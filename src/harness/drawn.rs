@@ -31,7 +31,7 @@ pub struct Drawn {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Total {
     /// Where the gate stands.
-    Gate(Standing),
+    Gate(GateState),
     /// The sums of a law over the fixed draws.
     Law(Vec<Sum>),
     /// The largest value, and the block where it was found first.
@@ -42,7 +42,7 @@ pub enum Total {
 
 /// Where a question of the gate stands.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Standing {
+pub struct GateState {
     /// The sums of ψ.
     pub psi: [Sum; SUMS],
     /// The sum of y.
@@ -73,7 +73,7 @@ impl Drawn {
     #[must_use]
     pub fn new(planned: &Planned) -> Self {
         let totals = planned.questions.iter().map(|question| match &question.kind {
-            Kind::Scalar(_) => Total::Gate(Standing {
+            Kind::Scalar(_) => Total::Gate(GateState {
                 psi: [Sum::default(); SUMS],
                 y: Sum::default(),
                 mean: 0.0,
@@ -99,9 +99,9 @@ impl Drawn {
         self.lookups.merge(&block.lookups);
         for (total, answer) in self.totals.iter_mut().zip(&block.answers) {
             match (total, answer) {
-                (Total::Gate(standing), Answer::Gate { psi, y }) => {
-                    standing.psi.iter_mut().zip(psi).for_each(|(sum, &x)| sum.add(x));
-                    standing.y.add(*y);
+                (Total::Gate(state), Answer::Gate(sums, y)) => {
+                    state.psi.iter_mut().zip(sums.totals()).for_each(|(sum, x)| sum.add(x));
+                    state.y.add(*y);
                 }
                 (Total::Law(sums), Answer::Law(others)) => {
                     sums.iter_mut().zip(others).for_each(|(sum, &x)| sum.add(x));

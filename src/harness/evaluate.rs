@@ -13,7 +13,7 @@
 use rayon::prelude::*;
 
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
-use super::drawn::{Drawn, Draws, Standing, Total};
+use super::drawn::{Drawn, Draws, GateState, Total};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::record::{Finding, GateFinding, Verdict};
 use crate::numeric::sum::Sum;
@@ -89,14 +89,14 @@ fn of_question(
     let expects_bias = question.expects_bias;
     let finding = Finding { expects_bias, ..blank(&question.check, &question.what, channel) };
     Some(match (&question.kind, total) {
-        (Kind::Scalar(scalar), Total::Gate(standing)) => {
+        (Kind::Scalar(scalar), Total::Gate(state)) => {
             let (verdict, reason) = if question.expects_bias {
-                biased(plan, planned, drawn, standing)
+                biased(plan, planned, drawn, state)
             } else {
-                decided(plan, case, question, scalar, standing)
+                decided(plan, case, question, scalar, state)
             };
-            let gate = Some(gate_finding(plan, question, scalar, standing));
-            let block = Some(standing.draws.saturating_sub(1) / BLOCK);
+            let gate = Some(gate_finding(plan, question, scalar, state));
+            let block = Some(state.draws.saturating_sub(1) / BLOCK);
             Finding { gate, block, verdict, reason, ..finding }
         }
         (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
@@ -155,21 +155,21 @@ fn gate_finding(
     plan: &Plan,
     question: &Question,
     scalar: &Scalar,
-    standing: &Standing,
+    state: &GateState,
 ) -> GateFinding {
     let levels = &plan.levels;
     GateFinding {
         tolerance: scalar.design.tolerance,
         variance: scalar.design.variance,
-        mean: standing.mean,
+        mean: state.mean,
         planned: scalar.draws,
-        draws: standing.draws,
-        ln_e: standing.evidence.ln_e,
+        draws: state.draws,
+        ln_e: state.evidence.ln_e,
         ln_e_limit: if question.expects_bias { levels.ln_biased } else { levels.ln_fail },
-        ln_p: standing.evidence.ln_pass,
+        ln_p: state.evidence.ln_pass,
         ln_p_limit: levels.ln_pass,
         needed: scalar.underpowered,
-        is_decided: standing.decision != Decision::Open,
+        is_decided: state.decision != Decision::Open,
     }
 }
 
@@ -178,19 +178,19 @@ fn decided(
     case: &PlannedCase,
     question: &Question,
     scalar: &Scalar,
-    standing: &Standing,
+    state: &GateState,
 ) -> (Verdict, String) {
     let what = &question.what;
-    let evidence = &standing.evidence;
-    match standing.decision {
+    let evidence = &state.evidence;
+    match state.decision {
         Decision::Passed => (Verdict::Pass, String::new()),
         Decision::Failed => {
-            let error = (scalar.design.variance / standing.draws as f64).sqrt();
-            let (off, z) = (standing.mean, standing.mean / error);
+            let error = (scalar.design.variance / state.draws as f64).sqrt();
+            let (off, z) = (state.mean, state.mean / error);
             let reason = format!(
                 "{what} is off by {off:+.2e}, {z:+.1} standard errors (ln E = {:.1} ≥ {:.1} after \
                  {} draws)",
-                evidence.ln_e, plan.levels.ln_fail, standing.draws
+                evidence.ln_e, plan.levels.ln_fail, state.draws
             );
             (Verdict::Fail, reason)
         }
@@ -206,7 +206,7 @@ fn decided(
             let [above, below] = evidence.ln_pass;
             let reason = format!(
                 "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
-                standing.draws, plan.levels.ln_pass
+                state.draws, plan.levels.ln_pass
             );
             (Verdict::Inconclusive, reason)
         }
@@ -220,17 +220,17 @@ fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict {
 }
 
 /// The verdict on a bias that the case declares.
-fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, standing: &Standing) -> (Verdict, String) {
-    let bias = percent(standing.mean);
+fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, state: &GateState) -> (Verdict, String) {
+    let bias = percent(state.mean);
     let was_cut = drawn.draws < planned.draws;
-    match standing.decision {
+    match state.decision {
         Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
         Decision::Open if was_cut => {
-            let reason = format!("the bias is not shown after {} draws", standing.draws);
+            let reason = format!("the bias is not shown after {} draws", state.draws);
             (Verdict::Inconclusive, reason)
         }
         _ => {
-            let (found, limit) = (standing.evidence.ln_e, plan.levels.ln_biased);
+            let (found, limit) = (state.evidence.ln_e, plan.levels.ln_biased);
             let reason = format!("expected a bias, found {bias} (ln E = {found:.1} of {limit:.1})");
             (Verdict::Fail, reason)
         }

@@ -118,8 +118,8 @@ pub struct Planned {
     pub names: Names,
     /// Where its random numbers are.
     pub address: Address,
-    /// Where the places of its collisions are, where it may share their lookups with others.
-    pub places: Option<Address>,
+    /// Where its collisions are, where it may share their lookups with others.
+    pub shared: Option<Address>,
     /// n: how many draws are planned.
     pub draws: u64,
     /// How many of the first draws the p-values and z-scores get.
@@ -155,9 +155,9 @@ impl Planned {
     #[must_use]
     pub fn streams(&self, block: u64) -> Streams {
         let own = (self.find_streams)(Address { block, ..self.address });
-        match self.places {
-            Some(places) => {
-                let shared = (self.find_streams)(Address { block, ..places });
+        match self.shared {
+            Some(shared) => {
+                let shared = (self.find_streams)(Address { block, ..shared });
                 Streams { counts: own.counts, ..shared }
             }
             None => own,
@@ -234,7 +234,7 @@ impl<'a> Plan<'a> {
         self.options.seed = seed;
         for planned in self.cases.iter_mut().flat_map(|case| &mut case.experiments) {
             planned.address.seed = seed;
-            planned.places = planned.places.map(|places| Address { seed, ..places });
+            planned.shared = planned.shared.map(|shared| Address { seed, ..shared });
         }
     }
 
@@ -280,14 +280,14 @@ fn plan_experiment(
     }
     let pilots = case.pilots(options.seed, estimator);
     let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
-    let places = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
-    let places = places.map(|places| addresses::shared(options.seed, &case.name, &places));
+    let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
+    let shared = stretches.map(|on| addresses::shared(options.seed, &case.name, &on));
     Planned {
         estimator,
         variation,
         names,
         address,
-        places,
+        shared,
         draws: most,
         fixed: most,
         horizon: most,

@@ -24,8 +24,8 @@ use crate::stats::gate::Decision;
 /// Blocks drawn between two merges; results do not depend on it.
 const BATCH: usize = 256;
 
-/// An experiment on its way.
-struct Front<'p> {
+/// An experiment that is being drawn.
+struct Running<'p> {
     case: usize,
     index: usize,
     planned: &'p Planned,
@@ -49,50 +49,50 @@ pub fn draw_uncached(plan: &Plan, cache: &Cache, progress: &(dyn Fn(u64) + Sync)
     let begin = Instant::now();
     let expired =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
-    let (mut cases, mut fronts) = begin_all(plan, cache);
+    let (mut cases, mut running) = begin_all(plan, cache);
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
-    while !cut_by_time && fronts.iter().any(|front| !front.is_done) {
+    while !cut_by_time && running.iter().any(|one| !one.is_done) {
         // What others need for their fixed draws is not taken from them.
-        let mut reserved: u64 = fronts.iter().map(Front::reserve).sum();
-        for front in fronts.iter_mut().filter(|front| !front.is_done) {
-            reserved -= front.reserve();
-            if take(&mut budget, front.stage(), reserved) {
-                reserved += front.reserve().saturating_sub(front.stage());
+        let mut reserved: u64 = running.iter().map(Running::reserve).sum();
+        for one in running.iter_mut().filter(|one| !one.is_done) {
+            reserved -= one.reserve();
+            if take(&mut budget, one.stage(), reserved) {
+                reserved += one.reserve().saturating_sub(one.stage());
             } else {
-                (front.is_done, cut_by_budget) = (true, true);
+                (one.is_done, cut_by_budget) = (true, true);
             }
         }
-        for units in units(&fronts).chunks(BATCH) {
+        for units in units(&running).chunks(BATCH) {
             let drawn: Vec<Vec<Option<Block>>> = units
                 .par_iter()
                 .map(|unit| {
-                    let drawn = if expired() { Vec::new() } else { unit.draw(&fronts) };
+                    let drawn = if expired() { Vec::new() } else { unit.draw(&running) };
                     progress(drawn.iter().flatten().map(|block| block.draws).sum());
                     drawn
                 })
                 .collect();
             let drawn = units.iter().zip(drawn).flat_map(|(unit, blocks)| {
                 let blocks = blocks.into_iter().chain(std::iter::repeat_with(|| None));
-                unit.fronts.iter().copied().zip(blocks)
+                unit.running.iter().copied().zip(blocks)
             });
-            for (front, block) in drawn {
+            for (one, block) in drawn {
                 // What comes after a missing block is left out: the first blocks are kept.
                 match block {
-                    Some(block) if !cut_by_time => fronts[front].ahead.push_back(block),
+                    Some(block) if !cut_by_time => running[one].ahead.push_back(block),
                     _ => cut_by_time = true,
                 }
-                fronts[front].merge();
+                running[one].merge();
             }
         }
-        for front in fronts.iter_mut().filter(|front| !front.is_done) {
+        for one in running.iter_mut().filter(|one| !one.is_done) {
             // Blocks drawn ahead of an earlier look may be all that this one waits for.
-            front.merge();
-            front.look(plan);
+            one.merge();
+            one.look(plan);
         }
     }
-    for front in fronts {
-        cases[front.case][front.index] = front.drawn;
+    for one in running {
+        cases[one.case][one.index] = one.drawn;
     }
     for (drawn, planned_case) in cases.iter_mut().zip(&plan.cases) {
         for index in 0..drawn.len() {
@@ -118,11 +118,11 @@ fn take(budget: &mut Option<u64>, draws: u64, reserved: u64) -> bool {
     }
 }
 
-/// What is drawn already, and a front for each experiment that is not.
-fn begin_all<'p>(plan: &'p Plan, cache: &Cache) -> (Vec<Vec<Drawn>>, Vec<Front<'p>>) {
+/// What is drawn already, and those that are still to be drawn.
+fn begin_all<'p>(plan: &'p Plan, cache: &Cache) -> (Vec<Vec<Drawn>>, Vec<Running<'p>>) {
     let mut cases: Vec<Vec<Drawn>> =
         plan.cases.iter().map(|case| vec![Drawn::default(); case.experiments.len()]).collect();
-    let mut fronts = Vec::new();
+    let mut running = Vec::new();
     for (case, planned_case) in plan.cases.iter().enumerate() {
         for (index, planned) in planned_case.experiments.iter().enumerate() {
             if planned.outcome.is_err() || planned_case.twin(index).is_some() {
@@ -132,7 +132,7 @@ fn begin_all<'p>(plan: &'p Plan, cache: &Cache) -> (Vec<Vec<Drawn>>, Vec<Front<'
                 cases[case][index] = drawn;
                 continue;
             }
-            fronts.push(Front {
+            running.push(Running {
                 case,
                 index,
                 planned,
@@ -144,40 +144,40 @@ fn begin_all<'p>(plan: &'p Plan, cache: &Cache) -> (Vec<Vec<Drawn>>, Vec<Front<'
             });
         }
     }
-    (cases, fronts)
+    (cases, running)
 }
 
 /// A block of an experiment, or of several that share their lookups.
 struct Unit {
     block: u64,
-    fronts: Vec<usize>,
+    running: Vec<usize>,
 }
 
 impl Unit {
-    fn draw(&self, fronts: &[Front]) -> Vec<Option<Block>> {
-        let group: Vec<&Planned> = self.fronts.iter().map(|&front| fronts[front].planned).collect();
+    fn draw(&self, running: &[Running]) -> Vec<Option<Block>> {
+        let group: Vec<&Planned> = self.running.iter().map(|&one| running[one].planned).collect();
         draw::blocks(&group, self.block)
     }
 }
 
 /// The blocks up to the next look of every open experiment, block by block so that a time limit
 /// cuts all alike; and further ones while there are too few to keep all threads at work.
-fn units(fronts: &[Front]) -> Vec<Unit> {
+fn units(running: &[Running]) -> Vec<Unit> {
     let enough = 4 * rayon::current_num_threads();
-    let open = || fronts.iter().enumerate().filter(|(_, front)| !front.is_done);
-    let drawn = |front: &Front| front.blocks + front.ahead.len() as u64;
-    let mut until: Vec<u64> = fronts.iter().map(|front| front.look.max(drawn(front))).collect();
+    let open = || running.iter().enumerate().filter(|(_, one)| !one.is_done);
+    let drawn = |one: &Running| one.blocks + one.ahead.len() as u64;
+    let mut until: Vec<u64> = running.iter().map(|one| one.look.max(drawn(one))).collect();
     let blocks = |until: &[u64]| -> Vec<(u64, usize)> {
-        open().flat_map(|(i, front)| (drawn(front)..until[i]).map(move |b| (b, i))).collect()
+        open().flat_map(|(i, one)| (drawn(one)..until[i]).map(move |b| (b, i))).collect()
     };
-    let missing = |until: &[u64]| grouped(fronts, blocks(until)).len();
+    let missing = |until: &[u64]| grouped(running, blocks(until)).len();
     // Only where a look waits for blocks is there anything to draw.
     if missing(&until) > 0 {
         while missing(&until) < enough {
-            let longer: Vec<u64> = fronts
+            let longer: Vec<u64> = running
                 .iter()
                 .zip(&until)
-                .map(|(front, &until)| next_look(until, front.last()))
+                .map(|(one, &until)| next_look(until, one.last()))
                 .collect();
             if longer == until {
                 break;
@@ -185,22 +185,22 @@ fn units(fronts: &[Front]) -> Vec<Unit> {
             until = longer;
         }
     }
-    grouped(fronts, blocks(&until))
+    grouped(running, blocks(&until))
 }
 
 /// The blocks as units of work: those of experiments that share their lookups are one.
-fn grouped(fronts: &[Front], mut blocks: Vec<(u64, usize)>) -> Vec<Unit> {
+fn grouped(running: &[Running], mut blocks: Vec<(u64, usize)>) -> Vec<Unit> {
     let company = |&(block, i): &(u64, usize)| {
-        let front = &fronts[i];
-        let places = front.planned.places.map(|places| (front.case, places.experiment));
-        // Nobody else has this place.
-        (block, places.is_none().then_some(i), places)
+        let one = &running[i];
+        let shared = one.planned.shared.map(|shared| (one.case, shared.experiment));
+        // Nobody else has this address.
+        (block, shared.is_none().then_some(i), shared)
     };
     blocks.sort_by_key(|unit| (company(unit), unit.1));
     let groups = blocks.chunk_by(|a, b| company(a) == company(b));
     let unit = |group: &[(u64, usize)]| Unit {
         block: group[0].0,
-        fronts: group.iter().map(|member| member.1).collect(),
+        running: group.iter().map(|member| member.1).collect(),
     };
     groups.map(unit).collect()
 }
@@ -210,7 +210,7 @@ fn next_look(blocks: u64, last: u64) -> u64 {
     (blocks + 1).max(blocks * 115 / 100).min(last)
 }
 
-impl Front<'_> {
+impl Running<'_> {
     /// The last look.
     fn last(&self) -> u64 {
         self.planned.horizon.div_ceil(BLOCK)
@@ -245,23 +245,23 @@ impl Front<'_> {
         let draws = self.drawn.draws;
         let mut is_open = draws < planned.fixed;
         for (question, total) in planned.questions.iter().zip(&mut self.drawn.totals) {
-            let (Kind::Scalar(scalar), Total::Gate(standing)) = (&question.kind, total) else {
+            let (Kind::Scalar(scalar), Total::Gate(state)) = (&question.kind, total) else {
                 continue;
             };
-            if standing.decision == Decision::Open {
-                let sums = standing.psi.map(|sum| sum.value());
-                standing.mean = standing.y.value() / draws as f64;
-                standing.evidence = scalar.design.evidence(sums, draws as f64);
-                standing.draws = draws;
+            if state.decision == Decision::Open {
+                let sums = state.psi.map(|sum| sum.value());
+                state.mean = state.y.value() / draws as f64;
+                state.evidence = scalar.design.evidence(sums, draws as f64);
+                state.draws = draws;
                 let levels = &plan.levels;
                 let level = if question.expects_bias { levels.ln_biased } else { levels.ln_fail };
-                standing.decision = standing.evidence.decision(level, levels.ln_pass);
-                if standing.decision == Decision::Passed && scalar.underpowered.is_some() {
-                    standing.decision = Decision::Open;
+                state.decision = state.evidence.decision(level, levels.ln_pass);
+                if state.decision == Decision::Passed && scalar.underpowered.is_some() {
+                    state.decision = Decision::Open;
                 }
             }
             let was_promised = scalar.underpowered.is_none() || draws < planned.draws;
-            is_open |= standing.decision == Decision::Open && was_promised;
+            is_open |= state.decision == Decision::Open && was_promised;
         }
         let is_over = draws >= planned.horizon || self.has_failed(plan);
         self.is_done = is_over || (!is_open && !plan.options.fixed);
@@ -274,7 +274,7 @@ impl Front<'_> {
         let both = self.planned.questions.iter().zip(&self.drawn.totals);
         both.filter(|(question, _)| question.check == *name).any(|(question, total)| {
             match (&question.kind, total) {
-                (_, Total::Gate(standing)) => standing.decision == Decision::Failed,
+                (_, Total::Gate(state)) => state.decision == Decision::Failed,
                 (Kind::Always(always), Total::Largest(largest, _)) => {
                     largest.is_nan() || *largest > always.bound
                 }

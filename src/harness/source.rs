@@ -6,10 +6,41 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use toml::de::{DeTable, DeValue};
 
-use crate::catalogue::{Entry, Fault, Node, Value};
+use crate::catalogue::{Entry, Fault, Node, Settings, Value};
 
 /// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
 const TOLD: usize = 50;
+
+/// What is said of a syntax error.
+const NOT_TOML: &str = "this is not TOML";
+
+/// Files that are built into the binary.
+#[derive(Debug, Clone, Copy)]
+pub struct BuiltIn {
+    /// What stands before their names in their paths.
+    pub folder: &'static str,
+    /// Their names with their text.
+    pub files: &'static [(&'static str, &'static str)],
+}
+
+impl BuiltIn {
+    /// All files, in order.
+    #[must_use]
+    pub fn all(self) -> Vec<Source> {
+        self.files.iter().map(|file| self.source(file)).collect()
+    }
+
+    /// The file of a name.
+    #[must_use]
+    pub fn find(self, name: &str) -> Option<Source> {
+        self.files.iter().find(|file| file.0 == name).map(|file| self.source(file))
+    }
+
+    fn source(self, (name, text): &(&str, &str)) -> Source {
+        let path = PathBuf::from(format!("{}{name}.toml", self.folder));
+        Source { name: (*name).to_owned(), path, text: (*text).to_owned() }
+    }
+}
 
 /// The text of a case file and where it came from.
 #[derive(Debug, Clone)]
@@ -121,10 +152,27 @@ impl Source {
         Ok(Self { name, path: path.to_owned(), text })
     }
 
-    /// The folder that file names inside the case start from.
-    #[must_use]
-    pub fn folder(&self) -> PathBuf {
-        self.path.parent().map(Path::to_owned).unwrap_or_default()
+    /// Reads what the text says; `read` records mistakes and answers `None` after one.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read_as<T>(&self, read: impl FnOnce(&Settings) -> Option<T>) -> Result<T, CaseError> {
+        let faults = RefCell::default();
+        let root = self.parse(&faults);
+        let broken = !faults.borrow().is_empty();
+        let folder = self.path.parent().map(Path::to_owned).unwrap_or_default();
+        let found = read(&Settings::new(&root, &folder, &faults));
+        let mut faults = faults.into_inner();
+        if broken {
+            // Half a file is missing keys that the other half may hold.
+            faults.retain(|fault| fault.path.is_empty() && fault.help == NOT_TOML);
+        }
+        faults.sort_by_key(|fault| fault.span.start);
+        match found {
+            Some(found) if faults.is_empty() => Ok(found),
+            _ => Err(CaseError::Faulty { source_text: self.clone(), faults }),
+        }
     }
 
     /// Parses the text; syntax errors are recorded, and what could be read is answered.
@@ -135,7 +183,7 @@ impl Source {
                 span: error.span().unwrap_or_default(),
                 path: String::new(),
                 message: error.message().replace('\n', ", "),
-                help: "this is not TOML".into(),
+                help: NOT_TOML.into(),
             });
         }
         entries(table.get_ref())

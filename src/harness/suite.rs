@@ -1,18 +1,19 @@
 //! The cases that are built into the binary: a choice of those under `cases/`, one line each.
 
-use std::path::PathBuf;
-
-use super::source::Source;
+use super::source::{BuiltIn, Source};
 
 /// Lists the built-in cases by their path below `cases/`, without `.toml`.
 macro_rules! cases {
     ($($name:literal,)*) => {
-        &[$(($name, include_str!(concat!("../../cases/", $name, ".toml")))),*]
+        BuiltIn {
+            folder: "",
+            files: &[$(($name, include_str!(concat!("../../cases/", $name, ".toml")))),*],
+        }
     };
 }
 
 /// The names of the built-in cases with their text.
-const CASES: &[(&str, &str)] = cases![
+const CASES: BuiltIn = cases![
     "transmittance/eq21-overview",
     "transmittance/next-flight",
     "transmittance/negative-extinction",
@@ -58,7 +59,7 @@ const CASES: &[(&str, &str)] = cases![
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.
-const CALIBRATION: &[(&str, &str)] = cases![
+const CALIBRATION: BuiltIn = cases![
     "transmittance/calibration",
     "free-flight/calibration",
     "transmittance-curve/calibration",
@@ -67,26 +68,17 @@ const CALIBRATION: &[(&str, &str)] = cases![
 /// The cases on which the gate itself is tested.
 #[must_use]
 pub fn calibration() -> Vec<Source> {
-    CALIBRATION.iter().map(|&(name, text)| source(name, text)).collect()
+    CALIBRATION.all()
 }
 
 /// Every built-in case, in the order of the suite.
 #[must_use]
 pub fn suite() -> Vec<Source> {
-    CASES.iter().map(|&(name, text)| source(name, text)).collect()
+    CASES.all()
 }
 
 /// The built-in case of a name.
 #[must_use]
 pub fn find(name: &str) -> Option<Source> {
-    CASES
-        .iter()
-        .chain(CALIBRATION)
-        .find(|case| case.0 == name)
-        .map(|&(name, text)| source(name, text))
-}
-
-fn source(name: &str, text: &str) -> Source {
-    let path = PathBuf::from(format!("{name}.toml"));
-    Source { name: name.to_owned(), path, text: text.to_owned() }
+    CASES.find(name).or_else(|| CALIBRATION.find(name))
 }

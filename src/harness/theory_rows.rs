@@ -71,8 +71,8 @@ fn twin(case: &PlannedCase, planned: &Planned) -> Option<String> {
 
 /// How many experiments of the case share an experiment's lookups.
 fn sharing(case: &PlannedCase, planned: &Planned) -> Option<u64> {
-    let places = planned.places?;
-    let all = case.experiments.iter().filter(|other| other.places == Some(places)).count();
+    let shared = planned.shared?;
+    let all = case.experiments.iter().filter(|other| other.shared == Some(shared)).count();
     (all > 1).then_some(all as u64)
 }
 

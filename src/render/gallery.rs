@@ -1,17 +1,19 @@
 //! The pictures that are built into the binary, one line each.
 
-use std::path::PathBuf;
-
 use crate::harness::Source;
+use crate::harness::source::BuiltIn;
 
 macro_rules! pictures {
     ($($name:literal,)*) => {
-        &[$(($name, include_str!(concat!("../../pictures/", $name, ".toml")))),*]
+        BuiltIn {
+            folder: "pictures/",
+            files: &[$(($name, include_str!(concat!("../../pictures/", $name, ".toml")))),*],
+        }
     };
 }
 
-/// The names of the built-in pictures with their text.
-const PICTURES: &[(&str, &str)] = pictures![
+/// The built-in pictures, in the order of the gallery.
+const PICTURES: BuiltIn = pictures![
     "figure-6",
     "figure-7",
     "figure-9",
@@ -24,16 +26,11 @@ const PICTURES: &[(&str, &str)] = pictures![
 /// Every built-in picture, in the order of the gallery.
 #[must_use]
 pub fn gallery() -> Vec<Source> {
-    PICTURES.iter().map(|&(name, text)| source(name, text)).collect()
+    PICTURES.all()
 }
 
 /// The built-in picture of a name.
 #[must_use]
 pub fn find(name: &str) -> Option<Source> {
-    PICTURES.iter().find(|picture| picture.0 == name).map(|&(name, text)| source(name, text))
-}
-
-fn source(name: &str, text: &str) -> Source {
-    let path = PathBuf::from(format!("pictures/{name}.toml"));
-    Source { name: name.to_owned(), path, text: text.to_owned() }
+    PICTURES.find(name)
 }

@@ -38,7 +38,6 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.
 
-use std::cell::RefCell;
 use std::path::Path;
 
 use super::gallery;
@@ -66,21 +65,7 @@ impl Picture {
     ///
     /// Every mistake in the file.
     pub fn read(source: &Source) -> Result<Self, CaseError> {
-        let faults = RefCell::default();
-        let root = source.parse(&faults);
-        let broken = !faults.borrow().is_empty();
-        let folder = source.folder();
-        let picture = Self::from_root(source, &Settings::new(&root, &folder, &faults));
-        let mut faults = faults.into_inner();
-        if broken {
-            // Half a file is missing keys that the other half may hold.
-            faults.retain(|fault| fault.path.is_empty() && fault.help == "this is not TOML");
-        }
-        faults.sort_by_key(|fault| fault.span.start);
-        match picture {
-            Some(picture) if faults.is_empty() => Ok(picture),
-            _ => Err(CaseError::Faulty { source_text: source.clone(), faults }),
-        }
+        source.read_as(|root| Self::from_root(source, root))
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {

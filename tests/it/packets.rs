@@ -266,7 +266,7 @@ fn kernels_without_fused_instructions_are_judged_like_any_other() {
                 std::mem::replace(&mut ready.experiment, Box::new(crate::common::Nothing));
             ready.experiment = Box::new(crate::common::At { experiment, level: Level::baseline() });
             // Each by itself: what is put in its place shares no lookups.
-            planned.places = None;
+            planned.shared = None;
         }
     }
     let draws = trueflight::harness::run::draw(&plan, &|_| {});
