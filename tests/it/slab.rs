@@ -179,9 +179,8 @@ fn adding_and_doubling_resolves_second_moments_like_truths_where_it_is_asked_to(
             let odds = rule.odds(ratio, albedo);
             let [straight, scattered] = odds.moments([1.0 - ratio, albedo * ratio], 2);
             let slice = Slice { flown: thickness * sampling, straight, scattered, score: 0.0 };
-            let light = Light::Collimated(cosine);
-            let incidence = Incidence { light, phase: Phase::Isotropic(Isotropic) };
-            let answer = solve(&incidence, &[slice], Resolution::FINE).expect("finite");
+            let (light, phase) = (Light::Collimated(cosine), Phase::Isotropic(Isotropic));
+            let answer = solve(&phase, &[light], &[slice], Resolution::FINE).expect("finite")[0];
             for (known, expected) in [answer.reflected, answer.transmitted].iter().zip(expected) {
                 let error = (known.value - expected).abs();
                 assert!(error <= known.error && known.error < 1e-10, "{known:?} for {expected}");

@@ -1,6 +1,6 @@
 //! Answers that were worked out before: experiments of one slab share theirs.
 
-use super::{Answer, answer};
+use super::{Answer, answers};
 use crate::numeric::Known;
 use crate::problems::slab::{Incidence, Light};
 use crate::theory::memo::Memo;
@@ -29,6 +29,10 @@ pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer
         albedo: albedo.to_bits(),
     };
     ANSWERS.get(key, || answer(incidence, depth, albedo))
+}
+
+fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
+    answers(&incidence.phase, &[incidence.light], depth, albedo)?.pop()
 }
 
 #[cfg(test)]

@@ -25,7 +25,7 @@ pub mod walk;
 
 use crate::numeric::Known;
 use crate::phase::Phase;
-use crate::problems::slab::{Incidence, Light};
+use crate::problems::slab::Light;
 
 use directions::Directions;
 use layer::{Layer, Slice};
@@ -142,13 +142,8 @@ const THICK: f64 = 5.0;
 /// The most doublings: beyond, a share of the slab is lost in rounding.
 const MOST_DOUBLINGS: f64 = 100.0;
 
-/// What becomes of light in a stack of layers, from above; `None` where a share is infinite.
-pub fn solve(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Answer> {
-    solve_all(&incidence.phase, &[incidence.light], slices, resolution)?.pop()
-}
-
-/// The same for several lights, which share the work.
-pub fn solve_all(
+/// What becomes of lights in a stack of layers, from above; `None` where a share is infinite.
+pub fn solve(
     phase: &Phase,
     lights: &[Light],
     slices: &[Slice],
@@ -182,11 +177,6 @@ pub fn solve_all(
 }
 
 /// The same at one resolution, without error bounds.
-pub fn energy(incidence: &Incidence, slices: &[Slice], resolution: Resolution) -> Option<Energy> {
-    energies(&incidence.phase, &[incidence.light], slices, resolution)?.pop()
-}
-
-/// The same for several lights.
 pub fn energies(
     phase: &Phase,
     lights: &[Light],
@@ -244,14 +234,9 @@ fn stack(directions: &Directions, slices: &[Slice], error: f64) -> Option<Layer>
 
 /// Reflectance and transmittance of a slab of optical depth τ and albedo a; the score is the expected
 /// number of collisions. `None` where they are infinite, which takes an albedo above 1.
-pub fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
-    answers(&incidence.phase, &[incidence.light], depth, albedo)?.pop()
-}
-
-/// The same for several lights.
 pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Option<Vec<Answer>> {
     let slice = Slice { flown: depth.value, straight: 0.0, scattered: albedo, score: 1.0 };
-    let answers = solve_all(phase, lights, &[slice], Resolution::FINE)?;
+    let answers = solve(phase, lights, &[slice], Resolution::FINE)?;
     let blurred = |(answer, light): (Answer, &Light)| {
         // A layer of optical depth δ more meets light from all directions, and changes no share by more
         // than the light that collides in it.

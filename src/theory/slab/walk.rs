@@ -27,8 +27,9 @@
 
 use super::layer::Slice;
 use super::pieces::{Piece, Pieces};
-use super::{Answer, Energy, Incidence, Light, Resolution, energies, energy, solve_all};
+use super::{Answer, Energy, Light, Resolution, energies, solve};
 use crate::numeric::Known;
+use crate::problems::slab::Incidence;
 use crate::theory::moments::not_negative;
 use crate::theory::particle::{Odds, ParticleRule};
 use crate::theory::prediction::Covariance;
@@ -157,7 +158,7 @@ impl Walk {
             pieces.iter().map(|piece| piece.slice(&moments)).collect()
         };
         let exact = |slices: &[Slice]| {
-            let answers = solve_all(phase, lights, slices, Resolution::COARSE)?;
+            let answers = solve(phase, lights, slices, Resolution::COARSE)?;
             Some(answers.iter().map(|answer| [answer.reflected, answer.transmitted]).collect())
         };
         if self.is_tracking() {
@@ -172,7 +173,7 @@ impl Walk {
                     return None;
                 }
                 let [coarse, fine] = cuts.each_ref().map(|cut| layers(cut));
-                let coarse = solve_all(phase, lights, &coarse, Resolution::LAYERED)?;
+                let coarse = solve(phase, lights, &coarse, Resolution::LAYERED)?;
                 let fine = energies(phase, lights, &fine, Resolution::LAYERED)?;
                 let pairs = coarse.into_iter().zip(fine);
                 let both = |(coarse, fine): (Answer, Energy)| {
@@ -216,13 +217,14 @@ impl Walk {
             };
             pieces.iter().map(|piece| piece.slice(at)).collect()
         };
+        let phase = &self.incidence.phase;
         let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
         let law = |(light, answer): (&Light, Answer)| {
             let Known { value: mean, error } = answer.score;
-            let incidence = Incidence { light: *light, ..self.incidence };
             let f = |theta: f64| -> Option<f64> {
                 let slices = slices(theta.exp(), ends);
-                let found = energy(&incidence, &slices, Resolution::LAYERED)?;
+                let lights = std::slice::from_ref(light);
+                let found = energies(phase, lights, &slices, Resolution::LAYERED)?.pop()?;
                 Some((found.reflected + found.transmitted + found.score).ln())
             };
             let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
@@ -231,7 +233,7 @@ impl Walk {
             Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
         };
         let scored = slices(1.0, |_| 1.0);
-        let answers = solve_all(&self.incidence.phase, lights, &scored, Resolution::COARSE);
+        let answers = solve(phase, lights, &scored, Resolution::COARSE);
         lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
     }
 }
