@@ -10,6 +10,7 @@
 
 use rayon::prelude::*;
 
+use super::trial::central;
 use super::{Dice, Effort, Measure, Row};
 use crate::numeric::Wide;
 use crate::numeric::sum::Sum;
@@ -78,12 +79,9 @@ impl Exact {
     /// Mean, variance with `n − 1`, and kurtosis of the `k`s, in 32 digits.
     fn moments(&self, draws: u64) -> [Wide; 3] {
         let n = Wide::from(draws as f64);
-        let [m1, m2, m3, m4] = self.0.map(|sum| whole(sum) / n);
-        let square = m1 * m1;
-        let variance = m2 - square;
-        let fourth = m4 - (m1 * m3).scaled(2) + square * m2 * Wide::from(6.0)
-            - square * square * Wide::from(3.0);
-        [m1, variance * n / (n - Wide::ONE), fourth / (variance * variance)]
+        let raw = self.0.map(|sum| whole(sum) / n);
+        let [variance, fourth] = central(raw, Wide::ONE);
+        [raw[0], variance * n / (n - 1.0), fourth / (variance * variance)]
     }
 }
 
@@ -92,7 +90,7 @@ fn whole(k: i128) -> Wide {
     let high = k as f64;
     #[allow(clippy::cast_possible_truncation)] // a whole number below 2¹²⁷
     let rest = k - high as i128;
-    Wide::from(high) + Wide::from(rest as f64)
+    Wide::from(high) + rest as f64
 }
 
 /// What one thread summed.

@@ -15,8 +15,8 @@ use super::ordinates::{directions, roots, solved_pivoted};
 use super::trial::{Dice, Trial, share};
 use super::{Effort, Row, in_parts};
 use crate::estimators::sphere::BLURRED;
-use crate::numeric::Wide;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Span, Wide};
 use crate::theory::sphere::ball::Ball;
 use crate::theory::sphere::shells::{Centre, Resolution};
 use crate::theory::sphere::{Asked, Lights, answers, point};
@@ -106,14 +106,11 @@ impl Even {
         }
         ends.push(half);
         let mut sum = (-(Wide::from(half).scaled(1))).exp();
-        for pair in ends.windows(2) {
-            for (x, &weight) in rule.nodes.iter().zip(&rule.weights) {
-                let t = pair[0] + (pair[1] - pair[0]) * x;
-                let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));
-                // From both sides of the foot.
-                let seen = (Wide::from(t - half)).exp() + (-Wide::from(t + half)).exp();
-                sum += self.albedo * mean * seen * (weight * (pair[1] - pair[0]));
-            }
+        for (t, weight) in Span::between(&ends).flat_map(|panel| rule.on(panel)) {
+            let mean = self.mean((offset * offset + t * t).sqrt().min(self.radius));
+            // From both sides of the foot.
+            let seen = (Wide::from(t - half)).exp() + (-Wide::from(t + half)).exp();
+            sum += self.albedo * mean * seen * weight;
         }
         sum
     }

@@ -14,7 +14,7 @@ use std::cell::OnceCell;
 
 use super::rods::{moments_of, rod_with, rule};
 use super::series::power;
-use super::trial::{Dice, Trial, central, of_relative, share};
+use super::trial::{Dice, Trial, central, share};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::Wide;
@@ -121,12 +121,8 @@ fn moments(t: &mut Trial) {
         };
         // In units of the mean as it is told, which may have few digits.
         let [second, fourth] = central(raw, Wide::from(known.scale));
-        t.see(row, of_relative(known.relative[0], known.error, second));
-        if known.relative[2].is_finite() {
-            t.see(row + 3, of_relative(known.relative[2], known.error, fourth));
-        } else {
-            t.skip(row + 3);
-        }
+        t.central(row, known.relative[0], known.error, second);
+        t.central(row + 3, known.relative[2], known.error, fourth);
     }
 }
 

@@ -8,10 +8,10 @@
 //! ```
 
 use super::text::homogeneous;
-use super::trial::{Dice, Trial, central, of_relative, share};
+use super::trial::{Dice, Trial, central, share};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
-use crate::numeric::Wide;
+use crate::numeric::{Known, Wide};
 use crate::problems::Rod;
 use crate::problems::rod::{self, Quantity};
 use crate::theory::particle::ParticleRule;
@@ -225,13 +225,11 @@ fn moments(t: &mut Trial) -> Option<()> {
             continue;
         }
         let [variance, fourth] = central(raw, raw[0]);
-        t.see(0, of_relative(moments.relative[0], moments.error, variance));
+        let second = moments.relative[0];
+        t.stated(0, Known::new(second, second.abs() * moments.error), variance);
         // A moment that grids do not resolve says so: there are no digits to compare.
-        if critical(rates[3]) <= 1.002 || !moments.relative[2].is_finite() {
-            t.skip(1);
-        } else {
-            t.see(1, of_relative(moments.relative[2], moments.error, fourth));
-        }
+        let found = if critical(rates[3]) > 1.002 { moments.relative[2] } else { f64::INFINITY };
+        t.central(1, found, moments.error, fourth);
     }
     Some(())
 }

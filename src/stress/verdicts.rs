@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use super::{Effort, Row, text};
 use crate::harness::checks::Kind;
 use crate::harness::record::{Row as Found, Verdict};
-use crate::harness::{Amount, Options, Plan, evaluate, run, verdict};
+use crate::harness::{Amount, Case, Options, Plan, evaluate, run, verdict};
 
 /// The run-level α of each.
 const ALPHA: f64 = 1e-7;
@@ -78,19 +78,19 @@ const WILD: [(&str, &str); 8] = [
     ),
 ];
 
+fn case(problem: &str) -> Option<[Case; 1]> {
+    text::case(&format!("title = \"t\"\n[problem.transmittance]\n{problem}")).map(|case| [case])
+}
+
+fn options(seed: u64, draws: u64) -> Options {
+    Options { seed, draws: Amount::Exactly(draws), alpha: ALPHA, ..Options::default() }
+}
+
 fn judged(problem: &str, seed: u64, draws: u64) -> Vec<Found> {
-    let text = format!("title = \"t\"\n[problem.transmittance]\n{problem}");
-    let Some(case) = text::case(&text) else { return Vec::new() };
-    let options =
-        Options { seed, draws: Amount::Exactly(draws), alpha: ALPHA, ..Options::default() };
-    let plan = Plan::new(std::slice::from_ref(&case), &options);
-    let drawn = run::draw(&plan, &|_| {});
-    verdict::judged(&plan, &drawn, 0.0)
-        .results
-        .cases
-        .into_iter()
-        .flat_map(|case| case.rows)
-        .collect()
+    let Some(cases) = case(problem) else { return Vec::new() };
+    let plan = Plan::new(&cases, &options(seed, draws));
+    let record = verdict::judged(&plan, &run::draw(&plan, &|_| {}), 0.0);
+    record.results.cases.into_iter().flat_map(|case| case.rows).collect()
 }
 
 /// All runs of a list of cases, for so many seeds and two lengths each.
@@ -193,11 +193,8 @@ fn shifted(effort: Effort, seed: u64) -> Row {
 
 /// How many scalars passed although they were moved by their tolerance, and how many there were.
 fn passes(problem: &str, seed: u64, sign: f64) -> Option<[u64; 2]> {
-    let text = format!("title = \"t\"\n[problem.transmittance]\n{problem}");
-    let case = text::case(&text)?;
-    let options =
-        Options { seed, draws: Amount::Exactly(40_000), alpha: ALPHA, ..Options::default() };
-    let mut plan = Plan::new(std::slice::from_ref(&case), &options);
+    let cases = case(problem)?;
+    let mut plan = Plan::new(&cases, &options(seed, 40_000));
     for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
         for question in &mut planned.questions {
             if let Kind::Scalar(scalar) = &mut question.kind {

@@ -16,7 +16,7 @@ use super::peierls::Peierls;
 use super::rods::moments_of;
 use super::slabs::{LIGHTS, lights, phase};
 use super::text;
-use super::trial::{Dice, Trial, central, of_relative};
+use super::trial::{Dice, Trial, central};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
 use crate::numeric::{Known, Wide};
@@ -77,7 +77,7 @@ fn see(t: &mut Trial, found: Option<Moments>, raw: &[Wide]) {
     let exact = central(four, Wide::from(scale));
     for (row, needed, found) in [(0, 2, relative[0]), (1, 4, relative[2])] {
         match (raw.len() >= needed, found.is_finite()) {
-            (true, true) => t.see(row, of_relative(found, error, exact[row])),
+            (true, true) => t.central(row, found, error, exact[row]),
             (false, false) => t.see(row, 0.0),
             _ => t.skip(row),
         }

@@ -97,6 +97,25 @@ pub fn fly<P: Precision>(
     }
 }
 
+/// What comes through a stretch: the weight of ratio tracking, or the chance that delta tracking does.
+#[inline(always)]
+pub fn tracked<P: Precision>(
+    trail: &mut Trail,
+    stretch: [P; 3],
+    is_ratio: bool,
+    ratio: impl Fn(P) -> P,
+) -> (P, f64) {
+    let (mut weight, mut chance) = (P::of(1.0), 1.0);
+    fly(trail, stretch, |t: P| {
+        if is_ratio {
+            weight = weight * (P::of(1.0) - ratio(t));
+        } else {
+            chance *= 1.0 - ratio(t).chance();
+        }
+    });
+    (weight, chance)
+}
+
 /// Sums over walks.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {

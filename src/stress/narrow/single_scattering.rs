@@ -8,7 +8,7 @@
 
 use std::f64::consts::PI;
 
-use super::compare::{Estimator, Spread, Theory, fly};
+use super::compare::{Estimator, Spread, Theory, fly, tracked};
 use super::precision::Precision;
 use super::scene::{FREQUENCY, Scene};
 use super::trail::Trail;
@@ -62,16 +62,8 @@ impl Tracking {
             return (exact(scene, [from, slope, length]), 1.0);
         }
         let path = P::of(1.0 / scene.collisions);
-        let (mut weight, mut chance) = (P::of(1.0), 1.0);
-        fly(trail, [P::of(0.0), length, path], |t: P| {
-            let ratio = scene.extinction(from + slope * t) * path;
-            if self == Self::Ratio {
-                weight = weight * (P::of(1.0) - ratio);
-            } else {
-                chance *= 1.0 - ratio.chance();
-            }
-        });
-        (weight, chance)
+        let ratio = |t: P| scene.extinction(from + slope * t) * path;
+        tracked(trail, [P::of(0.0), length, path], self == Self::Ratio, ratio)
     }
 }
 

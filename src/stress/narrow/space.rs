@@ -8,7 +8,7 @@
 //! `sphere, particle` in front of another sky; `lambertian` with splitting is `furnace` with splitting.
 //! A furnace with the non-terminating rule is left out: where σ̂ ≥ σ_t each draw is 1, without noise.
 
-use super::compare::{Estimator, Theory, fly};
+use super::compare::{Estimator, Theory, tracked};
 use super::place::Place;
 use super::precision::Precision;
 use super::scene::Scene;
@@ -157,15 +157,10 @@ impl Space {
         let cosine = trail.uniform::<P>() * 2.0 - 1.0;
         let direction = Place::of([0.0, 0.0, 1.0]).turned(cosine, trail.uniform::<P>());
         let exit = ball.exit(place, direction);
-        let (mut weight, mut chance) = (P::of(1.0), 1.0);
-        fly(&mut trail.apart(), [P::of(0.0), exit, ball.path], |t: P| {
-            let ratio = ball.extinction(place.plus(direction, t)) * ball.path;
-            if self.sought == Sought::Ratio {
-                weight = weight * (P::of(1.0) - ratio);
-            } else {
-                chance *= 1.0 - ratio.chance();
-            }
-        });
+        let ratio = |t: P| ball.extinction(place.plus(direction, t)) * ball.path;
+        let stretch = [P::of(0.0), exit, ball.path];
+        let is_ratio = self.sought == Sought::Ratio;
+        let (weight, chance) = tracked(&mut trail.apart(), stretch, is_ratio, ratio);
         weight.double() * chance
     }
 
