@@ -159,6 +159,21 @@ fn walk(
     Walk { incidence, albedo, rule, pieces, largest_ratio: most, depth, laws: false }
 }
 
+/// The layers of a walk's k-th moments.
+fn slices(cut: &[Piece], walk: &Walk, k: u32, score: f64) -> Vec<Slice> {
+    let slice = |piece: &Piece| {
+        let [mut straight, mut scattered] = [0.0; 2];
+        for &[share, ratio] in &piece.ratios {
+            let odds = moments_of(walk.rule, Wide::from(ratio), walk.albedo, k);
+            let [q, s] = odds.map(Wide::value);
+            straight += share * q;
+            scattered += share * s;
+        }
+        Slice { flown: piece.flown, straight, scattered, score }
+    };
+    cut.iter().map(slice).collect()
+}
+
 /// One ratio, isotropic scattering: discrete ordinates.
 fn even(t: &mut Trial) {
     let dice = &mut *t.dice;
@@ -207,18 +222,10 @@ fn finer(t: &mut Trial) {
     let most = ratios.iter().copied().fold(0.0, f64::max);
     let (rule, phase, lights) = (rule(dice, most), phase(dice), &lights(dice));
     let thin = depth / ratios.len() as f64;
-    let pieces = Pieces::Exact(ratios.iter().map(|&r| Piece::of(thin / r, r)).collect());
-    let walk = walk(phase, (albedo, rule), pieces, most, depth);
+    let cut: Vec<Piece> = ratios.iter().map(|&r| Piece::of(thin / r, r)).collect();
+    let walk = walk(phase, (albedo, rule), Pieces::Exact(cut.clone()), most, depth);
     let what = format!("{rule:?}, τ = {depth:e}, r = {ratios:?}, a = {albedo:e}, {phase:?}");
-    let of_power = |k: u32| {
-        let slice = |&ratio: &f64| {
-            let [straight, scattered] =
-                moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
-            Slice { flown: thin / ratio, straight, scattered, score: 1.0 }
-        };
-        let slices: Vec<Slice> = ratios.iter().map(slice).collect();
-        slab::energies(&phase, lights, &slices, FINER)
-    };
+    let of_power = |k: u32| slab::energies(&phase, lights, &slices(&cut, &walk, k, 1.0), FINER);
     let leaving = |energy: &Energy| [energy.reflected, energy.transmitted].map(Wide::from);
     let score = |energy: &Energy| Wide::from(energy.score);
     let exact = Exact {
@@ -249,20 +256,13 @@ fn ramps(t: &mut Trial) {
         (0..count).map(layer).collect()
     };
     let cuts = [cut(12), cut(24)];
+    // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
+    let depth = 0.5 * flown * (ends[0] + ends[1]);
+    let walk = walk(phase, (albedo, rule), Pieces::Graded(cuts.clone()), 1.4, depth);
     let of_power = |k: u32| -> Option<Leaving> {
-        let slice = |piece: &Piece| {
-            let [mut straight, mut scattered] = [0.0; 2];
-            for &[share, ratio] in &piece.ratios {
-                let [q, s] = moments_of(rule, Wide::from(ratio), albedo, k).map(Wide::value);
-                straight += share * q;
-                scattered += share * s;
-            }
-            Slice { flown: piece.flown, straight, scattered, score: 0.0 }
-        };
-        let [coarse, fine] = cuts.each_ref().map(|cut| {
-            let slices: Vec<Slice> = cut.iter().map(slice).collect();
-            slab::energies(&phase, lights, &slices, LAYERED)
-        });
+        let [coarse, fine] = cuts
+            .each_ref()
+            .map(|cut| slab::energies(&phase, lights, &slices(cut, &walk, k, 0.0), LAYERED));
         let both = |(coarse, fine): (Energy, Energy)| {
             let sides =
                 [[coarse.reflected, fine.reflected], [coarse.transmitted, fine.transmitted]];
@@ -270,9 +270,6 @@ fn ramps(t: &mut Trial) {
         };
         Some(coarse?.into_iter().zip(fine?).map(both).collect())
     };
-    // Weighted walks would know σ_t alone, and one layer, where r is nowhere above 1.
-    let depth = 0.5 * flown * (ends[0] + ends[1]);
-    let walk = walk(phase, (albedo, rule), Pieces::Graded(cuts.clone()), 1.4, depth);
     let what = format!("{rule:?}, ∫σ̂ = {flown:e}, r = {ends:?}, a = {albedo:e}, {phase:?}");
     let leaving = (1..=4).map_while(of_power).collect();
     compare(t, &walk, lights, &Exact { leaving, collisions: None }, &what);
