@@ -10,6 +10,7 @@
 //! ```
 
 use super::scattering::{field, panels};
+use super::shared_walk::{degree, of_mean};
 use super::trial::{Trial, central};
 use super::{Effort, Row, in_parts};
 use crate::media::{Control, Medium, Piecewise};
@@ -237,7 +238,7 @@ fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
 fn shared(nodes: &[Vec<At>], count: usize) -> [f64; 4] {
     let mut known: Vec<([usize; 4], Vec<Vec<f64>>, f64)> = Vec::new();
     for order in walks::ORDERS {
-        let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
+        let degree = degree(&order);
         let (after, whole) = running(nodes, |at, p, i| {
             let gain = at.extinction * at.source / at.density;
             let term = |m: usize| {
@@ -253,28 +254,5 @@ fn shared(nodes: &[Vec<At>], count: usize) -> [f64; 4] {
         });
         known.push((order, after, whole));
     }
-    // Of n points so many may be all different.
-    let ways = |points: usize| (0..points).map(|i| count as f64 - i as f64).product::<f64>();
-    let of = |degree: usize, points: usize| {
-        let fits = move |(order, ..): &&([usize; 4], Vec<Vec<f64>>, f64)| {
-            let all: usize = (1..5).map(|m| m * order[m - 1]).sum();
-            all == degree && order.iter().sum::<usize>() == points
-        };
-        known.iter().filter(fits)
-    };
-    let partitions = |order: &[usize; 4], degree: usize| {
-        // Set partitions of the factors into blocks of these sizes.
-        let factorial = |n: usize| (1..=n).map(|i| i as f64).product::<f64>();
-        let same = |m: usize| factorial(m).powi(i32::try_from(order[m - 1]).unwrap_or(0));
-        let alike: f64 = (1..5).map(|m| same(m) * factorial(order[m - 1])).product();
-        factorial(degree) / alike
-    };
-    [1, 2, 3, 4].map(|degree| {
-        let kinds =
-            (1..=degree).flat_map(|points| of(degree, points).map(move |one| (points, one)));
-        let sum: f64 = kinds
-            .map(|(points, (order, _, whole))| ways(points) * partitions(order, degree) * whole)
-            .sum();
-        sum / (count as f64).powi(i32::try_from(degree).unwrap_or(0))
-    })
+    of_mean(count, |i| known[i].2)
 }

@@ -69,6 +69,7 @@ pub mod row;
 pub mod scattered;
 pub mod scattering;
 mod series;
+mod shared_walk;
 pub mod slabs;
 pub mod tails;
 mod techniques;

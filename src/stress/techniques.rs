@@ -2,6 +2,7 @@
 
 use super::chains::{Chain, Term};
 use super::series::power;
+use super::shared_walk::{degree, of_mean};
 use crate::numeric::Wide;
 use crate::problems::SingleScattering;
 use crate::theory::raw::{added, poisson};
@@ -209,7 +210,7 @@ impl Case {
         let found = walks::at_points(scene, count, &density);
         let mut known: Vec<usize> = Vec::new();
         for order in walks::ORDERS {
-            let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
+            let degree = degree(&order);
             let terms = (1..5).filter(|&m| order[m - 1] > 0).map(|m| {
                 let mut lower = order;
                 lower[m - 1] -= 1;
@@ -225,24 +226,11 @@ impl Case {
         let flown = self.walk.sampling * self.length;
         let n = count as f64;
         let moments = move |at: &[Wide]| {
-            let of: Vec<Wide> = walks::ORDERS
-                .iter()
-                .zip(&known)
-                .map(|(order, &index)| {
-                    let points: usize = order.iter().sum();
-                    let degree: usize = (1..5).map(|m| m * order[m - 1]).sum();
-                    at[index] * power(scattered, degree) * power(at[norm], degree - points)
-                })
-                .collect();
-            let two = n * (n - 1.0);
-            let (three, four) = (two * (n - 2.0), two * (n - 2.0) * (n - 3.0));
-            let third = n * of[3] + 3.0 * two * of[4] + three * of[5];
-            let fourth = n * of[6]
-                + two * (of[7].scaled(2) + 3.0 * of[8])
-                + 6.0 * three * of[9]
-                + four * of[10];
-            let sums = [n * of[0], n * of[1] + two * of[2], third, fourth];
-            std::array::from_fn(|k| sums[k] / power(Wide::from(n), k + 1))
+            of_mean(count, |i| {
+                let order = &walks::ORDERS[i];
+                let (k, points) = (degree(order), order.iter().sum::<usize>());
+                at[known[i]] * power(scattered, k) * power(at[norm], k - points)
+            })
         };
         Wanted {
             name: "shared walk",
