@@ -5,7 +5,7 @@ use std::ops::{Div, Mul};
 
 use crate::theory::single::walks::ORDERS;
 
-/// The factors of `A₁^{n₁} A₂^{n₂} …`, A_m to the power m.
+/// The factors of `A₁^{n₁} A₂^{n₂} …`, `A_m` to the power m.
 pub(super) fn degree(order: &[usize; 4]) -> usize {
     (1..5).map(|m| m * order[m - 1]).sum()
 }
