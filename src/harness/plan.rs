@@ -17,7 +17,7 @@ use super::case::Case;
 use super::checks::{self, Kind, Pilot, Question, Scalar, Subject};
 use super::names::Names;
 use super::options::Options;
-use super::ready::{Prepared, Ready};
+use super::ready::Ready;
 use super::sweep::Variation;
 use crate::estimators::{DrawBuffer, Order, Refusal};
 use crate::numeric::pack::WIDTH;
@@ -279,7 +279,7 @@ fn plan_experiment(
         names.estimator = format!("{} #{}", names.estimator, twins + 1);
     }
     let pilots = case.pilots(options.seed, estimator);
-    let Prepared { outcome, expect_biased } = case.scenario.prepare(estimator, variation, pilots);
+    let outcome = case.scenario.prepare(estimator, variation, pilots);
     let stretches = outcome.as_ref().ok().and_then(|ready| ready.experiment.even_places());
     let shared = stretches.map(|on| addresses::shared(options.seed, &case.name, &on));
     Planned {
@@ -291,7 +291,7 @@ fn plan_experiment(
         draws: most,
         fixed: most,
         horizon: most,
-        expect_biased,
+        expect_biased: case.scenario.expects_bias(estimator),
         outcome,
         questions: Vec::new(),
         find_streams: Address::streams,

@@ -12,14 +12,6 @@ pub struct Ready {
     pub prediction: Prediction,
 }
 
-/// An experiment that can be drawn, or the reason why not.
-pub struct Prepared {
-    /// The experiment and what theory says of it.
-    pub outcome: Result<Ready, Refusal>,
-    /// Whether the case declares it biased.
-    pub expect_biased: bool,
-}
-
 /// Below this transmittance the ratio of a draw to the truth is no longer a double.
 pub const FAINTEST: f64 = 1e-300;
 /// More lookups than this in one draw are a mistake in the case, not an experiment.

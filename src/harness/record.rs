@@ -115,6 +115,15 @@ pub struct CaseRecord {
     pub anatomy: Option<Anatomy>,
 }
 
+impl CaseRecord {
+    /// Whether a row is the first of its experiment; what is refused has one row only.
+    #[must_use]
+    pub fn begins_experiment(&self, row: usize) -> bool {
+        let stream = |row: usize| self.rows[row].stream;
+        row == 0 || stream(row).is_none() || stream(row - 1) != stream(row)
+    }
+}
+
 /// One experiment (one estimator at one sweep point), one channel of its value.
 #[derive(Debug, Clone, Default, Serialize)]
 pub struct Row {

@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::estimator::{Defaults, Estimators, ParsedEstimator};
+use super::estimator::{Defaults, Estimators};
 use super::names::Names;
 use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
-use super::ready::{Prepared, refuse_what_cannot_be_computed};
+use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
 use crate::catalogue::Settings;
 use crate::estimators::{Experiment, Order, Portrait, Refusal, Site, controls, sampling};
@@ -112,16 +112,27 @@ impl Scenario {
         Names { estimator, sampling, sampling_kind, control, alias }
     }
 
-    /// Prepares an experiment; pilot rays find their random numbers at `address`.
+    /// Whether the case declares an estimator biased.
     #[must_use]
-    pub fn prepare(&self, estimator: usize, variation: Variation, address: Address) -> Prepared {
-        let ParsedEstimator { expect_biased, .. } = self.estimators.list[estimator];
-        let order = self.estimators.list[estimator].order();
-        let outcome = self
-            .parts(estimator, variation, None, address)
-            .and_then(|parts| self.problem.prepare(estimator, parts, order, expect_biased))
-            .and_then(refuse_what_cannot_be_computed);
-        Prepared { outcome, expect_biased }
+    pub fn expects_bias(&self, estimator: usize) -> bool {
+        self.estimators.list[estimator].expect_biased
+    }
+
+    /// Prepares an experiment; pilot rays find their random numbers at `address`.
+    ///
+    /// # Errors
+    ///
+    /// Why it cannot be drawn.
+    pub fn prepare(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+    ) -> Result<Ready, Refusal> {
+        let parts = self.parts(estimator, variation, None, address)?;
+        let parsed = &self.estimators.list[estimator];
+        let ready = self.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
+        refuse_what_cannot_be_computed(ready)
     }
 
     /// What theory says of an experiment, with `what_if` of that constant σ̂ in place of its own;

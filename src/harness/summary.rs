@@ -42,11 +42,10 @@ fn close(gate: &mut Gate, cases: &[CaseRecord]) {
 /// The scalars of a case with the row that they stand in; those of the whole experiment are said
 /// once, in the first of its rows.
 fn scalars(case: &CaseRecord) -> impl Iterator<Item = (&Row, &Finding)> {
-    let first = |i: usize, row: &Row| i == 0 || case.rows[i - 1].stream != row.stream;
     // What was drawn once is told once.
     let own = case.rows.iter().enumerate().filter(|(_, row)| row.same_as.is_empty());
     own.flat_map(move |(i, row)| {
-        let is_first = first(i, row);
+        let is_first = case.begins_experiment(i);
         let own = move |finding: &&Finding| {
             let is_whole = finding.channel.is_empty();
             finding.gate.is_some() && !finding.expects_bias && (is_first || !is_whole)

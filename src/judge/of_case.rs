@@ -33,7 +33,7 @@ impl Claim {
         let variation = variation(case, index, &label, choice.swept)?;
         let pilots = case.pilots(choice.seed, index);
         let prepared = case.scenario.prepare(index, variation, pilots);
-        let Ready { prediction, .. } = prepared.outcome.map_err(|refusal| {
+        let Ready { prediction, .. } = prepared.map_err(|refusal| {
             let why = refusal.to_string();
             ClaimError::Refused { case: case.name.clone(), estimator: label, why }
         })?;

@@ -68,10 +68,8 @@ fn columns<'a>() -> Vec<Column<Answer<'a>>> {
 ///
 /// Where an encoder or a painter gives up.
 pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
-    let rows = joined(record);
-    let answers = rows.iter().enumerate().flat_map(|(i, &of)| {
-        let is_first = i == 0 || rows[i - 1].row.stream != of.row.stream;
-        let own = move |found: &&Finding| is_first || !found.channel.is_empty();
+    let answers = joined(record).into_iter().flat_map(|of| {
+        let own = move |found: &&Finding| of.is_first || !found.channel.is_empty();
         of.row.findings.iter().filter(own).map(move |found| Answer { of, found })
     });
     Ok(vec![columns::artifact("checks.csv", &columns(), answers)?])

@@ -30,7 +30,7 @@ pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
             if row.verdict != Some(verdict) {
                 continue;
             }
-            let is_first = i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream;
+            let is_first = case.begins_experiment(i);
             let findings = of_row(case, row, seed);
             failures.extend(findings.into_iter().filter(|failure| {
                 is_first || failure.finding.is_none_or(|finding| !finding.channel.is_empty())

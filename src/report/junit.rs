@@ -68,7 +68,7 @@ fn suite(
     }
     let mut whole = Duration::ZERO;
     for (i, row) in case.rows.iter().enumerate() {
-        let is_first = i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream;
+        let is_first = case.begins_experiment(i);
         let time = seconds.get(i).copied().flatten().filter(|_| is_first);
         let time = time.map_or(Duration::ZERO, duration);
         whole = whole.saturating_add(time);

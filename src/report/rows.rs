@@ -14,6 +14,8 @@ pub struct JoinedRow<'a> {
     pub case: &'a CaseRecord,
     /// The row.
     pub row: &'a Row,
+    /// Whether it is the first of its experiment.
+    pub is_first: bool,
     /// The run's seed.
     pub seed: u64,
     /// Processor seconds of the experiment's drawing.
@@ -41,7 +43,8 @@ pub fn joined(record: &Record) -> Vec<JoinedRow<'_>> {
             let seconds = record.timing.rows.get(c).and_then(|rows| *rows.get(r)?);
             let reused = record.timing.reused.get(c).and_then(|rows| rows.get(r));
             let is_reused = reused.copied().unwrap_or_default();
-            rows.push(JoinedRow { case, row, seed, seconds, is_reused });
+            let is_first = case.begins_experiment(r);
+            rows.push(JoinedRow { case, row, is_first, seed, seconds, is_reused });
         }
     }
     rows

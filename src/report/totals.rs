@@ -31,9 +31,7 @@ pub fn words(case: &CaseRecord) -> String {
 /// How many draws a case took; the rows of one experiment share theirs.
 #[must_use]
 pub fn draws(case: &CaseRecord) -> String {
-    let own = case.rows.iter().enumerate().filter(|(i, row)| {
-        *i == 0 || row.stream.is_none() || case.rows[i - 1].stream != row.stream
-    });
+    let own = case.rows.iter().enumerate().filter(|(i, _)| case.begins_experiment(*i));
     count(own.filter_map(|(_, row)| row.drawn).sum())
 }
 

@@ -84,7 +84,7 @@ impl Baseline {
         for (c, case) in results.cases.iter().enumerate() {
             let digest = format!("{:016x}", digest(&case.name).unwrap_or(0));
             for (r, row) in case.rows.iter().enumerate().filter(|(_, row)| row.drawn.is_some()) {
-                let is_first = r == 0 || case.rows[r - 1].stream != row.stream;
+                let is_first = case.begins_experiment(r);
                 let seconds = record.timing.rows.get(c).and_then(|rows| *rows.get(r)?);
                 // What shares its lookups takes a time that depends on its company.
                 let seconds = seconds.filter(|_| is_first && row.sharing.is_none());

@@ -170,7 +170,7 @@ const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 fn stated(text: &str, channel: &str) -> Theory {
     let nothing = Theory { truth: None, variance: None, spread: Spread::Seen };
     let prepared = text::case(text).map(|case| Arc::new(case).scenario.prepare(0, None, NOWHERE));
-    let Some(Ok(ready)) = prepared.map(|prepared| prepared.outcome) else { return nothing };
+    let Some(Ok(ready)) = prepared else { return nothing };
     let found = ready.prediction.channels.iter().find(|found| found.name == channel);
     let Some(found) = found else { return nothing };
     let truth = found.truth.value;
