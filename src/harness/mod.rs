@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! words       source  sweep  names  filter  options  addresses  normality  suite
-//! case        ready  problem  estimator  scenario  case
+//! case        ready  estimator  problem  scenario  case
 //! plan        checks  plan  mutation
 //! draws       draw  drawn  cache  run
 //! record      baseline/{file, comparison}  plot_data  record

@@ -167,15 +167,15 @@ fn footnotes(
         }
     }
     for row in case.rows.iter().filter(|row| !row.same_as.is_empty()) {
-        let places = views::places(case, &[row], labels);
-        let at = if places.is_empty() { places } else { format!(" ({places})") };
+        let positions = views::positions(case, &[row], labels);
+        let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
         let (this, other) = (&row.estimator, &row.same_as);
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
-        let places = views::places(case, &rows, labels);
-        let at = if places.is_empty() { places } else { format!(" ({places})") };
+        let positions = views::positions(case, &rows, labels);
+        let at = if positions.is_empty() { positions } else { format!(" ({positions})") };
         let word = if status.is_empty() { "note" } else { &status };
         let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
         pen.note(text, &note, (word, views::status(row, view).paint));

@@ -42,7 +42,27 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
         ("only in the baseline", &comparison.missing),
         ("not compared, the case was rewritten", &comparison.rewritten),
     ];
-    all.into_iter().map(|(why, ids)| (why, &ids[..])).filter(|(_, ids)| !ids.is_empty()).collect()
+    not_empty(all)
+}
+
+/// The lists of experiments that are not empty, each with its reason.
+pub(super) fn not_empty<'a>(
+    lists: impl IntoIterator<Item = (&'static str, &'a Vec<String>)>,
+) -> Vec<(&'static str, &'a [String])> {
+    let lists = lists.into_iter().filter(|(_, ids)| !ids.is_empty());
+    lists.map(|(why, ids)| (why, &ids[..])).collect()
+}
+
+/// How long lists of experiments are, each with its reason.
+pub(super) fn counts(lists: &[(&'static str, &[String])]) -> String {
+    let counts: Vec<_> = lists.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
+    counts.join("; ")
+}
+
+/// What is said at the end: that nothing was compared, or that nothing changed.
+pub(super) fn ending(nothing: Option<String>, has_changes: bool) -> Option<String> {
+    let same = (!has_changes).then(|| "no change in what was compared".to_owned());
+    nothing.or(same)
 }
 
 /// A list of experiments, cut where it is long.
@@ -58,28 +78,22 @@ pub(super) fn listed(why: &str, ids: &[String]) -> String {
 /// Why nothing was compared, where that is so.
 #[must_use]
 pub fn nothing(comparison: &Comparison) -> Option<String> {
-    let counts = || {
-        let counts = left_out(comparison);
-        let counts: Vec<_> =
-            counts.iter().map(|(why, ids)| format!("{why} ({})", ids.len())).collect();
-        if counts.is_empty() {
-            "no experiments on either side".to_owned()
-        } else {
-            counts.join("; ")
-        }
-    };
-    comparison.is_empty().then(|| format!("nothing was compared: {}", counts()))
+    comparison.is_empty().then(|| {
+        let counts = counts(&left_out(comparison));
+        let why = if counts.is_empty() { "no experiments on either side" } else { &counts };
+        format!("nothing was compared: {why}")
+    })
 }
 
 /// Why no time was compared, where that is so.
 #[must_use]
 pub fn no_times(comparison: &Comparison) -> Option<String> {
     let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
-    let counts = || {
-        let counts = left_out(comparison).into_iter().filter(|(why, _)| is_about_all(why));
-        counts.map(|(why, ids)| format!("{why} ({})", ids.len())).collect::<Vec<_>>().join("; ")
-    };
-    (comparison.times == 0).then(|| format!("no time was compared: {}", counts()))
+    (comparison.times == 0).then(|| {
+        let mut lists = left_out(comparison);
+        lists.retain(|(why, _)| is_about_all(why));
+        format!("no time was compared: {}", counts(&lists))
+    })
 }
 
 /// What was compared, how, and what was left out.
@@ -107,11 +121,8 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
         }
     });
     remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
-    if let Some(nothing) = nothing(comparison) {
-        remarks.push(nothing);
-    } else if comparison.changes.is_empty() && comparison.drifts.is_empty() {
-        remarks.push("no change in what was compared".to_owned());
-    }
+    let has_changes = !(comparison.changes.is_empty() && comparison.drifts.is_empty());
+    remarks.extend(ending(nothing(comparison), has_changes));
     remarks
 }
 

@@ -23,7 +23,7 @@ impl Labels {
 
     /// Of the σ̂ and the swept values of all rows.
     pub fn new(values: impl Iterator<Item = Option<f64>>) -> Self {
-        Self { digits: telling(values.flatten().collect()) }
+        Self { digits: distinct_digits(values.flatten().collect()) }
     }
 
     /// One of the values.
@@ -34,7 +34,7 @@ impl Labels {
 }
 
 /// The fewest digits in which different values are printed differently.
-fn telling(mut values: Vec<f64>) -> usize {
+fn distinct_digits(mut values: Vec<f64>) -> usize {
     values.sort_by(f64::total_cmp);
     values.dedup();
     let is_enough = |digits: &usize| {

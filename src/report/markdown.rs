@@ -37,10 +37,10 @@ pub fn text(record: &Record) -> String {
         let _ = writeln!(
             text,
             "{}\n",
-            suspects.iter().map(|s| inert(s)).collect::<Vec<_>>().join("; ")
+            suspects.iter().map(|s| escaped(s)).collect::<Vec<_>>().join("; ")
         );
     }
-    let facts: Vec<String> = totals::control(record).iter().map(|fact| inert(fact)).collect();
+    let facts: Vec<String> = totals::control(record).iter().map(|fact| escaped(fact)).collect();
     let _ = writeln!(text, "{}", facts.join(" · "));
     text
 }
@@ -59,7 +59,7 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
             failure.place(),
             failure.reason().to_owned(),
         ];
-        let _ = writeln!(text, "| {} |", cells.map(|cell| inert(&cell)).join(" | "));
+        let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
     }
     more(text, failures.len());
     let mut commands: Vec<&str> = Vec::new();
@@ -77,17 +77,17 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
 
 /// What changed since a stored run.
 fn changed(text: &mut String, comparison: &Comparison) {
-    let _ = writeln!(text, "### Since baseline {}\n", inert(&comparison.name));
+    let _ = writeln!(text, "### Since baseline {}\n", escaped(&comparison.name));
     let all = diff::all(comparison);
     for change in all.iter().take(MOST) {
         let word = if change.is_worse { "**regression**" } else { "improvement" };
-        let _ = writeln!(text, "- {word} {}", inert(&change.line()));
+        let _ = writeln!(text, "- {word} {}", escaped(&change.line()));
     }
     more(text, all.len());
     if !all.is_empty() {
         text.push('\n');
     }
-    let remarks: Vec<String> = diff::remarks(comparison).iter().map(|r| inert(r)).collect();
+    let remarks: Vec<String> = diff::remarks(comparison).iter().map(|r| escaped(r)).collect();
     let _ = writeln!(text, "{}\n", remarks.join(" · "));
 }
 
@@ -106,13 +106,13 @@ fn cases(text: &mut String, cases: &[CaseRecord]) {
     for case in cases {
         let bias = case.visible_bias.map(range).unwrap_or_default();
         let cells = [case.name.clone(), totals::words(case), totals::draws(case), bias];
-        let _ = writeln!(text, "| {} |", cells.map(|cell| inert(&cell)).join(" | "));
+        let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
     }
     text.push('\n');
 }
 
 /// The text without anything that Markdown would take for markup, on one line.
-fn inert(text: &str) -> String {
+fn escaped(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     for c in text.chars() {
         match c {
@@ -132,6 +132,6 @@ mod tests {
 
     #[test]
     fn words_stay_words() {
-        assert_eq!(inert("a|b\n<c> *d*"), "a\\|b \\<c\\> \\*d\\*");
+        assert_eq!(escaped("a|b\n<c> *d*"), "a\\|b \\<c\\> \\*d\\*");
     }
 }

@@ -8,7 +8,7 @@
 //! A baseline that is missing, broken or of another form is an error; a file is written under a
 //! temporary name and renamed.
 //!
-//! From bottom to top: [`file`], [`comparison`], [`stored`], [`scope`], [`compare`](mod@compare); the
+//! From bottom to top: [`file`](mod@file), [`comparison`], [`stored`], [`scope`], [`compare`](mod@compare); the
 //! record of a run stands between the second and the third.
 
 pub mod compare;

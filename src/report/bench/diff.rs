@@ -2,7 +2,7 @@
 
 use crate::bench::comparison::{Change, Comparison};
 use crate::bench::spread::Spread;
-use crate::report::diff::listed;
+use crate::report::diff::{counts, ending, listed, not_empty};
 use crate::report::number::{fixed, short};
 
 /// What was compared, and how.
@@ -17,33 +17,25 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
     if let Some([before, now]) = &comparison.levels {
         remarks.push(format!("the vector hardware differs: {before} then, {now} now"));
     }
-    remarks.extend(left_out(comparison).map(|(why, ids)| listed(why, ids)));
-    if let Some(nothing) = nothing(comparison) {
-        remarks.push(nothing);
-    } else if comparison.changes.is_empty() {
-        remarks.push("no change in what was compared".to_owned());
-    }
+    remarks.extend(left_out(comparison).into_iter().map(|(why, ids)| listed(why, ids)));
+    remarks.extend(ending(nothing(comparison), !comparison.changes.is_empty()));
     remarks
 }
 
 /// What was left out, each with its reason and the experiments.
-fn left_out(comparison: &Comparison) -> impl Iterator<Item = (&'static str, &[String])> {
-    let all = [
+fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
+    not_empty([
         ("not in the baseline", &comparison.added),
         ("only in the baseline", &comparison.missing),
         ("not compared, the case was rewritten", &comparison.rewritten),
-    ];
-    all.into_iter().map(|(why, ids)| (why, &ids[..])).filter(|(_, ids)| !ids.is_empty())
+    ])
 }
 
 /// Why nothing was compared, where that is so.
 #[must_use]
 pub fn nothing(comparison: &Comparison) -> Option<String> {
-    let counts = || {
-        let counts = left_out(comparison).map(|(why, ids)| format!("{why} ({})", ids.len()));
-        counts.collect::<Vec<_>>().join("; ")
-    };
-    comparison.is_empty().then(|| format!("nothing was compared: {}", counts()))
+    let is_empty = comparison.is_empty();
+    is_empty.then(|| format!("nothing was compared: {}", counts(&left_out(comparison))))
 }
 
 /// What changed, what became slower first: whether it did, and the numbers.

@@ -130,7 +130,7 @@ pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> 
 
 /// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
 #[must_use]
-pub fn places(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
+pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
     let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(labels.text(row.swept?))).collect();
     let mut channels: Vec<_> = rows.iter().map(|row| row.channel.clone()).collect();
     channels.retain(|channel| !channel.is_empty());

@@ -60,8 +60,8 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     let full = width - 2.0 * GAP;
     let title = fit(face, &record.title, 16.0, full);
     sheet.text([GAP, 22.0], title, 16.0, DARK, Align::Start);
-    let told = fit(face, &told(record), LETTER, full);
-    sheet.text([GAP, 44.0], told, LETTER, GREY, Align::Start);
+    let facts = fit(face, &facts(record), LETTER, full);
+    sheet.text([GAP, 44.0], facts, LETTER, GREY, Align::Start);
     for number in 0..count {
         let (row, column) = (number / across, number % across);
         let (left, top) = (GAP + column as f64 * step, head + row as f64 * band);
@@ -76,7 +76,7 @@ fn compose(record: &PictureRecord, face: &Typeface) -> Sheet {
     sheet
 }
 
-fn told(record: &PictureRecord) -> String {
+fn facts(record: &PictureRecord) -> String {
     let [columns, rows] = record.size;
     format!(
         "{} in {}, {columns} × {rows}; {} lookups for each of {} pixels that the volume covers; \
