@@ -9,14 +9,15 @@
 //! ```text
 //! words       source  sweep  names  filter  options  addresses  normality  suite
 //! case        ready  estimator  problem  scenario  case
-//! plan        checks  plan  mutation
+//! plan        checks  levels  plan  mutation
 //! draws       draw  drawn  cache  run
 //! record      baseline/{file, comparison}  plot_data  record
-//! verdict     evaluate  theory_rows  curves  summary  verdict
+//! verdict     qualify  evaluate  theory_rows  measured  repeat  anatomy  curves  summary  verdict
 //! baselines   baseline/{stored, scope, compare}
 //! ```
 
 pub mod addresses;
+mod anatomy;
 pub mod baseline;
 pub mod cache;
 pub mod case;
@@ -27,6 +28,8 @@ pub mod drawn;
 pub mod estimator;
 pub mod evaluate;
 pub mod filter;
+pub mod levels;
+mod measured;
 pub mod mutation;
 pub mod names;
 pub mod normality;
@@ -34,8 +37,10 @@ pub mod options;
 pub mod plan;
 mod plot_data;
 pub mod problem;
+pub mod qualify;
 pub mod ready;
 pub mod record;
+mod repeat;
 pub mod run;
 pub mod scenario;
 pub mod source;

@@ -15,6 +15,7 @@ pub use crate::stats::verdict::MISS;
 use super::addresses;
 use super::case::Case;
 use super::checks::{self, Kind, Pilot, Question, Scalar, Subject};
+use super::levels::Levels;
 use super::names::Names;
 use super::options::Options;
 use super::ready::Ready;
@@ -22,51 +23,12 @@ use super::sweep::Variation;
 use crate::estimators::{DrawBuffer, Order, Refusal};
 use crate::numeric::pack::WIDTH;
 use crate::rng::{Address, PILOT, Streams};
-use crate::stats::{gate, normal};
+use crate::stats::gate;
 
 pub use super::addresses::BLOCK;
 
-/// The share of the error rate that goes to tests of whole laws.
-const LAW_SHARE: f64 = 0.2;
 /// Draws that estimate a variance where theory has none.
 const PILOT_DRAWS: usize = 1 << 16;
-
-/// The levels that the run's questions share, fixed before the first draw.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Levels {
-    /// How many scalars go through the gate.
-    pub scalars: usize,
-    /// How many p-values there are.
-    pub laws: usize,
-    /// How many experiments are declared biased: they have an α of their own.
-    pub biased: usize,
-    /// A scalar fails at `ln E ≥ ln(K/(0.8 α))`.
-    pub ln_fail: f64,
-    /// A declared bias is shown at `ln E ≥ ln(K_biased/α)`.
-    pub ln_biased: f64,
-    /// A scalar passes at `ln P± ≥ ln(1/β)`.
-    pub ln_pass: f64,
-    /// What the p-values share, by Holm.
-    pub law_alpha: f64,
-    /// The z-score that the gate's level corresponds to, for plots.
-    pub z: f64,
-}
-
-impl Levels {
-    fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
-        let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
-        Self {
-            scalars,
-            laws,
-            biased,
-            ln_fail: -share.ln(),
-            ln_biased: (biased.max(1) as f64 / alpha).ln(),
-            ln_pass: -MISS.ln(),
-            law_alpha: alpha * LAW_SHARE,
-            z: normal::two_sided(share),
-        }
-    }
-}
 
 /// A run, ready to draw.
 pub struct Plan<'a> {

@@ -1,7 +1,7 @@
 //! What a run comes to: the mean e-value, the e-BH list, the margins, and, for each case, the biases
 //! that it could have seen and how soon it was decided.
 
-use super::evaluate::ASSUMED;
+use super::qualify::ASSUMED;
 use super::record::{CaseRecord, Finding, Gate, Results, Row, Suspect, Verdict};
 use crate::stats::gate::TYPICAL;
 use crate::stats::multiplicity;

@@ -3,19 +3,17 @@
 use fearless_simd::Level;
 use rayon::prelude::*;
 
+use super::anatomy::anatomy;
 use super::drawn::{Drawn, Draws};
-use super::normality::{Tails, needed};
-use super::options::Options;
+use super::measured::{measure, measure_lookups, not_normal};
 use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
-    Anatomy, CaseRecord, Finding, Gate, MeasuredPoint, Record, Results, Row, SCHEMA, Timing,
-    Verdict,
+    Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Timing, Verdict,
 };
-use super::theory_rows::{finite, theory_rows};
-use super::{curves, evaluate, suite, summary};
+use super::repeat::command;
+use super::theory_rows::theory_rows;
+use super::{curves, evaluate, summary};
 use crate::numeric::pack;
-use crate::stats::Tally;
-use crate::theory::{Channel, Prediction};
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
 #[must_use]
@@ -203,101 +201,6 @@ fn drawn_rows(
     rows
 }
 
-/// Mean and variance of the fixed draws, and their z-scores.
-fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
-    let n = tally.draws as f64;
-    let unit = channel.truth.value;
-    let moments = tally.moments();
-    row.draws = Some(tally.draws);
-    row.mean = finite(moments.map(|m| channel.mean.value + m.mean * unit));
-    row.variance = finite(moments.and_then(|m| m.variance).map(|v| v * unit * unit));
-    row.standard_error = row.variance.map(|v| (v / n).sqrt());
-    let Some(predicted) = channel.moments.filter(|m| m.relative[0] > CERTAIN) else { return };
-    row.variance_deviation = finite(
-        predicted.spread_of_sample_variance(n).map(|s| s.max(0.0).sqrt() * predicted.variance()),
-    );
-    let spread = (predicted.variance() / n).sqrt();
-    row.z_mean = finite(row.mean.map(|mean| (mean - channel.truth.value) / spread));
-    let testable = |kurtosis: &f64| *kurtosis > 1.0 + 1e-6 && kurtosis.is_finite();
-    let kurtosis = predicted.kurtosis().filter(testable);
-    let square = tally.mean_square().map(|square| square * unit * unit / predicted.variance());
-    row.z_variance = finite(
-        square
-            .zip(kurtosis)
-            .map(|(square, kurtosis)| (square - 1.0) / ((kurtosis - 1.0) / n).sqrt()),
-    );
-}
-
-fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
-    let n = drawn.lookups.draws as f64;
-    let law = prediction.lookups.as_ref();
-    let observed = drawn.lookups.moments().map(|m| m.mean);
-    row.lookups_per_draw = observed.map(|mean| mean + law.map_or(0.0, |law| law.mean));
-    if let Some(law) = law.filter(|law| law.variance > 0.0) {
-        let deviation = (law.variance / n).sqrt();
-        row.lookups_deviation = Some(deviation);
-        row.z_lookups = observed.map(|mean| mean / deviation);
-    }
-    let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
-    row.fom = finite(fom.filter(|_| row.z_mean.is_some()));
-}
-
-/// The columns of z in a row that are not to be read as normal; the lookups are of so many draws.
-fn not_normal(row: &Row, prediction: &Prediction, looked: u64) -> Vec<&'static str> {
-    let n = row.draws.unwrap_or(0) as f64;
-    let tails = Tails {
-        kurtosis: row.predicted_kurtosis,
-        eighth_moment_ratio: row.eighth_moment_ratio,
-        rare_event_size: row.rare_event_size,
-    };
-    let of_lookups = prediction.lookups.as_ref().map(|law| needed(law.kurtosis, 1.0));
-    let is_normal = of_lookups.is_some_and(|needed| looked as f64 >= needed);
-    let all = [
-        ("z_mean", row.z_mean, tails.has_normal_mean(n)),
-        ("z_variance", row.z_variance, tails.has_normal_variance(n)),
-        ("z_lookups", row.z_lookups, is_normal),
-    ];
-    all.into_iter().filter(|(_, z, is)| z.is_some() && !is).map(|(name, ..)| name).collect()
-}
-
-/// A relative variance below this is rounding.
-const CERTAIN: f64 = 1e-20;
-
-/// A word as a shell reads it, whatever is in it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=-".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        return word.to_owned();
-    }
-    format!("'{}'", word.replace('\'', "'\\''"))
-}
-
-/// The command that draws an experiment again, and writes nothing.
-fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
-    let case = case.case;
-    // A built-in case has no file, and a file has no name that the command would know.
-    let is_built_in = suite::find(&case.name).is_some_and(|source| source.path == case.path);
-    let place = if is_built_in { case.name.clone() } else { case.path.display().to_string() };
-    // Twins are numbered by the plan; a filter sees them all under one name.
-    let estimator = planned.names.estimator.split(" #").next().unwrap_or_default();
-    let Options { seed, alpha, fixed, strict, kernel, .. } = plan.options;
-    let (place, filter) = (quoted(&place), quoted(&format!("*:{estimator}")));
-    let draws = planned.draws;
-    let mut command = format!(
-        "trueflight check {place} --filter {filter} --seed {seed} --draws {draws} --verbose"
-    );
-    if alpha != Options::default().alpha {
-        command = format!("{command} --alpha {alpha}");
-    }
-    if let Some(kernel) = kernel {
-        command = format!("{command} --kernel {}", kernel.word());
-    }
-    for (flag, _) in [(" --fixed-draws", fixed), (" --strict", strict)].iter().filter(|f| f.1) {
-        command.push_str(flag);
-    }
-    command
-}
-
 /// Fail before inconclusive before underpowered before pass, with every reason of that verdict.
 fn worst(findings: &[Finding]) -> (Verdict, String) {
     let order = [Verdict::Fail, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Pass];
@@ -310,41 +213,4 @@ fn worst(findings: &[Finding]) -> (Verdict, String) {
         }
     }
     (verdict, reasons.join("; "))
-}
-
-/// The ray seen from the side, for an experiment on a curve.
-fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<Anatomy> {
-    let ready = planned.outcome.as_ref().ok()?;
-    let scenario = &case.case.scenario;
-    let (portrait, explorers) =
-        scenario.portrait(planned.estimator, planned.variation, planned.address)?;
-    let distances = scenario.distances();
-    let channels = ready.prediction.channels.iter().zip(&drawn.tallies).zip(&distances);
-    let measured = channels.filter_map(|((channel, tally), &t)| {
-        let moments = tally.moments()?;
-        let unit = channel.truth.value;
-        let deviation = moments.variance?.sqrt() * unit;
-        Some(MeasuredPoint {
-            t,
-            mean: channel.mean.value + moments.mean * unit,
-            standard_error: deviation / (tally.draws as f64).sqrt(),
-            deviation,
-        })
-    });
-    let residual = portrait.extinction.iter().zip(&portrait.control).map(|(s, c)| s - c).collect();
-    let controlled = !planned.names.control.is_empty();
-    Some(Anatomy {
-        estimator: planned.names.estimator.clone(),
-        measured: measured.collect(),
-        residual,
-        control: if controlled { portrait.control } else { Vec::new() },
-        explorers,
-        t: portrait.t,
-        extinction: portrait.extinction,
-        sampling: portrait.sampling,
-        transmittance: portrait.transmittance,
-        deviation: portrait.deviation,
-        collisions: portrait.collisions,
-        walks: portrait.walks,
-    })
 }

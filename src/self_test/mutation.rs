@@ -9,9 +9,10 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::estimators::{DrawBuffer, Experiment};
+use crate::harness::levels::Levels;
 use crate::harness::mutation::{self, Walk};
 use crate::harness::options::Options;
-use crate::harness::plan::{BLOCK, Levels, Plan, Planned};
+use crate::harness::plan::{BLOCK, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
 use crate::mutants::{self, About, StreamMutant, Target, streams};
