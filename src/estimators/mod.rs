@@ -15,7 +15,6 @@ pub mod layers;
 pub mod ledger;
 pub mod multiple_scattering;
 pub mod packet;
-pub mod places;
 pub mod rod;
 pub mod rules;
 pub mod sampling;

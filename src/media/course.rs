@@ -27,6 +27,12 @@ pub trait Course<S: Simd> {
     fn restart(&mut self, which: mask64x8<S>);
 }
 
+/// A course that walks may go back, too.
+pub trait BothWays<S: Simd>: Course<S> {
+    /// Each flies on or back through an optical depth; answers which are still between the ends.
+    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S>;
+}
+
 /// Through one value, but for gaps.
 #[derive(Clone, Copy)]
 pub struct Even<'a, S: Simd> {
@@ -76,6 +82,14 @@ impl<S: Simd> Course<S> for Even<'_, S> {
     #[inline(always)]
     fn restart(&mut self, which: mask64x8<S>) {
         self.way = Lane::select(which, self.begin, self.way);
+    }
+}
+
+impl<S: Simd> BothWays<S> for Even<'_, S> {
+    #[inline(always)]
+    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
+        self.way = Lane::select(is_forward, depth, -depth).times_plus(self.path, self.way);
+        (is_forward & self.way.below(self.end)) | (!is_forward & self.begin.below(self.way))
     }
 }
 
@@ -135,21 +149,32 @@ impl<'a, S: Simd> Pieces<'a, S> {
             *pack = f64x8::from_slice(simd, row);
         }
     }
-}
 
-impl<S: Simd> Course<S> for Pieces<'_, S> {
+    /// Each flies through an optical depth: on, or, where `BOTH`, either way.
     #[inline(always)]
-    fn fly(&mut self, mut depth: f64x8<S>) -> mask64x8<S> {
+    fn go<const BOTH: bool>(
+        &mut self,
+        mut depth: f64x8<S>,
+        is_forward: mask64x8<S>,
+    ) -> mask64x8<S> {
         let simd = depth.token();
         let zero = depth.each(0.0);
+        let signed = |x: f64x8<S>| if BOTH { Lane::select(is_forward, x, -x) } else { x };
+        let forward = if BOTH { is_forward.to_bitmask() } else { u64::MAX };
+        let last = self.field.left.len() - 1;
         let mut flying = mask64x8::splat(simd, true);
         let mut arrived = mask64x8::splat(simd, false);
         loop {
             let here = self.here();
-            let left = (self.end - self.t) * 0.5 * (here + self.right);
+            let (mut edge, mut there) = (self.end, self.right);
+            if BOTH {
+                edge = Lane::select(is_forward, edge, self.knot);
+                there = Lane::select(is_forward, there, self.left);
+            }
+            let left = signed(edge - self.t) * 0.5 * (here + there);
             let arrives = depth.below(left) & flying;
-            let root = (here * here + self.slope * 2.0 * depth).or_more(zero).root();
-            let landed = self.t + depth * 2.0 / (here + root);
+            let root = (here * here + signed(self.slope * 2.0 * depth)).or_more(zero).root();
+            let landed = self.t + signed(depth * 2.0 / (here + root));
             self.t = Lane::select(arrives, landed, self.t);
             arrived |= arrives;
             flying &= !arrives;
@@ -157,20 +182,28 @@ impl<S: Simd> Course<S> for Pieces<'_, S> {
                 return arrived;
             }
             depth = Lane::select(flying, depth - left, depth);
-            self.t = Lane::select(flying, self.end, self.t);
-            let (mut crossing, last) = (flying.to_bitmask(), self.field.left.len() - 1);
+            self.t = Lane::select(flying, edge, self.t);
+            let mut crossing = flying.to_bitmask();
             for (lane, piece) in self.piece.iter_mut().enumerate() {
                 if crossing >> lane & 1 == 1 {
-                    if *piece == last {
+                    let is_forward = forward >> lane & 1 == 1;
+                    if *piece == if is_forward { last } else { 0 } {
                         crossing &= !(1 << lane);
                     } else {
-                        *piece += 1;
+                        *piece = if is_forward { *piece + 1 } else { *piece - 1 };
                     }
                 }
             }
             flying = mask64x8::from_bitmask(simd, crossing);
             self.look_up(crossing);
         }
+    }
+}
+
+impl<S: Simd> Course<S> for Pieces<'_, S> {
+    #[inline(always)]
+    fn fly(&mut self, depth: f64x8<S>) -> mask64x8<S> {
+        self.go::<false>(depth, mask64x8::splat(depth.token(), true))
     }
 
     #[inline(always)]
@@ -200,5 +233,12 @@ impl<S: Simd> Course<S> for Pieces<'_, S> {
             self.look_up(bits);
             self.t = Lane::select(which, self.t.each(self.field.knots[0]), self.t);
         }
+    }
+}
+
+impl<S: Simd> BothWays<S> for Pieces<'_, S> {
+    #[inline(always)]
+    fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
+        self.go::<true>(depth, is_forward)
     }
 }

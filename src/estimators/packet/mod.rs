@@ -12,6 +12,7 @@
 //! A block has two packs of streams. On hardware with registers for both their steps alternate: a step
 //! waits for the one before it, and those of the other pack fill the time.
 
+pub mod bank;
 pub mod decomposition;
 pub mod flight;
 pub mod majorants;

@@ -93,7 +93,7 @@ macro_rules! walks {
             medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
-            $crate::estimators::rod::packet::walks(level, setup, $rule, medium, request)
+            $crate::estimators::rod::packet::walks(level, setup, ($rule, None), medium, request)
         }
     };
 }

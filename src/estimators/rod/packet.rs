@@ -1,46 +1,47 @@
-//! Eight particles side by side: the packet kernel of [`super::walk`], for the rules of
-//! [`ParticleRule`] and a σ̂ of one value.
+//! Particles in a rod side by side: the packet kernel of [`super::walk`], for the rules of [`ParticleRule`] with
+//! or without roulette.
 //!
 //! Specification: draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream
 //! j mod 16.
 //!
-//! A step has no branches: who is scattered, turns round or ends is a mask. The number of a new
-//! direction is drawn for all; the streams of those that are not scattered stay where they were.
+//! A step has no branches: who is scattered, turns round or ends is a mask. Numbers that only some need are
+//! drawn for all; the streams of the others stay where they were.
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::Fate;
-use crate::estimators::packet::Request;
-use crate::estimators::places::{self, Place, Places};
+use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
+use crate::estimators::packet::{Request, pays};
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::even::Even;
-use crate::media::{Extinction, Lookups};
+use crate::media::course::{BothWays, Even, Pieces};
+use crate::media::{Control, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::Rod;
 use crate::problems::rod::{MOST_PARTS, Quantity};
-use crate::rng::LANES;
 use crate::theory::ParticleRule;
 
-/// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
-/// narrow or σ̂ has several values.
+/// The draws of a rule, with roulette on weights below a number where one is given, on the hardware of a level;
+/// a request is handed back where the hardware is too narrow or one draw after the other is faster.
 #[must_use]
 pub fn walks<'a>(
     level: Level,
     setup: &Setup<Rod>,
-    rule: ParticleRule,
+    (rule, roulette): (ParticleRule, Option<f64>),
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(sampling) = setup.sampling.even() else { return Some(request) };
-    let task = Walks { setup, sampling, rule, medium, request };
+    if !pays(medium, &setup.sampling, &Control::None) {
+        return Some(request);
+    }
+    let task = Walks { setup, rule, roulette, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
 struct Walks<'a, 'r> {
     setup: &'a Setup<Rod>,
-    sampling: &'a Even,
     rule: ParticleRule,
+    roulette: Option<f64>,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
@@ -50,91 +51,171 @@ impl Task for Walks<'_, '_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { setup, sampling, rule, medium, request } = self;
-        let Request { streams, count, buffer } = request;
-        let rod = &*setup.problem;
-        let begin = f64x8::splat(simd, sampling.from);
-        let (end, path) = (begin.each(sampling.to), begin.each(1.0 / sampling.value));
-        let (zero, one) = (begin.each(0.0), begin.each(1.0));
-        let parts = Parts::of(rod, path);
-        buffer.make_room(count);
-        for (pack, lanes) in streams.packs().iter().enumerate() {
-            let (mut way, mut is_forward) = (begin, mask64x8::splat(simd, true));
-            let (mut weight, mut order) = (one, zero);
-            let (mut absorbed, mut flux) = (zero, [zero; MOST_PARTS]);
-            let mut numbers = lanes.awake(simd);
-            let mut places = Places::new(count, streams.turn, pack);
-            while places.are_open() {
-                let (depth, number) = (-numbers.ln_uniform(), numbers.uniform());
-                way = Lane::select(is_forward, depth, -depth).times_plus(path, way);
-                let inside = (is_forward & way.below(end)) | (!is_forward & begin.below(way));
-                // Beyond both ends there is no field to look at.
-                let t = Lane::select(inside, sampling.spread(way), begin);
-                let ratio = medium.extinction(t) * path;
-                let albedo = rod.albedo.value(t);
-                let taken = weight * ratio * (one - albedo);
-                absorbed = Lane::select(inside, absorbed + taken, absorbed);
-                parts.score(t, inside, weight, &mut flux);
-                let odds = rule.odds(ratio, albedo);
-                let is_scattered = inside & number.below(odds.scatter);
-                let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
-                let goes_on = is_scattered | is_passed;
-                let ended = (!goes_on).to_bitmask();
-                if ended != 0 {
-                    let (inside, is_forward) = (inside.to_bitmask(), is_forward.to_bitmask());
-                    let mut ends = Ends { inside, is_forward, ..Ends::default() };
-                    weight.store_slice(&mut ends.weight);
-                    order.store_slice(&mut ends.order);
-                    absorbed.store_slice(&mut ends.absorbed);
-                    for (end, flux) in ends.flux.iter_mut().zip(flux) {
-                        flux.store_slice(end);
-                    }
-                    let over = ends.collect(&mut places, ended, rod, buffer);
-                    places::leave(streams, pack, over, numbers);
-                }
-                places.step();
-                let direction = numbers.uniform_where(is_scattered);
-                let turns = is_scattered & !direction.below(rod.forward.value(t));
-                is_forward = (is_forward ^ turns) | !goes_on;
-                let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
-                weight = Lane::select(goes_on, weight * factor, one);
-                order = Lane::select(is_scattered, order + 1.0, order);
-                order = Lane::select(goes_on, order, zero);
-                absorbed = Lane::select(goes_on, absorbed, zero);
-                for flux in &mut flux {
-                    *flux = Lane::select(goes_on, *flux, zero);
-                }
-                way = Lane::select(goes_on, way, begin);
-            }
+        let sampling = &self.setup.sampling;
+        match sampling.even() {
+            Some(even) => self.through(simd, Even::new(simd, even)),
+            None => self.through(simd, Pieces::new(simd, sampling)),
         }
-        streams.turn = (streams.turn + count) % LANES;
+    }
+}
+
+impl Walks<'_, '_> {
+    #[inline(always)]
+    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
+        let Self { setup, rule, roulette, medium, request } = self;
+        let rod = &*setup.problem;
+        let from = f64x8::splat(simd, setup.sampling.begin().t);
+        let (zero, one) = (from.each(0.0), from.each(1.0));
+        let all = mask64x8::splat(simd, true);
+        let fresh = InRod {
+            rod,
+            rule,
+            roulette,
+            parts: Parts::of(rod),
+            from,
+            course,
+            number: zero,
+            t: from,
+            inside: all,
+            goes_on: all,
+            is_forward: all,
+            weight: one,
+            order: zero,
+            absorbed: zero,
+            flux: [zero; MOST_PARTS],
+        };
+        bank::run(
+            simd,
+            #[inline(always)]
+            |_| fresh,
+            medium,
+            request,
+        );
+    }
+}
+
+/// Eight particles in a rod.
+#[derive(Clone, Copy)]
+struct InRod<'a, S: Simd, C> {
+    rod: &'a Rod,
+    rule: ParticleRule,
+    /// w₀, the weight below which roulette is played.
+    roulette: Option<f64>,
+    parts: Parts,
+    from: f64x8<S>,
+    course: C,
+    number: f64x8<S>,
+    t: f64x8<S>,
+    inside: mask64x8<S>,
+    goes_on: mask64x8<S>,
+    is_forward: mask64x8<S>,
+    weight: f64x8<S>,
+    order: f64x8<S>,
+    absorbed: f64x8<S>,
+    flux: [f64x8<S>; MOST_PARTS],
+}
+
+impl<S: Simd, C: BothWays<S>> Particles<S> for InRod<'_, S, C> {
+    #[inline(always)]
+    fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
+        let depth = -numbers.ln_uniform();
+        self.number = numbers.uniform();
+        self.inside = self.course.fly_either_way(depth, self.is_forward);
+        // Beyond both ends there is no field to look at.
+        self.t = Lane::select(self.inside, self.course.reached(), self.from);
+        self.t
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+        let Self { rod, rule, number, t, inside, weight, .. } = *self;
+        let one = t.each(1.0);
+        let path = self.course.mean_free_path();
+        let ratio = extinction * path;
+        let albedo = rod.albedo.value(t);
+        let taken = weight * ratio * (one - albedo);
+        self.absorbed = Lane::select(inside, self.absorbed + taken, self.absorbed);
+        self.parts.score(t, inside, weight, path, &mut self.flux);
+        let odds = rule.odds(ratio, albedo);
+        let is_scattered = inside & number.below(odds.scatter);
+        let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
+        let mut goes_on = is_scattered | is_passed;
+        let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+        let mut left = weight * factor;
+        let direction = numbers.uniform_where(is_scattered);
+        let turns = is_scattered & !direction.below(rod.forward.value(t));
+        self.is_forward ^= turns;
+        self.order = Lane::select(is_scattered, self.order + 1.0, self.order);
+        if let Some(below) = self.roulette {
+            let least = one.each(below);
+            let plays = goes_on & left.size().below(least);
+            let drawn = numbers.uniform_where(plays);
+            goes_on &= !plays | (drawn * least).below(left.size());
+            let kept = Lane::select(left.below(one.each(0.0)), -least, least);
+            left = Lane::select(plays, kept, left);
+        }
+        self.weight = Lane::select(goes_on, left, weight);
+        self.goes_on = goes_on;
+        (!goes_on).to_bitmask()
+    }
+
+    #[inline(always)]
+    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+        let (inside, is_forward) = (self.inside.to_bitmask(), self.is_forward.to_bitmask());
+        let mut ends = Ends { inside, is_forward, ..Ends::default() };
+        self.weight.store_slice(&mut ends.weight);
+        self.order.store_slice(&mut ends.order);
+        self.absorbed.store_slice(&mut ends.absorbed);
+        for (end, flux) in ends.flux.iter_mut().zip(&self.flux) {
+            flux.store_slice(end);
+        }
+        ends.collect(slots, ended, self.rod, buffer)
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, _: &mut Numbers<S>) {
+        let goes_on = self.goes_on;
+        let (zero, one) = (self.from.each(0.0), self.from.each(1.0));
+        self.is_forward |= !goes_on;
+        self.weight = Lane::select(goes_on, self.weight, one);
+        self.order = Lane::select(goes_on, self.order, zero);
+        self.absorbed = Lane::select(goes_on, self.absorbed, zero);
+        for flux in &mut self.flux {
+            *flux = Lane::select(goes_on, *flux, zero);
+        }
+        self.course.restart(!goes_on);
     }
 }
 
 /// The parts of a rod that see its flux.
-struct Parts<L> {
+#[derive(Clone, Copy)]
+struct Parts {
     count: usize,
     begin: f64,
     width: f64,
-    /// The score of a tentative collision of weight 1.
-    score: L,
 }
 
-impl<L: Lane> Parts<L> {
+impl Parts {
     #[inline(always)]
-    fn of(rod: &Rod, path: L) -> Self {
-        let (begin, width) = (rod.begin(), rod.width());
-        Self { count: rod.parts, begin, width, score: path * (1.0 / width) }
+    fn of(rod: &Rod) -> Self {
+        Self { count: rod.parts, begin: rod.begin(), width: rod.width() }
     }
 
     /// Scores where the walks are, as [`Rod::part`] finds them.
     #[inline(always)]
-    fn score(&self, t: L, inside: L::Mask, weight: L, flux: &mut [L; MOST_PARTS]) {
+    fn score<L: Lane>(
+        &self,
+        t: L,
+        inside: L::Mask,
+        weight: L,
+        path: L,
+        flux: &mut [L; MOST_PARTS],
+    ) {
         if self.count == 0 {
             return;
         }
         let at = (t - self.begin) / t.each(self.width);
-        let score = weight * self.score;
+        let score = weight * (path * (1.0 / self.width));
         let (mut part, last) = (0.0, self.count - 1);
         for (number, flux) in flux.iter_mut().take(self.count).enumerate() {
             let mut is_here = inside;
@@ -180,8 +261,8 @@ impl Ends {
     /// Makes draws of those that ended.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation)] // one bit
-    fn collect(&self, places: &mut Places, ended: u64, rod: &Rod, buffer: &mut DrawBuffer) -> u64 {
-        places.fill(ended, |Place { lane, draw, steps }| {
+    fn collect(&self, slots: &mut Slots, ended: u64, rod: &Rod, buffer: &mut DrawBuffer) -> u64 {
+        slots.fill(ended, |Slot { lane, draw, steps }| {
             let values = self.fate(lane).values(&rod.channels);
             for (channel, value) in buffer.values.iter_mut().zip(values.as_ref()) {
                 channel[draw] = *value;

@@ -23,8 +23,12 @@
 //! Source: H. Kahn, *Use of Different Monte Carlo Sampling Techniques*, RAND P-766 (1955); the walk: that
 //! of `non-terminating`.
 
+use fearless_simd::Level;
+
+use super::packet;
 use super::walk::{self, Steps};
 use crate::catalogue::{Domain, Settings};
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::Rod;
@@ -56,6 +60,7 @@ impl Steps for Roulette {
 
 impl Estimator<Rod> for Roulette {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let below = settings.number_or("below", Domain::Positive, 0.1)?;
@@ -91,6 +96,17 @@ impl Estimator<Rod> for Roulette {
     #[inline(always)]
     fn draw(&self, setup: &Setup<Rod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
         walk::draw(self, setup, medium, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<Rod>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let rule = (ParticleRule::NonTerminating, Some(self.below));
+        packet::walks(level, setup, rule, medium, request)
     }
 }
 

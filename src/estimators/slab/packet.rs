@@ -1,5 +1,4 @@
-//! Eight particles side by side: the packet kernel of [`super::walk`], for the rules of
-//! [`ParticleRule`] and a σ̂ of one value.
+//! Particles in a slab side by side: the packet kernel of [`super::walk`], for the rules of [`ParticleRule`].
 //!
 //! Specification: draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream
 //! j mod 16.
@@ -9,25 +8,24 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::turned;
-use crate::estimators::packet::Request;
-use crate::estimators::places::{self, Place, Places};
+use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
+use crate::estimators::packet::{Request, pays};
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::even::Even;
-use crate::media::{Extinction, Lookups};
+use crate::media::course::{BothWays, Even, Pieces};
+use crate::media::{Control, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
 use crate::problems::Slab;
 use crate::problems::slab::Light;
-use crate::rng::{LANES, Xoshiro};
 use crate::theory::ParticleRule;
 
 /// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
-/// narrow or σ̂ has several values.
+/// narrow or one draw after the other is faster.
 #[must_use]
 pub fn walks<'a>(
     level: Level,
@@ -36,14 +34,15 @@ pub fn walks<'a>(
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(sampling) = setup.sampling.even() else { return Some(request) };
-    let task = Walks { setup, sampling, rule, medium, request };
+    if !pays(medium, &setup.sampling, &Control::None) {
+        return Some(request);
+    }
+    let task = Walks { setup, rule, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
 struct Walks<'a, 'r> {
     setup: &'a Setup<Slab>,
-    sampling: &'a Even,
     rule: ParticleRule,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
@@ -54,58 +53,39 @@ impl Task for Walks<'_, '_> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { setup, sampling, rule, medium, request } = self;
-        let Request { streams, count, buffer } = request;
-        let slab = &*setup.problem;
-        let incidence = &slab.incidence;
-        let begin = f64x8::splat(simd, sampling.from);
-        let (end, path) = (begin.each(sampling.to), begin.each(1.0 / sampling.value));
-        let (zero, one) = (begin.each(0.0), begin.each(1.0));
-        let albedo = begin.each(slab.albedo);
-        buffer.make_room(count);
-        for (pack, lanes) in streams.packs().iter().enumerate() {
-            let mut numbers = lanes.awake(simd);
-            let (mut way, mut weight) = (begin, one);
-            let mut cosine = entering(incidence.light, &mut numbers, zero.at_most(one), one);
-            let mut places = Places::new(count, streams.turn, pack);
-            while places.are_open() {
-                let (length, number) = (-numbers.ln_uniform(), numbers.uniform());
-                let depth = length * cosine.size();
-                let is_down = zero.below(cosine);
-                way = Lane::select(is_down, depth, -depth).times_plus(path, way);
-                let inside = (is_down & way.below(end)) | (!is_down & begin.below(way));
-                // Above and below there is no field to look at.
-                let t = Lane::select(inside, sampling.spread(way), begin);
-                let odds = rule.odds(medium.extinction(t) * path, albedo);
-                let is_scattered = inside & number.below(odds.scatter);
-                let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
-                let goes_on = is_scattered | is_passed;
-                let ended = (!goes_on).to_bitmask();
-                if ended != 0 {
-                    let mut ends = Ends { inside: inside.to_bitmask(), ..Ends::default() };
-                    let left = Lane::select(inside, zero, weight);
-                    Lane::select(is_down, zero, left).store_slice(&mut ends.values[0]);
-                    Lane::select(is_down, left, zero).store_slice(&mut ends.values[1]);
-                    let over = ends.collect(&mut places, ended, buffer);
-                    places::leave(streams, pack, over, numbers);
-                }
-                places.step();
-                let deflection = incidence.phase.cosine(numbers.uniform_where(is_scattered));
-                let direction = if incidence.phase == Phase::Isotropic(Isotropic) {
-                    deflection
-                } else {
-                    let azimuth = (numbers.uniform_where(is_scattered) * TAU).cos();
-                    turned(cosine, deflection, azimuth)
-                };
-                let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
-                weight = Lane::select(goes_on, weight * factor, one);
-                way = Lane::select(goes_on, way, begin);
-                cosine = Lane::select(is_scattered, direction, cosine);
-                let fresh = entering(incidence.light, &mut numbers, !goes_on, one);
-                cosine = Lane::select(goes_on, cosine, fresh);
-            }
+        let sampling = &self.setup.sampling;
+        match sampling.even() {
+            Some(even) => self.through(simd, Even::new(simd, even)),
+            None => self.through(simd, Pieces::new(simd, sampling)),
         }
-        streams.turn = (streams.turn + count) % LANES;
+    }
+}
+
+impl Walks<'_, '_> {
+    #[inline(always)]
+    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
+        let Self { setup, rule, medium, request } = self;
+        let slab = &*setup.problem;
+        let from = f64x8::splat(simd, setup.sampling.begin().t);
+        let all = mask64x8::splat(simd, true);
+        bank::run(
+            simd,
+            #[inline(always)]
+            |numbers| InSlab {
+                slab,
+                rule,
+                from,
+                course,
+                number: from,
+                inside: all,
+                is_down: all,
+                goes_on: all,
+                weight: from.each(1.0),
+                cosine: entering(slab.incidence.light, numbers, all, from.each(1.0)),
+            },
+            medium,
+            request,
+        );
     }
 }
 
@@ -114,13 +94,80 @@ impl Task for Walks<'_, '_> {
 #[inline(always)]
 fn entering<S: Simd>(
     light: Light,
-    numbers: &mut Xoshiro<u64x8<S>>,
+    numbers: &mut Numbers<S>,
     which: mask64x8<S>,
     one: f64x8<S>,
 ) -> f64x8<S> {
     match light {
         Light::Collimated(cosine) => one.each(cosine),
         Light::Diffuse => (one - numbers.uniform_where(which)).root(),
+    }
+}
+
+/// Eight particles in a slab.
+struct InSlab<'a, S: Simd, C> {
+    slab: &'a Slab,
+    rule: ParticleRule,
+    from: f64x8<S>,
+    course: C,
+    number: f64x8<S>,
+    inside: mask64x8<S>,
+    is_down: mask64x8<S>,
+    goes_on: mask64x8<S>,
+    weight: f64x8<S>,
+    cosine: f64x8<S>,
+}
+
+impl<S: Simd, C: BothWays<S>> Particles<S> for InSlab<'_, S, C> {
+    #[inline(always)]
+    fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
+        let length = -numbers.ln_uniform();
+        self.number = numbers.uniform();
+        self.is_down = length.each(0.0).below(self.cosine);
+        self.inside = self.course.fly_either_way(length * self.cosine.size(), self.is_down);
+        // Above and below there is no field to look at.
+        Lane::select(self.inside, self.course.reached(), self.from)
+    }
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+        let Self { number, inside, cosine, .. } = *self;
+        let incidence = &self.slab.incidence;
+        let albedo = extinction.each(self.slab.albedo);
+        let odds = self.rule.odds(extinction * self.course.mean_free_path(), albedo);
+        let is_scattered = inside & number.below(odds.scatter);
+        let is_passed = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
+        let deflection = incidence.phase.cosine(numbers.uniform_where(is_scattered));
+        let direction = if incidence.phase == Phase::Isotropic(Isotropic) {
+            deflection
+        } else {
+            let azimuth = (numbers.uniform_where(is_scattered) * TAU).cos();
+            turned(cosine, deflection, azimuth)
+        };
+        self.cosine = Lane::select(is_scattered, direction, cosine);
+        self.goes_on = is_scattered | is_passed;
+        let factor = Lane::select(is_scattered, odds.scatter_weight, odds.transmit_weight);
+        self.weight = Lane::select(self.goes_on, self.weight * factor, self.weight);
+        (!self.goes_on).to_bitmask()
+    }
+
+    #[inline(always)]
+    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+        let mut ends = Ends { inside: self.inside.to_bitmask(), ..Ends::default() };
+        let zero = self.from.each(0.0);
+        let left = Lane::select(self.inside, zero, self.weight);
+        Lane::select(self.is_down, zero, left).store_slice(&mut ends.values[0]);
+        Lane::select(self.is_down, left, zero).store_slice(&mut ends.values[1]);
+        ends.collect(slots, ended, buffer)
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, numbers: &mut Numbers<S>) {
+        let (goes_on, one) = (self.goes_on, self.from.each(1.0));
+        let fresh = entering(self.slab.incidence.light, numbers, !goes_on, one);
+        self.cosine = Lane::select(goes_on, self.cosine, fresh);
+        self.weight = Lane::select(goes_on, self.weight, one);
+        self.course.restart(!goes_on);
     }
 }
 
@@ -138,8 +185,8 @@ impl Ends {
     /// Makes draws of those that ended.
     #[inline(never)]
     #[allow(clippy::cast_possible_truncation)] // one bit
-    fn collect(&self, places: &mut Places, ended: u64, buffer: &mut DrawBuffer) -> u64 {
-        places.fill(ended, |Place { lane, draw, steps }| {
+    fn collect(&self, slots: &mut Slots, ended: u64, buffer: &mut DrawBuffer) -> u64 {
+        slots.fill(ended, |Slot { lane, draw, steps }| {
             for (channel, values) in buffer.values.iter_mut().zip(&self.values) {
                 channel[draw] = values[lane];
             }

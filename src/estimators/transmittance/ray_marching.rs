@@ -23,7 +23,7 @@ use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use crate::catalogue::Settings;
 use crate::estimators::packet::Request;
-use crate::estimators::places;
+use crate::estimators::packet::bank;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::pack::{self, Task, WIDTH};
@@ -170,7 +170,7 @@ impl Task for Marches<'_, '_> {
             row.rotate_left(streams.turn);
         }
         for (pack, numbers) in packs.into_iter().enumerate() {
-            places::leave(streams, pack, u64::MAX, numbers);
+            bank::leave(streams, pack, u64::MAX, numbers);
         }
         for value in rest {
             [*value] = estimator.draw(setup, medium, streams.of_next_draw()).value;

@@ -12,20 +12,20 @@
 //!
 //! So a step has no branch for the distances that it passes.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
+use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::estimators::packet::product::Subtracted;
 use crate::estimators::packet::{Request, pays};
-use crate::estimators::places::{self, Place, Places};
+
 use crate::estimators::walk::Books;
 use crate::estimators::{DrawBuffer, Setup};
+use crate::media::Lookups;
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::MOST;
-use crate::rng::LANES;
 
 /// The draws of a curve, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or one draw after the other is faster.
@@ -62,7 +62,6 @@ impl Task for Curves<'_, '_> {
     }
 }
 
-/// Walks until every lane has made its draws.
 #[inline(always)]
 fn walk<S: Simd, C: Course<S> + Copy>(
     simd: S,
@@ -71,53 +70,95 @@ fn walk<S: Simd, C: Course<S> + Copy>(
     course: C,
     request: Request,
 ) {
-    let Request { streams, count, buffer } = request;
-    let control = Subtracted::new(simd, &setup.control);
-    let distances = setup.problem.ascending();
     let from = f64x8::splat(simd, setup.sampling.begin().t);
-    let nowhere = f64x8::splat(simd, f64::NEG_INFINITY);
-    buffer.make_room(count);
-    for (pack, lanes) in streams.packs().iter().enumerate() {
-        let mut course = course;
-        let (mut weight, mut ahead) = (from.each(1.0), [from.each(1.0); MOST]);
-        let mut books = Books::open(weight);
-        let mut numbers = lanes.awake(simd);
-        let mut places = Places::new(count, streams.turn, pack);
-        while places.are_open() {
-            let inside = course.fly(-numbers.ln_uniform());
-            // Beyond the end there is no field to look at.
-            let t = Lane::select(inside, course.reached(), from);
-            let residual = medium.extinction(t) - control.at(t);
-            let due = weight.each(1.0) - residual * course.mean_free_path();
-            let ended = (!inside).to_bitmask();
-            if ended != 0 {
-                let mut ends = Ends::default();
-                for ((end, ahead), control) in
-                    ends.values.iter_mut().zip(ahead).zip(&setup.control_curve)
-                {
-                    (ahead * *control).store_slice(end);
-                }
-                weight.store_slice(&mut ends.weight);
-                books.handed_over.store_slice(&mut ends.handed_over);
-                books.turnover.store_slice(&mut ends.turnover);
-                let over = ends.collect(&mut places, ended, buffer);
-                places::leave(streams, pack, over, numbers);
-            }
-            places.step();
-            books.hand_over(weight, due);
-            let fresh = Books::open(from.each(1.0));
-            books.handed_over = Lane::select(inside, books.handed_over, fresh.handed_over);
-            books.turnover = Lane::select(inside, books.turnover, fresh.turnover);
-            weight = Lane::select(inside, weight * due, fresh.begin);
-            // To a walk that begins all distances are ahead.
-            let t = Lane::select(inside, t, nowhere);
-            for (ahead, &distance) in ahead.iter_mut().zip(distances) {
-                *ahead = Lane::select(t.below(t.each(distance)), weight, *ahead);
-            }
-            course.restart(!inside);
-        }
+    let one = from.each(1.0);
+    let fresh = AlongCurve {
+        setup,
+        control: Subtracted::new(simd, &setup.control),
+        from,
+        course,
+        inside: mask64x8::splat(simd, true),
+        t: from,
+        weight: one,
+        ahead: [one; MOST],
+        books: Books::open(one),
+    };
+    bank::run(
+        simd,
+        #[inline(always)]
+        |_| fresh,
+        medium,
+        request,
+    );
+}
+
+/// Eight walks along the ray of a curve.
+#[derive(Clone, Copy)]
+struct AlongCurve<'a, S: Simd, C> {
+    setup: &'a Setup<TransmittanceCurve>,
+    control: Subtracted<'a, S>,
+    from: f64x8<S>,
+    course: C,
+    inside: mask64x8<S>,
+    t: f64x8<S>,
+    weight: f64x8<S>,
+    /// The weight with which each distance was last ahead.
+    ahead: [f64x8<S>; MOST],
+    books: Books<f64x8<S>>,
+}
+
+impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
+    #[inline(always)]
+    fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
+        self.inside = self.course.fly(-numbers.ln_uniform());
+        // Beyond the end there is no field to look at.
+        self.t = Lane::select(self.inside, self.course.reached(), self.from);
+        self.t
     }
-    streams.turn = (streams.turn + count) % LANES;
+
+    #[inline(always)]
+    fn collide(&mut self, extinction: f64x8<S>, _: &mut Numbers<S>) -> u64 {
+        let (inside, weight, books) = (self.inside, self.weight, self.books);
+        let residual = extinction - self.control.at(self.t);
+        let due = weight.each(1.0) - residual * self.course.mean_free_path();
+        let mut booked = books;
+        booked.hand_over(weight, due);
+        self.books.handed_over = Lane::select(inside, booked.handed_over, books.handed_over);
+        self.books.turnover = Lane::select(inside, booked.turnover, books.turnover);
+        self.weight = Lane::select(inside, weight * due, weight);
+        let t = Lane::select(inside, self.t, weight.each(f64::INFINITY));
+        for (ahead, &distance) in self.ahead.iter_mut().zip(self.setup.problem.ascending()) {
+            *ahead = Lane::select(t.below(t.each(distance)), self.weight, *ahead);
+        }
+        (!inside).to_bitmask()
+    }
+
+    #[inline(always)]
+    fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
+        let mut ends = Ends::default();
+        let curve = ends.values.iter_mut().zip(&self.ahead).zip(&self.setup.control_curve);
+        for ((end, ahead), control) in curve {
+            (*ahead * *control).store_slice(end);
+        }
+        self.weight.store_slice(&mut ends.weight);
+        self.books.handed_over.store_slice(&mut ends.handed_over);
+        self.books.turnover.store_slice(&mut ends.turnover);
+        ends.collect(slots, ended, buffer)
+    }
+
+    #[inline(always)]
+    fn restart(&mut self, _: &mut Numbers<S>) {
+        let (inside, one) = (self.inside, self.from.each(1.0));
+        let fresh = Books::open(one);
+        self.books.handed_over = Lane::select(inside, self.books.handed_over, fresh.handed_over);
+        self.books.turnover = Lane::select(inside, self.books.turnover, fresh.turnover);
+        self.weight = Lane::select(inside, self.weight, one);
+        // To a walk that begins all distances are ahead.
+        for ahead in &mut self.ahead {
+            *ahead = Lane::select(inside, *ahead, one);
+        }
+        self.course.restart(!inside);
+    }
 }
 
 /// What eight walks have come to: the curve, what is carried and what was handed over.
@@ -131,10 +172,10 @@ struct Ends {
 }
 
 impl Ends {
-    /// Makes draws of the walks in some places.
+    /// Makes draws of those that ended.
     #[inline(never)]
-    fn collect(&self, places: &mut Places, ended: u64, buffer: &mut DrawBuffer) -> u64 {
-        places.fill(ended, |Place { lane, draw, steps }| {
+    fn collect(&self, slots: &mut Slots, ended: u64, buffer: &mut DrawBuffer) -> u64 {
+        slots.fill(ended, |Slot { lane, draw, steps }| {
             for (channel, values) in buffer.values.iter_mut().zip(&self.values) {
                 channel[draw] = values[lane];
             }
