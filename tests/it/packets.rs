@@ -161,6 +161,13 @@ fn cases(matrix: Matrix) -> Vec<Case> {
         cases.push(case(&format!("{name}-curve"), &curve));
         if matches!(name, "constant" | "lines" | "sines" | "eq21" | "gaps") {
             cases.push(case(&format!("{name}-rod"), &rod));
+            let roulette = format!(
+                "title = \"{name}, roulette\"\n[problem.rod]\n{medium}\nforward = 0.7\nalbedo = 0.8\norders = 1
+                sampling.constant.value = 1.6
+                estimators = [{{ roulette = {{}} }}, {{ roulette.below = 0.6 }},
+                    {{ roulette.sampling.local-majorants.segments = 5 }}]"
+            );
+            cases.push(case(&format!("{name}-roulette"), &roulette));
             for (light, phase) in [
                 ("collimated.cosine = 0.8", "isotropic = {}"),
                 ("diffuse = {}", "isotropic = {}"),
