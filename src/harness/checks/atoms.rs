@@ -5,7 +5,7 @@
 //! is none of them is strange: a single one fails the check where the list is complete.
 
 use super::batch::Batch;
-use super::question::{Check, Kind, Law, Question, Subject};
+use super::question::{Kind, Law, Question, Subject};
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -14,9 +14,6 @@ const SAME: f64 = 1e-9;
 /// So is one this near to it in units of the largest value: 1 − r is rounded, and 0 where r = 1 may be
 /// drawn as 1e-16.
 const ROUNDING: f64 = 1e-15;
-
-/// The check of the atoms.
-pub struct Atoms;
 
 /// The values in ascending order with their probabilities.
 struct Values {
@@ -76,23 +73,14 @@ impl Law for Values {
     }
 }
 
-impl Check for Atoms {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
-        if subject.expect_biased {
-            return Vec::new();
-        }
-        let values = Values::of(atoms.clone());
-        if chi_square::testable_bins(&values.probability, subject.fixed as f64) < 2 {
-            return Vec::new();
-        }
-        vec![Question::whole("the shares of the values", Kind::Law(Box::new(values)))]
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
+    let values = Values::of(atoms.clone());
+    if chi_square::testable_bins(&values.probability, subject.fixed as f64) < 2 {
+        return Vec::new();
     }
-
-    /// Two values have their exact binomial law, whose p-values are discrete: never too often small.
-    fn is_uniform(&self) -> bool {
-        false
-    }
+    vec![Question::whole("the shares of the values", Kind::Law(Box::new(values)))]
 }
 
 #[cfg(test)]

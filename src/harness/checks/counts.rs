@@ -8,11 +8,8 @@
 //! It applies where theory knows the law and at least two classes expect enough draws.
 
 use super::batch::Batch;
-use super::question::{Check, Kind, Law, Question, Subject};
+use super::question::{Kind, Law, Question, Subject};
 use crate::stats::chi_square;
-
-/// The check of the lookups' law.
-pub struct Counts;
 
 struct Classes {
     probability: Vec<f64>,
@@ -39,20 +36,14 @@ impl Law for Classes {
     }
 }
 
-impl Check for Counts {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(law) = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0) else {
-            return Vec::new();
-        };
-        let probability = law.pmf.clone();
-        if chi_square::testable_bins(&probability, subject.fixed as f64) < 2
-            || probability.is_empty()
-        {
-            return Vec::new();
-        }
-        vec![Question::whole(
-            "the law of the lookups",
-            Kind::Law(Box::new(Classes { probability })),
-        )]
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(law) = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0) else {
+        return Vec::new();
+    };
+    let probability = law.pmf.clone();
+    if chi_square::testable_bins(&probability, subject.fixed as f64) < 2 || probability.is_empty() {
+        return Vec::new();
     }
+    vec![Question::whole("the law of the lookups", Kind::Law(Box::new(Classes { probability })))]
 }

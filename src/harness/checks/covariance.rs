@@ -9,7 +9,7 @@
 
 use super::mean::is_faint;
 use super::observe::Observe;
-use super::question::{Check, Kind, Known, Question, Scalar, Subject, Wanted};
+use super::question::{Kind, Known, Question, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 use crate::theory::prediction::Covariance as Predicted;
 
@@ -19,20 +19,13 @@ const CAP: f64 = 0.2;
 /// The same of a prediction.
 const ERROR: f64 = 1e-10;
 
-/// The check of the covariances.
-pub struct Covariance;
-
-impl Check for Covariance {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        if subject.expect_biased {
-            return Vec::new();
-        }
-        let covariances = subject.prediction.covariances.iter();
-        covariances
-            .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
-            .filter_map(|covariance| ask(subject, covariance))
-            .collect()
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let covariances = subject.prediction.covariances.iter();
+    covariances
+        .filter(|covariance| covariance.pair[0] + 1 == covariance.pair[1])
+        .filter_map(|covariance| ask(subject, covariance))
+        .collect()
 }
 
 fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {

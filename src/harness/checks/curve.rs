@@ -14,7 +14,7 @@
 
 use super::batch::Batch;
 use super::observe::Observe;
-use super::question::{Check, Kind, Known, Law, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::stats::{chi_square, reflection};
@@ -24,9 +24,6 @@ use crate::theory::Increment;
 const CAP: f64 = 0.05;
 /// A step whose variance is known worse than this is not part of a limit law.
 const SHARP: f64 = 1e-3;
-
-/// The check of the curve.
-pub struct Curve;
 
 /// The increments `X_j/T_j − X_{j−1}/T_{j−1}`, of which some may be joined.
 struct Increments {
@@ -91,38 +88,33 @@ impl Law for Increments {
     }
 }
 
-impl Check for Curve {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let increments = &subject.prediction.increments;
-        if subject.expect_biased || increments.is_empty() {
-            return Vec::new();
-        }
-        let channels = &subject.prediction.channels;
-        let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
-        let rare = channels.iter().fold(0.0f64, |most, c| most.max(c.tails.rare_event_size));
-        let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
-        let is_long = subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare);
-        if is_long && increments.iter().all(|step| step.error <= SHARP) {
-            let law = Increments::of(subject, &scale).map(|law| Kind::Law(Box::new(law)));
-            return law
-                .map(|law| Question::whole("the curve along one walk", law))
-                .into_iter()
-                .collect();
-        }
-        let has_spread = |increment: &Increment| {
-            increment.variance > 0.0 && (increment.variance * (1.0 + increment.error)).is_finite()
-        };
-        let steps = increments.iter().enumerate().filter(|(_, increment)| has_spread(increment));
-        steps
-            .map(|(j, increment)| {
-                Question::channel(j, "the step to it", step(subject, j, &scale, increment))
-            })
-            .collect()
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let increments = &subject.prediction.increments;
+    if increments.is_empty() {
+        return Vec::new();
     }
-
-    fn is_uniform(&self) -> bool {
-        false
+    let channels = &subject.prediction.channels;
+    let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
+    let rare = channels.iter().fold(0.0f64, |most, c| most.max(c.tails.rare_event_size));
+    let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
+    let is_long = subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare);
+    if is_long && increments.iter().all(|step| step.error <= SHARP) {
+        let law = Increments::of(subject, &scale).map(|law| Kind::Law(Box::new(law)));
+        return law
+            .map(|law| Question::whole("the curve along one walk", law))
+            .into_iter()
+            .collect();
     }
+    let has_spread = |increment: &Increment| {
+        increment.variance > 0.0 && (increment.variance * (1.0 + increment.error)).is_finite()
+    };
+    let steps = increments.iter().enumerate().filter(|(_, increment)| has_spread(increment));
+    steps
+        .map(|(j, increment)| {
+            Question::channel(j, "the step to it", step(subject, j, &scale, increment))
+        })
+        .collect()
 }
 
 fn step(subject: &Subject, j: usize, scale: &[f64], increment: &Increment) -> Kind {

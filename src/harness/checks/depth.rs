@@ -13,11 +13,8 @@
 
 use super::batch::Batch;
 use super::distances::Classes;
-use super::question::{Check, Kind, Law, Question, Subject};
+use super::question::{Kind, Law, Question, Subject};
 use crate::stats::anderson_darling;
-
-/// The check of the depth.
-pub struct Depth;
 
 struct Empirical(Classes);
 
@@ -35,10 +32,9 @@ impl Law for Empirical {
     }
 }
 
-impl Check for Depth {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
-        let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
-        kind.map(|kind| Question::whole("the tails of the distances", kind)).into_iter().collect()
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let classes = Classes::of(subject);
+    let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
+    kind.map(|kind| Question::whole("the tails of the distances", kind)).into_iter().collect()
 }

@@ -10,7 +10,7 @@
 
 use super::batch::Batch;
 use super::mean::is_faint;
-use super::question::{BLURRED, Check, Kind, Law, Question, Subject};
+use super::question::{BLURRED, Kind, Law, Question, Subject};
 use crate::harness::addresses::BLOCK;
 use crate::harness::normality;
 use crate::numeric::sum::sum_in_lanes;
@@ -18,9 +18,6 @@ use crate::stats::chi_square;
 
 /// The fewest blocks that make a test.
 const FEWEST: u64 = 4;
-
-/// The check of the dispersion.
-pub struct Dispersion;
 
 struct BlockMeans {
     mean: f64,
@@ -57,19 +54,18 @@ impl Law for BlockMeans {
     }
 }
 
-impl Check for Dispersion {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
-        let Some(moments) = channel.moments else { return Vec::new() };
-        let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
-        let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
-        let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
-        let is_blurred = moments.error > BLURRED;
-        if subject.expect_biased || is_faint(subject, channel) || is_blurred || !enough {
-            return Vec::new();
-        }
-        let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
-        let law = BlockMeans { mean, scale, least: needed };
-        vec![Question::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
+    let Some(moments) = channel.moments else { return Vec::new() };
+    let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
+    let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
+    let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
+    let is_blurred = moments.error > BLURRED;
+    if is_faint(subject, channel) || is_blurred || !enough {
+        return Vec::new();
     }
+    let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
+    let law = BlockMeans { mean, scale, least: needed };
+    vec![Question::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
 }

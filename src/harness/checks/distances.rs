@@ -8,7 +8,7 @@
 //! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
 
 use super::batch::Batch;
-use super::question::{Check, Kind, Law, Question, Subject};
+use super::question::{Kind, Law, Question, Subject};
 use crate::estimators::DrawBuffer;
 use crate::numeric::pack::in_fused_code;
 use crate::stats::chi_square;
@@ -29,9 +29,6 @@ const ROW: usize = 512;
 const NEAR: usize = 2;
 /// Counts are kept twice, so that one need not wait for the last to be stored.
 const FOLD: usize = 2;
-
-/// The check of the distances.
-pub struct Distances;
 
 /// Equally probable classes of the distances of the rays that collide.
 pub struct Classes {
@@ -164,16 +161,15 @@ impl Law for Bins {
     }
 }
 
-impl Check for Distances {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let classes = Classes::of(subject).filter(|_| !subject.expect_biased);
-        let bins = classes.map(|classes| {
-            let size = (classes.len() / BINS).max(1);
-            Bins { classes, size }
-        });
-        let kind = bins.map(|bins| Kind::Law(Box::new(bins)));
-        kind.map(|kind| Question::whole("the law of the distances", kind)).into_iter().collect()
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let classes = Classes::of(subject);
+    let bins = classes.map(|classes| {
+        let size = (classes.len() / BINS).max(1);
+        Bins { classes, size }
+    });
+    let kind = bins.map(|bins| Kind::Law(Box::new(bins)));
+    kind.map(|kind| Question::whole("the law of the distances", kind)).into_iter().collect()
 }
 
 #[cfg(test)]

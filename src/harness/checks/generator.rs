@@ -11,7 +11,7 @@
 //! the third gives the p-value. The words of a block are those of its lanes in turn, so that lanes
 //! are compared with each other as blocks are.
 
-use super::question::{Check, Inspected, Kind, Question, Subject};
+use super::question::{Inspected, Kind, Question, Subject};
 use crate::estimators::Order;
 use crate::stats::{correlation, ties};
 
@@ -26,26 +26,18 @@ const LAG: i32 = 16;
 /// How many words must show all bits.
 const SHORT: usize = 256;
 
-/// The check of the generator.
-pub struct Generator;
-
-impl Check for Generator {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        // One look at the streams needs draws that use them.
-        let random = subject
-            .prediction
-            .channels
-            .iter()
-            .any(|channel| channel.moments.is_some_and(|moments| moments.relative[0] > 0.0));
-        if subject.expect_biased || !random {
-            return Vec::new();
-        }
-        vec![Question::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    // One look at the streams needs draws that use them.
+    let random = subject
+        .prediction
+        .channels
+        .iter()
+        .any(|channel| channel.moments.is_some_and(|moments| moments.relative[0] > 0.0));
+    if !random {
+        return Vec::new();
     }
-
-    fn is_uniform(&self) -> bool {
-        false
-    }
+    vec![Question::whole("the streams of random numbers", Kind::Inspection(Box::new(p_value)))]
 }
 
 /// The words of a block as the draws use them.

@@ -8,7 +8,7 @@
 //! theory says is always the same must be met by every draw.
 
 use super::observe::Observe;
-use super::question::{Always, Check, Kind, Known, Question, Scalar, Subject, Wanted};
+use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
 
 /// The largest relative error of the lookups that is still worth a promise.
@@ -16,31 +16,27 @@ const CAP: f64 = 0.02;
 /// The relative error of a predicted number of lookups, where theory does not say.
 pub const ERROR: f64 = 1e-10;
 
-/// The check of the lookups.
-pub struct Lookups;
-
-impl Check for Lookups {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(law) = &subject.prediction.lookups else { return Vec::new() };
-        let mean = law.mean;
-        let kind = if law.variance > 0.0 {
-            let variance = law.variance / (mean * mean);
-            let error = ERROR.max(law.error);
-            let known = Known { variance, error, floor: error };
-            let wanted = Wanted { tolerance: subject.tolerance.lookups, cap: CAP };
-            let observe = move |counts: &[u32], y: &mut Vec<f64>| {
-                let scale = 1.0 / mean;
-                y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
-            };
-            Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Lookups(Box::new(observe))))
-        } else {
-            let largest = move |draws: &DrawBuffer| {
-                let counts = draws.lookups.iter();
-                counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
-            };
-            // The law's own number may be rounded; a draw that differs by one is far beyond that.
-            Kind::Always(Always { largest: Box::new(largest), bound: 0.5 })
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(law) = &subject.prediction.lookups else { return Vec::new() };
+    let mean = law.mean;
+    let kind = if law.variance > 0.0 {
+        let variance = law.variance / (mean * mean);
+        let error = ERROR.max(law.error);
+        let known = Known { variance, error, floor: error };
+        let wanted = Wanted { tolerance: subject.tolerance.lookups, cap: CAP };
+        let observe = move |counts: &[u32], y: &mut Vec<f64>| {
+            let scale = 1.0 / mean;
+            y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
         };
-        vec![Question::whole("the number of lookups", kind)]
-    }
+        Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Lookups(Box::new(observe))))
+    } else {
+        let largest = move |draws: &DrawBuffer| {
+            let counts = draws.lookups.iter();
+            counts.fold(0.0, |most: f64, &m| most.max((f64::from(m) - mean).abs()))
+        };
+        // The law's own number may be rounded; a draw that differs by one is far beyond that.
+        Kind::Always(Always { largest: Box::new(largest), bound: 0.5 })
+    };
+    vec![Question::whole("the number of lookups", kind)]
 }

@@ -12,16 +12,13 @@
 //! length of a walk, V is again twice that of pilot draws.
 
 use super::observe::{Observe, observe_each};
-use super::question::{Always, Check, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::stats::verdict::FURTHEST;
 use crate::theory::Channel;
 
 /// The largest relative error of the mean that is still worth a promise.
 const CAP: f64 = 0.05;
-
-/// The check of the mean.
-pub struct Mean;
 
 /// Whether rounding spoils what the draws' spread says, if they have any.
 #[must_use]
@@ -41,15 +38,12 @@ fn floor(subject: &Subject, channel: &Channel) -> f64 {
     (truth.error + truth.value.abs() * rounding_of(subject)) / channel.unit
 }
 
-impl Check for Mean {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let channels = subject.prediction.channels.iter().enumerate();
-        channels
-            .map(|(index, channel)| {
-                Question::channel(index, "the mean", kind(subject, index, channel))
-            })
-            .collect()
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let channels = subject.prediction.channels.iter().enumerate();
+    channels
+        .map(|(index, channel)| Question::channel(index, "the mean", kind(subject, index, channel)))
+        .collect()
 }
 
 /// Fewer draws than this that make the variance of all pilot draws leave it unknown.

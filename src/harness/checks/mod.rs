@@ -30,18 +30,43 @@ pub mod variance;
 use crate::catalogue::Catalogue;
 
 pub use observe::Observe;
-pub use question::{
-    Always, Check, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding,
-};
+pub use question::{Always, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding};
+
+/// A page of the catalogue of checks.
+struct Check {
+    /// What it asks of an experiment; nothing where it does not apply.
+    questions: fn(&Subject) -> Vec<Question>,
+    /// Whether it asks of experiments that a case declares biased, too.
+    of_biased: bool,
+    /// Whether its p-values are uniform when all is well, or only never too often small.
+    is_uniform: bool,
+}
+
+impl Check {
+    const fn new(questions: fn(&Subject) -> Vec<Question>) -> Self {
+        Self { questions, of_biased: false, is_uniform: true }
+    }
+
+    /// It asks of experiments that a case declares biased, too.
+    const fn of_biased(self) -> Self {
+        Self { of_biased: true, ..self }
+    }
+
+    /// Its p-values are never too often small, but not uniform.
+    const fn not_uniform(self) -> Self {
+        Self { is_uniform: false, ..self }
+    }
+}
 
 /// All questions of all checks, in the order of the catalogue.
 #[must_use]
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let pages = CATALOGUE.pages.iter().zip(ALL);
-    let asked = pages.flat_map(|(page, check)| {
+    let asking = pages.filter(|(_, check)| check.of_biased || !subject.expect_biased);
+    let asked = asking.flat_map(|(page, check)| {
         let check_name = page.name();
         let expects_bias = subject.expect_biased && check_name == "mean";
-        let questions = check.questions(subject).into_iter();
+        let questions = (check.questions)(subject).into_iter();
         questions.map(move |question| Question {
             check: check_name.clone(),
             expects_bias,
@@ -51,39 +76,40 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     asked.collect()
 }
 
-/// See [`Check::is_uniform`].
+/// Whether the p-values of the check of that name are uniform when all is well.
 #[must_use]
 pub fn is_uniform(name: &str) -> bool {
     let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
-    named.is_some_and(|(_, check)| check.is_uniform())
+    named.is_some_and(|(_, check)| check.is_uniform)
 }
 
-/// Lists the checks: from one line each come the module, the name and the row in `list`.
+/// Lists the checks: from one line each come the name, the row in `list`, and of what it is asked.
 macro_rules! checks {
-    ($($module:ident :: $Page:ident,)*) => {
+    ($($module:ident $($how:ident)*,)*) => {
         /// Every check, in the order of registration.
         pub const CATALOGUE: Catalogue =
             Catalogue { name: "checks", pages: &[$($crate::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
-        const ALL: &[&dyn Check] = &[$(&$module::$Page),*];
+        const ALL: &[Check] = &[$(Check::new($module::questions)$(.$how())*),*];
     };
 }
 
 checks! {
-    mean::Mean,
-    variance::Variance,
-    lookups::Lookups,
-    covariance::Covariance,
-    counts::Counts,
-    atoms::Atoms,
-    distances::Distances,
-    depth::Depth,
-    curve::Curve,
-    dispersion::Dispersion,
-    streams::Streams,
-    generator::Generator,
-    resolution::Resolution,
-    invariant::Invariant,
-    numeric::Numeric,
+    mean of_biased,
+    variance,
+    lookups of_biased,
+    covariance,
+    counts of_biased,
+    // Two values have their exact binomial law, whose p-values are discrete.
+    atoms not_uniform,
+    distances,
+    depth,
+    curve not_uniform,
+    dispersion,
+    streams,
+    generator not_uniform,
+    resolution not_uniform,
+    invariant,
+    numeric of_biased,
 }

@@ -3,21 +3,17 @@
 //! A draw that is not a number, or infinite, is a failure whatever else the draws say: no mean of
 //! such draws exists.
 
-use super::question::{Always, Check, Kind, Question, Subject};
+use super::question::{Always, Kind, Question, Subject};
 use crate::estimators::DrawBuffer;
 use crate::numeric::sum::sum_in_lanes;
-
-/// The check of the numbers.
-pub struct Numeric;
 
 fn largest(draws: &DrawBuffer) -> f64 {
     // x · 0 is 0 for every finite x and not a number otherwise.
     draws.values.iter().map(|values| sum_in_lanes(values, |x| x * 0.0)).sum()
 }
 
-impl Check for Numeric {
-    fn questions(&self, _: &Subject) -> Vec<Question> {
-        let bound = Always { largest: Box::new(largest), bound: 0.0 };
-        vec![Question::whole("every draw", Kind::Always(bound))]
-    }
+/// What is asked.
+pub fn questions(_: &Subject) -> Vec<Question> {
+    let bound = Always { largest: Box::new(largest), bound: 0.0 };
+    vec![Question::whole("every draw", Kind::Always(bound))]
 }

@@ -212,17 +212,6 @@ pub struct Always {
     pub bound: f64,
 }
 
-/// A page of the catalogue of checks.
-pub trait Check: Sync {
-    /// What it asks of an experiment; nothing where it does not apply.
-    fn questions(&self, subject: &Subject) -> Vec<Question>;
-
-    /// Whether its p-values are uniform when all is well, or only never too often small.
-    fn is_uniform(&self) -> bool {
-        true
-    }
-}
-
 /// Rounding of a product of `lookups` factors, relative to the result.
 #[must_use]
 pub fn rounding(lookups: f64) -> f64 {

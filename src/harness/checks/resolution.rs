@@ -11,7 +11,7 @@
 //! Coarse random numbers and positions in single precision escape every mean and variance. The
 //! check looks at the collisions of one block, drawn once more.
 
-use super::question::{Check, Inspected, Kind, Question, Subject};
+use super::question::{Inspected, Kind, Question, Subject};
 use crate::harness::addresses::BLOCK;
 use crate::stats::ties;
 use crate::theory::Law;
@@ -19,25 +19,14 @@ use crate::theory::Law;
 /// Fewer collisions than this say nothing about their resolution.
 const FEWEST: usize = 100;
 
-/// The check of the resolution.
-pub struct Resolution;
-
-impl Check for Resolution {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(Law::Distances { bins, end, from, .. }) = &subject.prediction.law else {
-            return Vec::new();
-        };
-        if subject.expect_biased {
-            return Vec::new();
-        }
-        let (end, grain) = (*end, grain(bins, *end, *from));
-        let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, end, grain)));
-        vec![Question::whole("the resolution of the distances", kind)]
-    }
-
-    fn is_uniform(&self) -> bool {
-        false
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(Law::Distances { bins, end, from, .. }) = &subject.prediction.law else {
+        return Vec::new();
+    };
+    let (end, grain) = (*end, grain(bins, *end, *from));
+    let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, end, grain)));
+    vec![Question::whole("the resolution of the distances", kind)]
 }
 
 /// `Σ_k ulp(s_k)/(width_k K²)` over the K classes: twice the ties of a pair of distances as doubles.

@@ -12,7 +12,7 @@
 
 use super::batch::Batch;
 use super::mean::is_faint;
-use super::question::{BLURRED, Check, Kind, Law, Question, Subject};
+use super::question::{BLURRED, Kind, Law, Question, Subject};
 use crate::harness::addresses::BLOCK;
 use crate::stats::correlation;
 
@@ -24,9 +24,6 @@ const FEWEST: u64 = 4;
 const MOST_EXCESS: f64 = 0.5;
 /// The largest `E[z⁸]/(6 L B³)`: beyond, a single draw may decide.
 const MOST_BY_ONE: f64 = 0.01;
-
-/// The check of the streams.
-pub struct Streams;
 
 struct IndexSums {
     mean: f64,
@@ -63,23 +60,22 @@ impl Law for IndexSums {
     }
 }
 
-impl Check for Streams {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
-        let Some(moments) = channel.moments else { return Vec::new() };
-        let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
-        let blocks = subject.fixed / BLOCK;
-        let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
-        let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
-        let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
-        let enough = enough && by_one <= MOST_BY_ONE;
-        let enough = enough && subject.is_in_turn;
-        let is_blurred = moments.error > BLURRED;
-        if subject.expect_biased || is_faint(subject, channel) || is_blurred || !enough {
-            return Vec::new();
-        }
-        let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
-        let law = IndexSums { mean, scale, kurtosis };
-        vec![Question::whole("the sums across streams", Kind::Law(Box::new(law)))]
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
+    let Some(moments) = channel.moments else { return Vec::new() };
+    let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
+    let blocks = subject.fixed / BLOCK;
+    let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
+    let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
+    let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
+    let enough = enough && by_one <= MOST_BY_ONE;
+    let enough = enough && subject.is_in_turn;
+    let is_blurred = moments.error > BLURRED;
+    if is_faint(subject, channel) || is_blurred || !enough {
+        return Vec::new();
     }
+    let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
+    let law = IndexSums { mean, scale, kurtosis };
+    vec![Question::whole("the sums across streams", Kind::Law(Box::new(law)))]
 }

@@ -11,7 +11,7 @@
 
 use super::mean::is_faint;
 use super::observe::{Observe, observe_each};
-use super::question::{Check, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
+use super::question::{Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::theory::Channel;
 
 /// The largest relative error of the variance that is still worth a promise.
@@ -19,21 +19,14 @@ const CAP: f64 = 0.2;
 /// A kurtosis this near to 1 makes `(X − E[X])²` constant: nothing is left to test.
 const TWO_POINT: f64 = 1.0 + 1e-6;
 
-/// The check of the variance.
-pub struct Variance;
-
-impl Check for Variance {
-    fn questions(&self, subject: &Subject) -> Vec<Question> {
-        if subject.expect_biased {
-            return Vec::new();
-        }
-        let channels = subject.prediction.channels.iter().enumerate();
-        channels
-            .filter_map(|(index, channel)| {
-                Some(Question::channel(index, "the variance", kind(subject, index, channel)?))
-            })
-            .collect()
-    }
+/// What is asked.
+pub fn questions(subject: &Subject) -> Vec<Question> {
+    let channels = subject.prediction.channels.iter().enumerate();
+    channels
+        .filter_map(|(index, channel)| {
+            Some(Question::channel(index, "the variance", kind(subject, index, channel)?))
+        })
+        .collect()
 }
 
 fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
