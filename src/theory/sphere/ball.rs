@@ -17,6 +17,7 @@ const FEWEST: usize = 9;
 pub(super) const MOST: usize = 32;
 
 /// A ball with a radial extinction.
+#[derive(Clone, Copy)]
 pub struct Ball<'a> {
     /// R.
     pub radius: f64,

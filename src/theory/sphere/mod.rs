@@ -117,6 +117,9 @@ impl<'a> Solved<'a> {
     fn view(&self, offset2: f64, from: f64, weight: f64, row: &mut Row) -> f64 {
         let chord = self.ball.chord(offset2, from);
         let left = self.ball.collect(&chord, &self.shells, &self.rules, weight, row);
+        if self.ball.centre == Centre::Point {
+            return weight * point::unscattered(self.ball, &chord, self.resolution, &self.rules);
+        }
         weight * left * if chord.hits { self.lights.core } else { self.lights.environment }
     }
 

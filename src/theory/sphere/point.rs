@@ -11,10 +11,9 @@
 use std::f64::consts::PI;
 
 use super::ball::{Ball, Chord};
-use super::shells::{Centre, Resolution, Row, Rules, Shells};
-use super::{product, views};
+use super::shells::{Centre, Resolution, Row, Rules};
+use super::{Lights, Solved, product};
 use crate::numeric::Known;
-use crate::numeric::matrix::Matrix;
 
 /// The radiance of light that was scattered once, twice, … and at all along each line of sight that
 /// passes the centre at a distance.
@@ -25,44 +24,35 @@ fn radiances(
     orders: usize,
     resolution: Resolution,
 ) -> Option<Vec<Vec<f64>>> {
-    let shells = Shells::new(ball.radius, Centre::Point, ball.extinction, resolution);
-    let rules = Rules::new(resolution.nodes + 8);
-    let nodes = shells.nodes(&rules);
-    let (mut first, mut rows) = (Vec::new(), Vec::new());
-    for r2 in &nodes {
-        let r = r2.sqrt();
-        let (mut row, mut direct) = (Row::new(shells.count), 0.0);
-        for view in views::from_point(r, ball.radius, Centre::Point, resolution, &rules) {
-            let chord = ball.chord(view.offset2, view.from);
-            ball.collect(&chord, &shells, &rules, view.weight, &mut row);
-            direct += view.weight * unscattered(ball, &chord, resolution, &rules);
-        }
-        first.push(albedo * direct);
-        rows.push(row.weights(&shells, &rules));
-    }
-    let matrix = Matrix::new(nodes.len(), nodes.len(), |i, j| albedo * rows[i][j]);
-    let all = matrix.series(&first)?;
+    let ball = &Ball { centre: Centre::Point, ..*ball };
+    let dark = Lights { environment: 0.0, core: 0.0 };
+    let solved = Solved::new(ball, albedo, dark, resolution)?;
     let of = |offset: &f64| {
         let chord = ball.chord(offset * offset, f64::NEG_INFINITY);
-        let mut row = Row::new(shells.count);
-        ball.collect(&chord, &shells, &rules, albedo, &mut row);
-        let weights = row.weights(&shells, &rules);
+        let mut row = Row::new(solved.shells.count);
+        ball.collect(&chord, &solved.shells, &solved.rules, albedo, &mut row);
+        let weights = row.weights(&solved.shells, &solved.rules);
         let through = |j: &[f64]| product(&weights, j);
-        let single = albedo * unscattered(ball, &chord, resolution, &rules);
+        let single = albedo * unscattered(ball, &chord, resolution, &solved.rules);
         let mut found = vec![single];
-        let mut intensity = first.clone();
+        let mut intensity: Vec<f64> = solved.direct.iter().map(|direct| albedo * direct).collect();
         for _ in 1..orders {
             found.push(through(&intensity));
-            intensity = matrix.applied(&intensity);
+            intensity = solved.matrix.applied(&intensity);
         }
-        found.push(single + through(&all));
+        found.push(single + through(&solved.source));
         found
     };
     Some(offsets.iter().map(of).collect())
 }
 
 /// `∫ σ_t J₀ e^{−τ} dt` along a line of sight that does not meet the centre, for a source of power 1.
-fn unscattered(ball: &Ball, chord: &Chord, resolution: Resolution, rules: &Rules) -> f64 {
+pub(super) fn unscattered(
+    ball: &Ball,
+    chord: &Chord,
+    resolution: Resolution,
+    rules: &Rules,
+) -> f64 {
     let offset = chord.offset2.sqrt();
     // Panels follow the distance from the centre.
     let mut edges = vec![0.0];
