@@ -11,7 +11,7 @@
 //! ```text
 //! 8  cli            arguments, exit codes, progress, the only prints (in the binary)
 //! 7  report         record → artifacts: csv, json, svg, png, console, junit, markdown
-//! 6  judge bench stress self_test render   programs that use the harness; they do not know each other
+//! 6  baseline judge bench stress self_test render   programs that use the harness; they do not know each other
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
@@ -35,6 +35,8 @@
 //! - Nothing is clamped, skipped or defaulted silently. Unknown is `None`, never `0`.
 //! - A check that cannot fail is a defect.
 
+#[cfg(feature = "library")]
+pub mod baseline;
 #[cfg(feature = "library")]
 pub mod bench;
 pub mod catalogue;

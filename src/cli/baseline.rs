@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::anyhow;
 use clap::Args;
-use trueflight::harness::baseline::{
-    Baseline, BaselineError, Comparison, Rules, compare, fingerprint,
-};
+use trueflight::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
 use trueflight::harness::record::Verdict;
 use trueflight::harness::{Case, Record};
 use trueflight::report::diff;

@@ -7,8 +7,8 @@ use std::time::Instant;
 
 use anyhow::Context;
 use indicatif::ProgressBar;
+use trueflight::baseline::fingerprint;
 use trueflight::files;
-use trueflight::harness::baseline::fingerprint;
 use trueflight::harness::cache::Cache;
 use trueflight::harness::record::Record;
 use trueflight::harness::{Plan, run, verdict};

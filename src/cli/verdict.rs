@@ -1,7 +1,7 @@
 //! From verdicts to an exit code.
 
 use clap::ValueEnum;
-use trueflight::harness::baseline::Comparison;
+use trueflight::baseline::Comparison;
 use trueflight::harness::record::{Record, Verdict};
 use trueflight::report::junit;
 

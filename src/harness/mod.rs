@@ -11,17 +11,16 @@
 //! case        ready  estimator  problem  scenario  case
 //! plan        checks  levels  plan  mutation
 //! draws       draw  drawn  cache  run
-//! record      baseline/{file, comparison}  plot_data  record
+//! record      comparison  plot_data  record
 //! verdict     qualify  evaluate  theory_rows  measured  repeat  anatomy  curves  summary  verdict
-//! baselines   baseline/{stored, scope, compare}
 //! ```
 
 pub mod addresses;
 mod anatomy;
-pub mod baseline;
 pub mod cache;
 pub mod case;
 pub mod checks;
+pub mod comparison;
 pub mod curves;
 pub mod draw;
 pub mod drawn;

@@ -7,7 +7,7 @@
 pub use crate::stats::verdict::{GateFinding, Verdict};
 use serde::Serialize;
 
-use super::baseline::comparison::Comparison;
+use super::comparison::Comparison;
 
 pub use super::plot_data::{Anatomy, Curve, CurvePoint, MeasuredPoint, Sweep};
 

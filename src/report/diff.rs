@@ -1,7 +1,7 @@
 //! What changed since a stored run, in words that the console and the summaries share.
 
-use crate::harness::baseline::LeftOut;
-use crate::harness::baseline::{Change, Comparison, Drift, Quantity, Sequel};
+use crate::baseline::LeftOut;
+use crate::baseline::{Change, Comparison, Drift, Quantity, Sequel};
 use crate::report::number::{fixed, short};
 
 /// Something that changed.

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 
-use crate::harness::baseline::Comparison;
+use crate::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::ReportError;
 use crate::report::diff;

@@ -3,7 +3,7 @@
 
 use std::fmt::Write;
 
-use crate::harness::baseline::Comparison;
+use crate::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};

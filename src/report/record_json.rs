@@ -6,7 +6,7 @@
 
 use serde::Serialize;
 
-use crate::harness::baseline::Comparison;
+use crate::baseline::Comparison;
 use crate::harness::record::{Record, Results, Timing};
 use crate::report::{Artifact, ReportError};
 

@@ -23,6 +23,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("estimators", 4),
     ("mutants", 4),
     ("harness", 5),
+    ("baseline", 6),
     ("judge", 6),
     ("bench", 6),
     ("stress", 6),
@@ -34,13 +35,14 @@ const FLOORS: &[(&str, u8)] = &[
 ];
 
 /// The edges that are allowed on one floor: everything counts, mutants are twins of estimators, what
-/// judges foreign draws is tested by itself, and `main` is nothing but the door to `cli`.
+/// judges foreign draws is tested by itself, a bench is stored as a run is, and `main` is nothing but the door to `cli`.
 const SIDEWAYS: &[(&str, &str)] = &[
     ("geometry", "numeric"),
     ("rng", "numeric"),
     ("mutants", "estimators"),
     ("main", "cli"),
     ("self_test", "judge"),
+    ("bench", "baseline"),
 ];
 
 /// Edges that go down and are forbidden all the same: theory and media hold no generator,

@@ -5,7 +5,7 @@ use std::fmt::Write;
 
 use super::layout::{Grid, Paint, Pen};
 use super::{View, views};
-use crate::harness::baseline::Comparison;
+use crate::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::failing;

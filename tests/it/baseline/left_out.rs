@@ -6,9 +6,9 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
-use trueflight::harness::baseline::LeftOut;
-use trueflight::harness::baseline::{Baseline, Entry};
-use trueflight::harness::baseline::{Rules, compare};
+use trueflight::baseline::LeftOut;
+use trueflight::baseline::{Baseline, Entry};
+use trueflight::baseline::{Rules, compare};
 use trueflight::report::diff;
 
 use super::{CASE, RULES, baseline, command, said};

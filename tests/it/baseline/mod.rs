@@ -8,10 +8,10 @@ use std::process::Output;
 use assert_cmd::Command;
 use serde_json::Value;
 use tempfile::TempDir;
+use trueflight::baseline::{Baseline, BaselineError, Entry};
+use trueflight::baseline::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::estimators::Kernel;
 use trueflight::estimators::{DrawBuffer, Experiment};
-use trueflight::harness::baseline::{Baseline, BaselineError, Entry};
-use trueflight::harness::baseline::{Comparison, Quantity, Rules, Sequel, compare};
 use trueflight::harness::{Amount, Case, Options, Plan, Record, Source, run, verdict};
 use trueflight::rng::Streams;
 

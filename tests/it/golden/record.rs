@@ -1,7 +1,7 @@
 //! A made-up run: one of each verdict, and names, reasons and numbers that reports trip over.
 
-use trueflight::harness::baseline::LeftOut;
-use trueflight::harness::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
+use trueflight::baseline::LeftOut;
+use trueflight::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use trueflight::harness::record::{
     Anatomy, CaseRecord, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint, Record,
     Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,

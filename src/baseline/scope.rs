@@ -1,7 +1,7 @@
 //! What of two entries can be compared, and what is left out.
 
-use super::comparison::{LeftOut, Rules};
 use super::stored::Entry;
+use crate::harness::comparison::{LeftOut, Rules};
 use crate::harness::normality::{Tails, variance_error};
 
 /// Times below this are noise.

@@ -1,4 +1,4 @@
-//! Stored runs: what a later run is compared with.
+//! Stored runs: what a later run is compared with. Floor 6.
 //!
 //! A baseline is a file `NAME.json` with one entry per experiment and channel. A later run is compared
 //! with it (`compare`): has the variance, the number of lookups or the time grown? And on unchanged
@@ -8,16 +8,14 @@
 //! A baseline that is missing, broken or of another form is an error; a file is written under a
 //! temporary name and renamed.
 //!
-//! From bottom to top: [`file`](mod@file), [`comparison`], [`stored`], [`scope`], [`compare`](mod@compare); the
-//! record of a run stands between the second and the third.
+//! From bottom to top: [`file`](mod@file), [`stored`], [`scope`], [`compare`](mod@compare).
 
 pub mod compare;
-pub mod comparison;
 pub mod file;
 pub mod scope;
 pub mod stored;
 
+pub use crate::harness::comparison::{Change, Comparison, Drift, LeftOut, Quantity, Rules, Sequel};
 pub use compare::compare;
-pub use comparison::{Change, Comparison, Drift, LeftOut, Quantity, Rules, Sequel};
 pub use file::BaselineError;
 pub use stored::{Baseline, Entry, Evidence, fingerprint};

@@ -23,9 +23,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::comparison::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use super::scope::{Measured, is_comparable, left_out};
 use super::stored::{Baseline, Entry, Evidence};
+use crate::harness::comparison::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use crate::stats::normal;
 
 /// Two numbers of lookups without spread are the same if they are this near.
