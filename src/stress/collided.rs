@@ -8,7 +8,7 @@
 //! (n + 1) aₙ₊₁ = (1 − ρ^k − n) aₙ − ρ^k [g_k]ₙ,   m_k = g_k + A_k
 //! ```
 
-use super::series::{coefficient, value};
+use super::series::{binomial, coefficient, value};
 use super::text::{self, one_line};
 use super::trial::{Trial, central};
 use super::{Effort, Row, in_parts};
@@ -16,7 +16,7 @@ use crate::estimators::transmittance::next_flight::NextFlight;
 use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
 use crate::numeric::Wide;
 use crate::theory::Mesh;
-use crate::theory::volterra::{self, Source, binomial};
+use crate::theory::volterra::{self, Source};
 
 /// Terms of a series: at a quarter of its radius, 4⁻⁴⁸ = 1e-29 of the largest.
 const TERMS: usize = 48;

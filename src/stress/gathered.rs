@@ -10,7 +10,8 @@
 //! ```
 
 use super::scattering::{field, panels};
-use super::shared_walk::{degree, of_mean};
+use super::series::binomial;
+use super::shared_walk::{ORDERS, degree, of_mean};
 use super::trial::{Trial, central};
 use super::{Effort, Row, in_parts};
 use crate::media::{Control, Medium, Piecewise};
@@ -20,7 +21,6 @@ use crate::problems::{Problem, SingleScattering};
 use crate::theory::Mesh;
 use crate::theory::single::predict::DENSITY;
 use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Tracking, walks};
-use crate::theory::volterra::binomial;
 
 /// Panels of s, at least.
 const STEPS: u32 = 40;
@@ -237,7 +237,7 @@ fn at_collisions(nodes: &[Vec<At>], sampling: f64) -> [f64; 4] {
 /// by how many ways points coincide.
 fn shared(nodes: &[Vec<At>], count: usize) -> [f64; 4] {
     let mut known: Vec<([usize; 4], Vec<Vec<f64>>, f64)> = Vec::new();
-    for order in walks::ORDERS {
+    for order in ORDERS {
         let degree = degree(&order);
         let (after, whole) = running(nodes, |at, p, i| {
             let gain = at.extinction * at.source / at.density;

@@ -13,7 +13,7 @@
 use std::cell::OnceCell;
 
 use super::rods::{moments_of, rod_with, rule};
-use super::series::power;
+use super::series::{binomial, power};
 use super::trial::{Dice, Trial, central, share};
 use super::{Effort, Row, in_parts};
 use crate::media::Piecewise;
@@ -21,7 +21,6 @@ use crate::numeric::Wide;
 use crate::problems::rod::{self, HIGHEST_ORDER, MOST_PARTS, Quantity};
 use crate::theory::particle::ParticleRule;
 use crate::theory::rod as rods;
-use crate::theory::volterra::binomial;
 
 /// Terms of a series: at half a collision, 2⁻²²/22! = 2e-28.
 const TERMS: usize = 22;

@@ -10,6 +10,11 @@ pub(super) fn power(x: Wide, k: usize) -> Wide {
     (0..k).fold(Wide::ONE, |power, _| power * x)
 }
 
+/// In how many ways so many are chosen of all.
+pub(super) fn binomial(all: usize, chosen: usize) -> f64 {
+    (0..chosen).fold(1.0, |ways, i| ways * (all - i) as f64 / (i + 1) as f64)
+}
+
 /// The n-th coefficient of a product.
 pub(super) fn coefficient(a: &[Wide], b: &[Wide], n: usize) -> Wide {
     (0..=n).map(|i| a[i] * b[n - i]).sum()

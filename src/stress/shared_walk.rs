@@ -3,7 +3,20 @@
 use std::iter::Sum;
 use std::ops::{Div, Mul};
 
-use crate::theory::single::walks::ORDERS;
+/// All products of up to four factors, those of fewer factors first.
+pub(super) const ORDERS: [[usize; 4]; 11] = [
+    [1, 0, 0, 0],
+    [0, 1, 0, 0],
+    [2, 0, 0, 0],
+    [0, 0, 1, 0],
+    [1, 1, 0, 0],
+    [3, 0, 0, 0],
+    [0, 0, 0, 1],
+    [1, 0, 1, 0],
+    [0, 2, 0, 0],
+    [2, 1, 0, 0],
+    [4, 0, 0, 0],
+];
 
 /// The factors of `A₁^{n₁} A₂^{n₂} …`, `A_m` to the power m.
 pub(super) fn degree(order: &[usize; 4]) -> usize {

@@ -1,14 +1,13 @@
 //! Techniques of single scattering in a homogeneous medium, as theory has them and as chains, see `scattered`.
 
 use super::chains::{Chain, Term};
-use super::series::power;
-use super::shared_walk::{degree, of_mean};
+use super::series::{binomial, power};
+use super::shared_walk::{ORDERS, degree, of_mean};
 use crate::numeric::Wide;
 use crate::problems::SingleScattering;
 use crate::theory::raw::{added, poisson};
 use crate::theory::single::predict::Found;
 use crate::theory::single::{Along, Node, Points, Scene, Technique, Tracking, walks};
-use crate::theory::volterra::binomial;
 
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)
@@ -209,12 +208,12 @@ impl Case {
         let density = |node: &Node| problem.equiangular_density_beyond(node.along);
         let found = walks::at_points(scene, count, &density);
         let mut known: Vec<usize> = Vec::new();
-        for order in walks::ORDERS {
+        for order in ORDERS {
             let degree = degree(&order);
             let terms = (1..5).filter(|&m| order[m - 1] > 0).map(|m| {
                 let mut lower = order;
                 lower[m - 1] -= 1;
-                let rest = walks::ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
+                let rest = ORDERS.iter().position(|order| *order == lower).map(|i| known[i]);
                 self.term(Wide::from(order[m - 1] as f64), (-2, self.shadow[m]), rest)
             });
             let terms = terms.collect();
@@ -227,7 +226,7 @@ impl Case {
         let n = count as f64;
         let moments = move |at: &[Wide]| {
             of_mean(count, |i| {
-                let order = &walks::ORDERS[i];
+                let order = &ORDERS[i];
                 let (k, points) = (degree(order), order.iter().sum::<usize>());
                 at[known[i]] * power(scattered, k) * power(at[norm], k - points)
             })
