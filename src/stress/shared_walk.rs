@@ -46,3 +46,15 @@ where
         sum / (count as f64).powi(k)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_ways_together_are_as_many_as_choices_of_points() {
+        for count in 1..9 {
+            assert_eq!(of_mean(count, |_| 1.0), [1.0; 4], "{count} points");
+        }
+    }
+}
