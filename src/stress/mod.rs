@@ -3,7 +3,10 @@
 //! Every quantity that a verdict rests on is computed where it is hardest, thousands of times, and
 //! compared with arithmetic of 32 digits ([`Wide`](crate::numeric::Wide)), with exact integers, or with
 //! another method at a higher resolution. A page of this folder stresses one kind of quantity and
-//! answers rows; a row is the worst that was found, where, and the bound that it has to keep.
+//! answers rows; a row is the worst that was found, where, and the bound that it has to keep ([`row`]).
+//! Most pages are tables: rows, how many trials fill them, and a trial, which draws parameters and compares
+//! what the crate finds with a reference ([`trial`]). References share power series and linear equations
+//! (`series`) with each other, and nothing with what they check.
 //!
 //! ```text
 //! relative          |found − exact|/|exact|
