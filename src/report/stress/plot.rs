@@ -47,7 +47,7 @@ pub fn figure(curves: &[Curve]) -> Result<Sheet, ReportError> {
         ),
         (
             77.0,
-            "Of each family the estimator that fails first; a family without a curve fails nowhere. Pale \
+            "Of each family the estimator that fails first; a family without a curve is not seen to fail. Pale \
              points: the walks were too few to tell. Below 0.001 the bias is drawn as nothing.",
             13.0,
             GREY,
