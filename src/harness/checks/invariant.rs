@@ -6,7 +6,7 @@
 //! ```
 //!
 //! For the double particle (q = 1) without a control it reads Σ rᵢ X(tᵢ⁻) + X(S) = 1: absorbed and
-//! transmitted light are all the light there was. It applies to walks that keep their books.
+//! transmitted light are all the light there was. It applies to walks that measure their own defect.
 
 use super::question::{Always, Kind, Question, Subject, rounding};
 use crate::estimators::DrawBuffer;
@@ -37,7 +37,7 @@ fn largest(draws: &DrawBuffer) -> f64 {
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    if !subject.keeps_books {
+    if !subject.has_invariant {
         return Vec::new();
     }
     let bound = Always { largest: Box::new(largest), bound: rounding(0.0) };

@@ -23,8 +23,8 @@ pub struct Subject<'a> {
     pub tolerance: Tolerance,
     /// Whether the case declares the experiment biased.
     pub expect_biased: bool,
-    /// Whether each draw keeps its books, see [`crate::estimators::walk::Books`].
-    pub keeps_books: bool,
+    /// Whether an invariant holds for each draw, see [`crate::estimators::Draw::defect`].
+    pub has_invariant: bool,
     /// Whether draws come one like the other; order-free ones come sorted by their lookups.
     pub is_in_turn: bool,
     /// What pilot draws say of spreads, channel by channel, where theory has none.
