@@ -72,7 +72,11 @@ pub mod stress;
 #[cfg(feature = "library")]
 pub mod theory;
 
-/// The examples of the README are compiled and run with the documentation's.
+/// The examples of README and manual are compiled and run with the documentation's.
 #[cfg(all(doctest, feature = "cli"))]
-#[doc = include_str!("../README.md")]
-struct Readme;
+mod manual {
+    #[doc = include_str!("../README.md")]
+    struct Readme;
+    #[doc = include_str!("../docs/library.md")]
+    struct Library;
+}

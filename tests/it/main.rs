@@ -15,6 +15,7 @@ mod golden;
 mod judge;
 mod junit;
 mod lookup_law;
+mod manual;
 mod media_laws;
 mod moments;
 mod mutants;
