@@ -17,7 +17,7 @@ struct Key {
 
 static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
 
-/// [`answer`], which is worked out once and only once, whoever asks.
+/// `answer`, which is worked out once and only once, whoever asks.
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
     let key = Key {
         cosine: match incidence.light {
