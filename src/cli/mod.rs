@@ -1,4 +1,4 @@
-//! Arguments, exit codes, progress, and the only prints. Floor 7.
+//! Arguments, exit codes, progress, and the only prints. Floor 8.
 //!
 //! | exit code | meaning |
 //! |---|---|

@@ -1,6 +1,6 @@
 //! Record → artifacts: a report is a pure function from what a run found to the bytes of files.
 //!
-//! Floor 6. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
+//! Floor 7. A report sees nothing but the [`Record`] and does no arithmetic beyond formatting.
 //! It is one file and one line in the list at the foot of this page.
 
 pub mod anatomy_plot;
