@@ -6,14 +6,12 @@
 
 pub mod controls;
 pub mod domain;
-pub mod fates;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
 pub mod lambertian;
-pub mod layers;
-pub mod ledger;
 pub mod multiple_scattering;
+pub mod order_free;
 pub mod packet;
 pub mod rod;
 pub mod rules;
@@ -28,7 +26,6 @@ pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
 pub mod walk;
-pub mod walkers;
 
 use fearless_simd::Level;
 
@@ -40,7 +37,7 @@ use crate::theory::Prediction;
 
 pub use domain::Refusal;
 pub use setup::{Setup, Site};
-pub use transmittance_curve::Portrait;
+pub use transmittance_curve::RayView;
 pub use trial::{DrawBuffer, Experiment, Kernel, Order};
 
 /// One realisation.
@@ -87,12 +84,12 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// What it takes, unless its settings say otherwise.
     const INPUTS: Inputs;
     /// Whether its draws know their [`Draw::defect`].
-    const KEEPS_BOOKS: bool = false;
+    const HAS_INVARIANT: bool = false;
     /// Whether σ̂ may be 0 wherever the residual is: collisions there change nothing but the cost.
     const SKIPS: bool = false;
     /// Whether it draws eight at a time, by [`Estimator::draw_packets`].
     const IN_PACKETS: bool = false;
-    /// Whether its draws may be made in any order of their collisions, by [`Estimator::walkers`].
+    /// Whether its draws may be made in any order of their collisions, by [`Estimator::order_free`].
     const ORDER_FREE: bool = false;
 
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
@@ -140,7 +137,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     fn predict(&self, setup: &Setup<P>) -> Prediction;
 
     /// The ray seen from the side, for estimators of a curve.
-    fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait> {
+    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView> {
         let _ = (setup, address);
         None
     }
@@ -149,11 +146,11 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value>;
 
     /// So many draws to be made in any order of their collisions; `None` where that cannot be.
-    fn walkers<'a>(
+    fn order_free<'a>(
         &'a self,
         setup: &'a Setup<P>,
-        request: walkers::Request<'a>,
-    ) -> Option<Box<dyn walkers::Walkers + 'a>> {
+        request: order_free::Request<'a>,
+    ) -> Option<Box<dyn order_free::OrderFree + 'a>> {
         let _ = (setup, request);
         None
     }
@@ -223,7 +220,7 @@ use estimators;
 /// a collision, as in `product_draws!(self => self.rule)`.
 macro_rules! product_draws {
     ($this:ident => $rule:expr) => {
-        const KEEPS_BOOKS: bool = true;
+        const HAS_INVARIANT: bool = true;
         const SKIPS: bool = true;
         const IN_PACKETS: bool = true;
         const ORDER_FREE: bool = true;
@@ -238,12 +235,12 @@ macro_rules! product_draws {
             $crate::estimators::walk::product(setup, &$rule, medium, rng)
         }
 
-        fn walkers<'a>(
+        fn order_free<'a>(
             &'a $this,
             setup: &'a $crate::estimators::Setup<Transmittance>,
-            request: $crate::estimators::walkers::Request<'a>,
-        ) -> Option<Box<dyn $crate::estimators::walkers::Walkers + 'a>> {
-            $crate::estimators::walkers::product(setup, $rule, request)
+            request: $crate::estimators::order_free::Request<'a>,
+        ) -> Option<Box<dyn $crate::estimators::order_free::OrderFree + 'a>> {
+            $crate::estimators::order_free::product(setup, $rule, request)
         }
 
         fn draw_packets<'a>(

@@ -2,10 +2,9 @@
 
 use fearless_simd::Level;
 
-use super::layers;
+use super::order_free::{self, OrderFree};
 use super::packet::Request;
-use super::walkers::{self, Walkers};
-use super::{Draw, Estimator, Inputs, Portrait, Refusal, Setup, controls};
+use super::{Draw, Estimator, Inputs, RayView, Refusal, Setup, controls};
 use crate::media::even::Even;
 use crate::media::{Lookups, Placement};
 use crate::numeric::pack::in_fused_code;
@@ -133,8 +132,8 @@ pub trait Experiment: Send + Sync {
         self.fill_by(Kernel::Packets(Level::new()), streams, count, buffer);
     }
 
-    /// See [`Estimator::KEEPS_BOOKS`]; order-free draws have none.
-    fn keeps_books(&self) -> bool {
+    /// See [`Estimator::HAS_INVARIANT`]; order-free draws have none.
+    fn has_invariant(&self) -> bool {
         false
     }
 
@@ -156,14 +155,17 @@ pub trait Experiment: Send + Sync {
         None
     }
 
-    /// So many order-free draws, to be made by [`Experiment::draw_layers`]; `None` where there are none.
-    fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {
+    /// So many order-free draws, to be made by [`Experiment::draw_order_free`]; `None` where there are none.
+    fn order_free<'a>(
+        &'a self,
+        request: order_free::Request<'a>,
+    ) -> Option<Box<dyn OrderFree + 'a>> {
         let _ = request;
         None
     }
 
     /// Makes order-free draws of this experiment, or of several that share their lookups with it.
-    fn draw_layers(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn Walkers]) {
+    fn draw_order_free(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn OrderFree]) {
         let _ = (level, places, requests);
     }
 }
@@ -190,8 +192,8 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal>;
     /// See [`Estimator::predict`].
     fn predict(&self, setup: &Setup<P>) -> Prediction;
-    /// See [`Estimator::portrait`].
-    fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait>;
+    /// See [`Estimator::ray_view`].
+    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView>;
     /// See [`Estimator::SKIPS`].
     fn skips(&self) -> bool;
     /// See [`Estimator::ORDER_FREE`].
@@ -233,8 +235,8 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
         Estimator::predict(self, setup)
     }
 
-    fn portrait(&self, setup: &Setup<P>, address: Address) -> Option<Portrait> {
-        Estimator::portrait(self, setup, address)
+    fn ray_view(&self, setup: &Setup<P>, address: Address) -> Option<RayView> {
+        Estimator::ray_view(self, setup, address)
     }
 
     fn skips(&self) -> bool {
@@ -267,9 +269,9 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
     ) {
         if let (Kernel::Packets(level), Order::Free) = (kernel, self.order) {
             let places = streams.places();
-            let request = walkers::Request { counts: &mut streams.counts, count, buffer };
-            if let Some(mut walkers) = self.walkers(request) {
-                self.draw_layers(level, &places, &mut [&mut *walkers]);
+            let request = order_free::Request { counts: &mut streams.counts, count, buffer };
+            if let Some(mut walks) = self.order_free(request) {
+                self.draw_order_free(level, &places, &mut [&mut *walks]);
             }
             return;
         }
@@ -290,8 +292,8 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         }
     }
 
-    fn keeps_books(&self) -> bool {
-        E::KEEPS_BOOKS && self.order == Order::Along
+    fn has_invariant(&self) -> bool {
+        E::HAS_INVARIANT && self.order == Order::Along
     }
 
     fn order(&self) -> Order {
@@ -309,14 +311,17 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         Some(if is_whole { String::new() } else { format!("|{from}|{to}|{gaps:?}") })
     }
 
-    fn walkers<'a>(&'a self, request: walkers::Request<'a>) -> Option<Box<dyn Walkers + 'a>> {
-        self.estimator.walkers(&self.setup, request)
+    fn order_free<'a>(
+        &'a self,
+        request: order_free::Request<'a>,
+    ) -> Option<Box<dyn OrderFree + 'a>> {
+        self.estimator.order_free(&self.setup, request)
     }
 
-    fn draw_layers(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn Walkers]) {
+    fn draw_order_free(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn OrderFree]) {
         let placement = Placement::new(&self.setup.sampling);
         let medium = self.setup.problem.medium().lookups(level);
-        layers::draw(level, &medium, &placement, places, requests);
+        order_free::draw(level, &medium, &placement, places, requests);
     }
 }
 

@@ -9,9 +9,8 @@
 //! its random numbers at once: one for the flight and, where the rule decides by chance, one for the
 //! decision, used or not, so that a stream's numbers do not depend on where the walk has come.
 //!
-//! Every draw also keeps its books: at a collision the particle hands over the share that the rule
-//! takes from it, and at any time what it still carries and what it handed over is what it began
-//! with, to rounding:
+//! Every draw also keeps an invariant: at a collision the rule takes a share from the particle, and at any time what it still
+//! carries and what was taken from it is what it began with, to rounding:
 //!
 //! ```text
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
@@ -33,7 +32,7 @@ pub fn product<P, R: Collision>(
 ) -> Draw<[f64; 1]> {
     let mut cursor = setup.sampling.begin();
     let mut weight = setup.control_transmittance;
-    let mut books = Books::open(weight);
+    let mut invariant = Invariant::open(weight);
     let mut lookups = 0;
     loop {
         let depth = -rng.ln_uniform();
@@ -44,46 +43,46 @@ pub fn product<P, R: Collision>(
         let met = Met { residual, sampling, mean_free_path: 1.0 / sampling };
         let (ratio, outcome) = (met.ratio(), rule.at(met.ratio()));
         if R::DECIDES && rule.kills(&met, number) {
-            return Draw { value: [0.0], lookups, defect: books.defect(weight) };
+            return Draw { value: [0.0], lookups, defect: invariant.defect(weight) };
         }
-        books.hand_over(weight, rule.due(ratio, outcome.survival));
+        invariant.take(weight, rule.due(ratio, outcome.survival));
         weight *= outcome.weight;
     }
-    Draw { value: [weight], lookups, defect: books.defect(weight) }
+    Draw { value: [weight], lookups, defect: invariant.defect(weight) }
 }
 
-/// What a particle began with, and what it handed over at its collisions.
+/// What a particle began with, and what its collisions took.
 #[derive(Debug, Clone, Copy)]
-pub struct Books<L = f64> {
+pub struct Invariant<L = f64> {
     /// The weight at the beginning.
     pub begin: L,
-    /// What was handed over.
-    pub handed_over: L,
-    /// The sizes of all that was booked.
-    pub turnover: L,
+    /// What collisions took.
+    pub taken: L,
+    /// The sum of the sizes of all of it, by which rounding is measured.
+    pub scale: L,
 }
 
-impl<L: Lane> Books<L> {
-    /// The books of a particle that begins with a weight.
+impl<L: Lane> Invariant<L> {
+    /// Of a particle that begins with a weight.
     #[inline(always)]
     #[must_use]
     pub fn open(weight: L) -> Self {
-        Self { begin: weight, handed_over: weight.each(0.0), turnover: weight.size() }
+        Self { begin: weight, taken: weight.each(0.0), scale: weight.size() }
     }
 
-    /// Books the share that a collision takes from a particle that survives it: all but what is
+    /// Notes the share that a collision takes from a particle that survives it: all but what is
     /// due to it, `(1 − r)/q`.
     #[inline(always)]
-    pub fn hand_over(&mut self, weight: L, due: L) {
+    pub fn take(&mut self, weight: L, due: L) {
         let share = weight * (weight.each(1.0) - due);
-        self.handed_over = self.handed_over + share;
-        self.turnover = self.turnover + share.size();
+        self.taken = self.taken + share;
+        self.scale = self.scale + share.size();
     }
 
-    /// What is missing at the end, relative to all that was booked; rounding in a correct walk.
+    /// What is missing at the end, relative to the sizes of all; rounding in a correct walk.
     #[inline(always)]
     #[must_use]
     pub fn defect(&self, weight: L) -> L {
-        (weight + self.handed_over - self.begin).size() / self.turnover
+        (weight + self.taken - self.begin).size() / self.scale
     }
 }

@@ -8,8 +8,8 @@ use super::record::{Anatomy, MeasuredPoint};
 pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<Anatomy> {
     let ready = planned.outcome.as_ref().ok()?;
     let scenario = &case.case.scenario;
-    let (portrait, explorers) =
-        scenario.portrait(planned.estimator, planned.variation, planned.address)?;
+    let (ray_view, explorers) =
+        scenario.ray_view(planned.estimator, planned.variation, planned.address)?;
     let distances = scenario.distances();
     let channels = ready.prediction.channels.iter().zip(&drawn.tallies).zip(&distances);
     let measured = channels.filter_map(|((channel, tally), &t)| {
@@ -23,20 +23,20 @@ pub fn anatomy(case: &PlannedCase, planned: &Planned, drawn: &Drawn) -> Option<A
             deviation,
         })
     });
-    let residual = portrait.extinction.iter().zip(&portrait.control).map(|(s, c)| s - c).collect();
+    let residual = ray_view.extinction.iter().zip(&ray_view.control).map(|(s, c)| s - c).collect();
     let controlled = !planned.names.control.is_empty();
     Some(Anatomy {
         estimator: planned.names.estimator.clone(),
         measured: measured.collect(),
         residual,
-        control: if controlled { portrait.control } else { Vec::new() },
+        control: if controlled { ray_view.control } else { Vec::new() },
         explorers,
-        t: portrait.t,
-        extinction: portrait.extinction,
-        sampling: portrait.sampling,
-        transmittance: portrait.transmittance,
-        deviation: portrait.deviation,
-        collisions: portrait.collisions,
-        walks: portrait.walks,
+        t: ray_view.t,
+        extinction: ray_view.extinction,
+        sampling: ray_view.sampling,
+        transmittance: ray_view.transmittance,
+        deviation: ray_view.deviation,
+        collisions: ray_view.collisions,
+        walks: ray_view.walks,
     })
 }

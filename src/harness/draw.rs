@@ -14,7 +14,7 @@ use super::checks::batch::Batch;
 use super::plan::{BLOCK, Planned};
 use super::ready::Ready;
 use crate::estimators::DrawBuffer;
-use crate::estimators::walkers::{Request, Walkers};
+use crate::estimators::order_free::{OrderFree, Request};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::rng::Streams;
@@ -75,17 +75,17 @@ pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
 fn fill_together(drawings: &mut [&mut Drawing]) {
     let Some(leader) = drawings.first().map(|drawing| drawing.ready) else { return };
     let mut places = None;
-    let walkers = drawings.iter_mut().filter_map(|drawing| {
+    let walks = drawings.iter_mut().filter_map(|drawing| {
         // The same for all: they find them at the same address.
         places = Some(drawing.streams.places());
         let (count, counts) = (drawing.count(), &mut drawing.streams.counts);
         let request = Request { counts, count, buffer: &mut drawing.scratch.buffer };
-        drawing.ready.experiment.walkers(request)
+        drawing.ready.experiment.order_free(request)
     });
-    let mut walkers: Vec<Box<dyn Walkers + '_>> = walkers.collect();
-    let mut requests: Vec<&mut dyn Walkers> = walkers.iter_mut().map(|w| &mut **w as _).collect();
+    let mut walks: Vec<Box<dyn OrderFree + '_>> = walks.collect();
+    let mut requests: Vec<&mut dyn OrderFree> = walks.iter_mut().map(|w| &mut **w as _).collect();
     if let Some(places) = places {
-        leader.experiment.draw_layers(Level::new(), &places, &mut requests);
+        leader.experiment.draw_order_free(Level::new(), &places, &mut requests);
     }
 }
 

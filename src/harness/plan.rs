@@ -276,7 +276,7 @@ impl Planned {
             fixed: fixed(most),
             tolerance: case.tolerance,
             expect_biased: self.expect_biased,
-            has_invariant: ready.experiment.keeps_books(),
+            has_invariant: ready.experiment.has_invariant(),
             is_in_turn: ready.experiment.order() == Order::Along,
             pilots: pilots.as_deref(),
         };

@@ -7,7 +7,7 @@ use super::estimator::ReadEstimators;
 use super::ready::{FAINTEST, Ready};
 use crate::catalogue::{Catalogue, Settings, rounded};
 use crate::estimators::trial::Entry;
-use crate::estimators::{Experiment, Order, Portrait, Refusal, Setup, sampling};
+use crate::estimators::{Experiment, Order, RayView, Refusal, Setup, sampling};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Control, Medium, Piecewise};
 use crate::mutants::Mutable;
@@ -117,7 +117,7 @@ pub trait AnyProblem: Send + Sync {
     fn predict(&self, estimator: usize, parts: Parts, order: Order) -> Option<Prediction>;
 
     /// The ray seen from the side, for estimators of a curve.
-    fn portrait(&self, estimator: usize, parts: Parts, address: Address) -> Option<Portrait>;
+    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView>;
 
     /// A mutant in an estimator's place; `None` if the problem has none of that name.
     fn mutant(
@@ -222,9 +222,9 @@ impl<P: Mutable> AnyProblem for Typed<P> {
         })
     }
 
-    fn portrait(&self, estimator: usize, parts: Parts, address: Address) -> Option<Portrait> {
+    fn ray_view(&self, estimator: usize, parts: Parts, address: Address) -> Option<RayView> {
         let setup = self.setup(estimator, parts).ok()?;
-        self.entries[estimator].portrait(&setup, address)
+        self.entries[estimator].ray_view(&setup, address)
     }
 
     fn mutant(

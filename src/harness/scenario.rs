@@ -8,7 +8,7 @@ use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
 use crate::catalogue::Settings;
-use crate::estimators::{Experiment, Order, Portrait, Refusal, Site, controls, sampling};
+use crate::estimators::{Experiment, Order, RayView, Refusal, Site, controls, sampling};
 use crate::media::{Body, Piecewise};
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
@@ -152,17 +152,17 @@ impl Scenario {
     /// The ray seen from the side and the places where the control was fitted, for estimators of a
     /// curve.
     #[must_use]
-    pub fn portrait(
+    pub fn ray_view(
         &self,
         estimator: usize,
         variation: Variation,
         address: Address,
-    ) -> Option<(Portrait, Vec<[f64; 2]>)> {
+    ) -> Option<(RayView, Vec<[f64; 2]>)> {
         let parts = self.parts(estimator, variation, None, address).ok()?;
-        let portrait = self.problem.portrait(estimator, parts, address)?;
+        let ray_view = self.problem.ray_view(estimator, parts, address)?;
         let site = self.site(address);
         let points = self.with_control(estimator, variation, |recipe| recipe.points(&site));
-        Some((portrait, points))
+        Some((ray_view, points))
     }
 
     /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.

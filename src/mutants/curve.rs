@@ -10,7 +10,7 @@
 
 use super::target::{CURVE, CURVE_CONTROL};
 use super::{About, Mutant, with};
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::{Lane, Span};
@@ -73,7 +73,7 @@ fn curve(
     };
     let mut cursor = setup.sampling.begin();
     let mut weight = 1.0;
-    let mut books = Books::open(weight);
+    let mut invariant = Invariant::open(weight);
     let mut lookups = 0;
     loop {
         let last = cursor.t;
@@ -90,7 +90,7 @@ fn curve(
         let at = if slip == Slip::Reversed { reversed } else { cursor.t };
         let residual = medium.extinction(at) - setup.control.extinction(cursor.t);
         let due = 1.0 - residual * (1.0 / sampling);
-        books.hand_over(weight, due);
+        invariant.take(weight, due);
         weight *= due;
         lookups += 1;
         if slip == Slip::TooEarly {
@@ -101,7 +101,7 @@ fn curve(
         values.at.rotate_right(1);
         values.at[0] = 1.0;
     }
-    Draw { value: values, lookups, defect: books.defect(weight) }
+    Draw { value: values, lookups, defect: invariant.defect(weight) }
 }
 
 /// K walks for K distances, with the lookups of the last.

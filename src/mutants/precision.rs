@@ -6,7 +6,7 @@
 //!
 //! What is lost is far below any standard error. It is seen at once in the draws themselves: among
 //! n distances made of k/2²⁴ about n²/2²⁵ pairs are equal to the last bit, and positions in single
-//! precision are all numbers of 24 bits. A weight in single precision breaks the books of its walk.
+//! precision are all numbers of 24 bits. A weight in single precision breaks the invariant of its walk.
 
 use super::Mutant;
 use super::fault::{Fault, RIGHT};

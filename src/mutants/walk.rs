@@ -5,14 +5,14 @@
 //! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̂(tᵢ);  S if there is none
 //! ```
 //!
-//! With [`RIGHT`] they make the estimators' draws, bit for bit. The books say what should happen:
-//! a survivor of a collision with ratio r and chance q hands over `X(1 − (1 − r)/q)`, whatever the
+//! With [`RIGHT`] they make the estimators' draws, bit for bit. The invariant says what should happen:
+//! a survivor of a collision with ratio r and chance q loses `X(1 − (1 − r)/q)`, whatever the
 //! fault makes of its weight.
 
 use super::fault::{Fault, Memory, RIGHT};
 use super::{About, Mutant, Target, with};
 use crate::estimators::rules::Collision;
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Setup};
 use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem, Transmittance};
@@ -28,7 +28,7 @@ pub fn draw_product<R: Collision>(
 ) -> Draw<[f64; 1]> {
     let mut cursor = setup.sampling.begin();
     let mut weight = setup.control_transmittance;
-    let mut books = Books::open(weight);
+    let mut invariant = Invariant::open(weight);
     let mut memory = Memory::new(setup.mesh.support(), weight, rng);
     loop {
         memory.from = cursor.t;
@@ -44,20 +44,20 @@ pub fn draw_product<R: Collision>(
             let number = number.unwrap_or_else(|| (fault.number)(&mut memory, rng));
             let killed = number >= outcome.survival;
             if (fault.real)(&memory, killed) {
-                let defect = books.defect(weight);
+                let defect = invariant.defect(weight);
                 return Draw { value: [0.0], lookups: memory.lookups, defect };
             }
         }
-        books.hand_over(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
+        invariant.take(weight, (1.0 - residual * (1.0 / sampling)) / outcome.survival);
         memory.before = weight;
         weight = (fault.weigh)(&memory, weight, outcome.weight);
         if let Some(value) = (fault.stop)(&memory, weight, rng) {
-            let defect = books.defect(weight);
+            let defect = invariant.defect(weight);
             return Draw { value: [value], lookups: memory.lookups, defect };
         }
     }
     let value = (fault.end)(&mut memory, &setup.control, weight);
-    Draw { value: [value], lookups: memory.lookups, defect: books.defect(value) }
+    Draw { value: [value], lookups: memory.lookups, defect: invariant.defect(value) }
 }
 
 /// A draw of Woodcock tracking of the free flight with a fault.

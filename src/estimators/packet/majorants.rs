@@ -7,7 +7,7 @@ use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
-use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::packet::event_queue::{Reader, Row};
 use crate::media::Lookups;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{self, Lane};

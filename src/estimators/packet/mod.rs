@@ -14,6 +14,7 @@
 
 pub mod bank;
 pub mod decomposition;
+pub mod event_queue;
 pub mod flight;
 pub mod majorants;
 pub mod product;
@@ -23,11 +24,11 @@ mod survival;
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::DrawBuffer;
-use super::ledger::{Ledger, Notes, Reader, Row, STEPS};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::Twin;
 use crate::numeric::pack::WIDTH;
 use crate::rng::{LANES, Stream, Streams, Xoshiro};
+use event_queue::{EventQueue, Notes, Reader, Row, STEPS};
 
 pub use decomposition::decomposition;
 pub use flight::flight;
@@ -196,7 +197,7 @@ impl<S: Simd> Window<S> {
     ) {
         let words = if R::DECIDES { 2 } else { 1 };
         let endings = self.notes.by_lanes::<S, R>(simd);
-        let over = draws.ledger.collect(pack, &draws.reader, &self.rows, &endings);
+        let over = draws.event_queue.collect(pack, &draws.reader, &self.rows, &endings);
         if over != [0; WIDTH] {
             let before = self.before.at_rest().apart();
             let left = &mut draws.lanes[pack * WIDTH..];
@@ -219,7 +220,7 @@ impl<S: Simd> Window<S> {
 
 /// Where the draws and their streams go.
 struct Draws<'a, R> {
-    ledger: Ledger<'a>,
+    event_queue: EventQueue<'a>,
     reader: R,
     lanes: &'a mut [Stream; LANES],
 }
@@ -236,15 +237,15 @@ fn run<S: Simd, W: Walks<S>>(
 ) -> bool {
     let decides = W::Reader::DECIDES;
     let Request { streams, count, buffer } = request;
-    let Some(ledger) = Ledger::open(count, streams.turn, buffer) else { return true };
+    let Some(event_queue) = EventQueue::open(count, streams.turn, buffer) else { return true };
     let [first, second] = streams.packs();
     streams.turn = (streams.turn + count) % LANES;
     let (mut walks, mut others) = (begin(), begin());
-    let mut draws = Draws { ledger, reader: walks.reader(), lanes: &mut streams.lanes };
+    let mut draws = Draws { event_queue, reader: walks.reader(), lanes: &mut streams.lanes };
     let (mut streams, mut other_streams) = (first.awake(simd), second.awake(simd));
     let mut window = Window::open(simd, &mut streams, decides);
     let mut other_window = Window::open(simd, &mut other_streams, decides);
-    while draws.ledger.is_open(0) || draws.ledger.is_open(1) {
+    while draws.event_queue.is_open(0) || draws.event_queue.is_open(1) {
         let (next, other_next) = (streams, other_streams);
         for step in 0..STEPS {
             let numbers = window.numbers(step, &mut streams, decides);

@@ -10,9 +10,9 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 use super::survival::Survivals;
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
-use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::packet::event_queue::{Reader, Row};
 use crate::estimators::rules::{Collision, Met};
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::Lane;
@@ -59,7 +59,7 @@ impl<R: Collision> Task for Product<'_, '_, R> {
     }
 }
 
-/// Walks without books where that is enough, else with them.
+/// Walks without an invariant where that is enough, else with one.
 #[inline(always)]
 fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
     simd: S,
@@ -86,11 +86,11 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
         *streams = before;
     }
     let weight = f64x8::splat(simd, site.begin);
-    let books = Books::open(weight);
+    let invariant = Invariant::open(weight);
     run(
         simd,
         #[inline(always)]
-        || Products { site, course, inside: all, weight, books },
+        || Products { site, course, inside: all, weight, invariant },
         medium,
         Request { streams, count, buffer },
     );
@@ -153,7 +153,7 @@ struct Products<'a, S: Simd, R, C> {
     course: C,
     inside: mask64x8<S>,
     weight: f64x8<S>,
-    books: Books<f64x8<S>>,
+    invariant: Invariant<f64x8<S>>,
 }
 
 impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, R, C> {
@@ -180,20 +180,20 @@ impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, R, C> {
         } else {
             inside
         };
-        let (weight, books) = (self.weight, self.books);
+        let (weight, invariant) = (self.weight, self.invariant);
         weight.store_slice(&mut row.0[0]);
-        books.defect(weight).store_slice(&mut row.0[1]);
-        let (fresh, mut booked) = (Books::open(books.begin), books);
-        booked.hand_over(weight, self.site.rule.due(ratio, outcome.survival));
+        invariant.defect(weight).store_slice(&mut row.0[1]);
+        let (fresh, mut after) = (Invariant::open(invariant.begin), invariant);
+        after.take(weight, self.site.rule.due(ratio, outcome.survival));
         self.weight = Lane::select(goes_on, weight * outcome.weight, fresh.begin);
-        self.books.handed_over = Lane::select(goes_on, booked.handed_over, fresh.handed_over);
-        self.books.turnover = Lane::select(goes_on, booked.turnover, fresh.turnover);
+        self.invariant.taken = Lane::select(goes_on, after.taken, fresh.taken);
+        self.invariant.scale = Lane::select(goes_on, after.scale, fresh.scale);
         self.course.restart(!goes_on);
         ends(inside, goes_on)
     }
 }
 
-/// Reads weights and what their books lack.
+/// Reads weights and the defects of their invariants.
 struct Weights<R>(PhantomData<R>);
 
 impl<R: Collision> Reader for Weights<R> {

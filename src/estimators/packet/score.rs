@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
 use crate::estimators::Setup;
-use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::packet::event_queue::{Reader, Row};
 use crate::estimators::scoring::{Score, Share};
 use crate::media::course::{Course, Even};
 use crate::media::{Lookups, even};

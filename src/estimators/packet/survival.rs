@@ -4,16 +4,16 @@
 //! say so, and their draws are of no use.
 //!
 //! With `0 ≤ r ≤ 1` the chance to go on is `q = 1 − r`, and what is due to a survivor is `(1 − r)/q = 1`:
-//! it hands nothing over, and its books show what they showed at the beginning. So none are kept, and a
+//! it hands nothing over, and its invariant shows what it showed at the beginning. So none are kept, and a
 //! step notes nothing but who ended.
 
 use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 
 use super::product::Site;
 use super::{Ends, Numbers, Walks, ends};
-use crate::estimators::ledger::{Reader, Row};
+use crate::estimators::packet::event_queue::{Reader, Row};
 use crate::estimators::rules::Collision;
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::media::Course;
 use crate::numeric::Lane;
 
@@ -39,7 +39,7 @@ impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Survivals<'_, S, R, C> {
     #[inline(always)]
     fn reader(&self) -> Survivors {
         let begin = self.site.begin;
-        Survivors { begin, defect: Books::open(begin).defect(begin) }
+        Survivors { begin, defect: Invariant::open(begin).defect(begin) }
     }
 
     #[inline(always)]
@@ -59,7 +59,7 @@ impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Survivals<'_, S, R, C> {
         ends(inside, goes_on)
     }
 
-    /// Whether books would have shown nothing.
+    /// Whether the invariant would have shown nothing.
     #[inline(always)]
     fn are_sound(&self) -> bool {
         self.balanced.all_true()

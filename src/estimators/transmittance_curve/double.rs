@@ -20,11 +20,11 @@
 use fearless_simd::Level;
 
 use super::packet;
-use super::portrait::{self, Portrait};
+use super::ray_view::{self, RayView};
 use crate::catalogue::Settings;
 use crate::estimators::packet::Request;
 use crate::estimators::rules::Weight;
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups, Medium};
 use crate::problems::TransmittanceCurve;
@@ -53,7 +53,7 @@ pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream
 impl Estimator<TransmittanceCurve> for DoubleCurve {
     const INPUTS: Inputs = Inputs::BOTH;
     const SKIPS: bool = true;
-    const KEEPS_BOOKS: bool = true;
+    const HAS_INVARIANT: bool = true;
     const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
@@ -69,8 +69,8 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         curve::predict(&setup.product(&Weight), setup.problem.ascending())
     }
 
-    fn portrait(&self, setup: &Setup<TransmittanceCurve>, address: Address) -> Option<Portrait> {
-        Some(portrait::portrait(setup, address))
+    fn ray_view(&self, setup: &Setup<TransmittanceCurve>, address: Address) -> Option<RayView> {
+        Some(ray_view::ray_view(setup, address))
     }
 
     #[inline(always)]
@@ -91,18 +91,18 @@ impl Estimator<TransmittanceCurve> for DoubleCurve {
         };
         let mut cursor = setup.sampling.begin();
         let mut weight = 1.0;
-        let mut books = Books::open(weight);
+        let mut invariant = Invariant::open(weight);
         let mut lookups = 0;
         while let Some(sampling) = setup.sampling.fly(&mut cursor, -rng.ln_uniform()) {
             pass(cursor.t, weight);
             let residual = medium.extinction(cursor.t) - setup.control.extinction(cursor.t);
             let due = 1.0 - residual * (1.0 / sampling);
-            books.hand_over(weight, due);
+            invariant.take(weight, due);
             weight *= due;
             lookups += 1;
         }
         pass(f64::INFINITY, weight);
-        Draw { value: values, lookups, defect: books.defect(weight) }
+        Draw { value: values, lookups, defect: invariant.defect(weight) }
     }
 
     fn draw_packets<'a>(

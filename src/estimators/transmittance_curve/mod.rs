@@ -2,12 +2,12 @@
 
 pub mod double;
 pub mod packet;
-pub mod portrait;
+pub mod ray_view;
 
 use crate::estimators::estimators;
 use crate::problems::TransmittanceCurve;
 
-pub use portrait::Portrait;
+pub use ray_view::RayView;
 
 estimators! {
     TransmittanceCurve:

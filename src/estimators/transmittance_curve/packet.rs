@@ -18,7 +18,7 @@ use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::estimators::packet::product::Subtracted;
 use crate::estimators::packet::{Request, pays};
 
-use crate::estimators::walk::Books;
+use crate::estimators::walk::Invariant;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::media::Lookups;
 use crate::media::course::{Course, Even, Pieces};
@@ -81,7 +81,7 @@ fn walk<S: Simd, C: Course<S> + Copy>(
         t: from,
         weight: one,
         ahead: [one; MOST],
-        books: Books::open(one),
+        invariant: Invariant::open(one),
     };
     bank::run(
         simd,
@@ -104,7 +104,7 @@ struct AlongCurve<'a, S: Simd, C> {
     weight: f64x8<S>,
     /// The weight with which each distance was last ahead.
     ahead: [f64x8<S>; MOST],
-    books: Books<f64x8<S>>,
+    invariant: Invariant<f64x8<S>>,
 }
 
 impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
@@ -118,13 +118,13 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
 
     #[inline(always)]
     fn collide(&mut self, extinction: f64x8<S>, _: &mut Numbers<S>) -> u64 {
-        let (inside, weight, books) = (self.inside, self.weight, self.books);
+        let (inside, weight, invariant) = (self.inside, self.weight, self.invariant);
         let residual = extinction - self.control.at(self.t);
         let due = weight.each(1.0) - residual * self.course.mean_free_path();
-        let mut booked = books;
-        booked.hand_over(weight, due);
-        self.books.handed_over = Lane::select(inside, booked.handed_over, books.handed_over);
-        self.books.turnover = Lane::select(inside, booked.turnover, books.turnover);
+        let mut after = invariant;
+        after.take(weight, due);
+        self.invariant.taken = Lane::select(inside, after.taken, invariant.taken);
+        self.invariant.scale = Lane::select(inside, after.scale, invariant.scale);
         self.weight = Lane::select(inside, weight * due, weight);
         let t = Lane::select(inside, self.t, weight.each(f64::INFINITY));
         for (ahead, &distance) in self.ahead.iter_mut().zip(self.setup.problem.ascending()) {
@@ -141,17 +141,17 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
             (*ahead * *control).store_slice(end);
         }
         self.weight.store_slice(&mut ends.weight);
-        self.books.handed_over.store_slice(&mut ends.handed_over);
-        self.books.turnover.store_slice(&mut ends.turnover);
+        self.invariant.taken.store_slice(&mut ends.taken);
+        self.invariant.scale.store_slice(&mut ends.scale);
         ends.collect(slots, ended, buffer)
     }
 
     #[inline(always)]
     fn restart(&mut self, _: &mut Numbers<S>) {
         let (inside, one) = (self.inside, self.from.each(1.0));
-        let fresh = Books::open(one);
-        self.books.handed_over = Lane::select(inside, self.books.handed_over, fresh.handed_over);
-        self.books.turnover = Lane::select(inside, self.books.turnover, fresh.turnover);
+        let fresh = Invariant::open(one);
+        self.invariant.taken = Lane::select(inside, self.invariant.taken, fresh.taken);
+        self.invariant.scale = Lane::select(inside, self.invariant.scale, fresh.scale);
         self.weight = Lane::select(inside, self.weight, one);
         // To a walk that begins all distances are ahead.
         for ahead in &mut self.ahead {
@@ -161,14 +161,14 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
     }
 }
 
-/// What eight walks have come to: the curve, what is carried and what was handed over.
+/// What eight walks have come to: the curve, what is carried and what collisions took.
 #[derive(Default)]
 #[repr(align(64))]
 struct Ends {
     values: [[f64; WIDTH]; MOST],
     weight: [f64; WIDTH],
-    handed_over: [f64; WIDTH],
-    turnover: [f64; WIDTH],
+    taken: [f64; WIDTH],
+    scale: [f64; WIDTH],
 }
 
 impl Ends {
@@ -179,9 +179,9 @@ impl Ends {
             for (channel, values) in buffer.values.iter_mut().zip(&self.values) {
                 channel[draw] = values[lane];
             }
-            let (handed_over, turnover) = (self.handed_over[lane], self.turnover[lane]);
-            let books = Books { begin: 1.0, handed_over, turnover };
-            buffer.defects[draw] = books.defect(self.weight[lane]);
+            let (taken, scale) = (self.taken[lane], self.scale[lane]);
+            let invariant = Invariant { begin: 1.0, taken, scale };
+            buffer.defects[draw] = invariant.defect(self.weight[lane]);
             // The step that leaves looks at nothing.
             buffer.lookups[draw] = steps;
         })

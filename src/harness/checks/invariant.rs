@@ -1,4 +1,4 @@
-//! A law that holds for every single draw: what a particle still carries and what it handed over
+//! A law that holds for every single draw: what a particle still carries and what its collisions took
 //! is what it began with.
 //!
 //! ```text

@@ -134,8 +134,8 @@ impl Experiment for At {
         self.experiment.fill_by(Kernel::Packets(self.level), streams, count, buffer);
     }
 
-    fn keeps_books(&self) -> bool {
-        self.experiment.keeps_books()
+    fn has_invariant(&self) -> bool {
+        self.experiment.has_invariant()
     }
 }
 

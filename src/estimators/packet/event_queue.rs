@@ -97,14 +97,14 @@ struct Account {
 }
 
 /// The draws so far.
-pub struct Ledger<'a> {
+pub struct EventQueue<'a> {
     accounts: [Account; PACKS],
     values: &'a mut [f64],
     lookups: &'a mut [u32],
     defects: &'a mut [f64],
 }
 
-impl<'a> Ledger<'a> {
+impl<'a> EventQueue<'a> {
     /// Room for so many draws, of which the first comes from the lane whose turn it is; `None`
     /// where a draw has no channel.
     pub fn open(count: usize, turn: usize, buffer: &'a mut DrawBuffer) -> Option<Self> {

@@ -1,12 +1,12 @@
-//! The walks of one order-free request: what becomes of them at the collisions of [`super::layers`].
+//! The walks of one order-free request: what becomes of them at its collisions.
 
 use fearless_simd::{Level, Simd, f64x8, u64x8};
 use rand_distr::{Binomial, Distribution};
 
-use super::fates::{Collisions, Flock};
-use super::layers::{BATCH, Sites};
-use super::rules::{Collision, Met};
-use super::{DrawBuffer, Setup};
+use super::collisions::{Collisions, Weights};
+use super::{BATCH, Sites};
+use crate::estimators::rules::{Collision, Met};
+use crate::estimators::{DrawBuffer, Setup};
 use crate::media::{Control, Lookups, Placement};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::twin::PAIR;
@@ -16,7 +16,7 @@ use crate::rng::xoshiro::SCALE;
 use crate::rng::{Lanes, Stream, Xoshiro};
 
 /// Walks with as many collisions behind them, which do not care in which order they came.
-pub trait Walkers {
+pub trait OrderFree {
     /// Whether chance decides what becomes of them at a collision.
     fn decides(&self) -> bool;
 
@@ -68,8 +68,8 @@ pub fn product<'a, P: Problem, R: Collision>(
     setup: &'a Setup<P>,
     rule: R,
     request: Request<'a>,
-) -> Option<Box<dyn Walkers + 'a>> {
-    Walks::begin(setup, rule, request).map(|walks| Box::new(walks) as Box<dyn Walkers>)
+) -> Option<Box<dyn OrderFree + 'a>> {
+    Walks::begin(setup, rule, request).map(|walks| Box::new(walks) as Box<dyn OrderFree>)
 }
 
 /// The walks of a product estimator.
@@ -129,7 +129,7 @@ impl<R: Collision> Walks<'_, R> {
     }
 }
 
-impl<R: Collision> Walkers for Walks<'_, R> {
+impl<R: Collision> OrderFree for Walks<'_, R> {
     fn decides(&self) -> bool {
         R::DECIDES
     }
@@ -168,7 +168,10 @@ impl<R: Collision> Walkers for Walks<'_, R> {
             sites,
             subtracted,
             sampling: self.sampling,
-            flock: Flock { weights: &mut self.weights[..self.walking], survivors: self.survivors },
+            weights: Weights {
+                values: &mut self.weights[..self.walking],
+                survivors: self.survivors,
+            },
             first,
             count,
         };
@@ -193,9 +196,9 @@ impl<R: Collision> Walkers for Walks<'_, R> {
         if !unit.is_normal() {
             return false; // It would have lost digits.
         }
-        let flock = Flock { weights: &mut self.weights[..self.walking], survivors: 0 };
+        let weights = Weights { values: &mut self.weights[..self.walking], survivors: 0 };
         let (rule, places) = (&self.rule, [from, unit]);
-        let layer = Layer { rule, medium, places, sampling, subtracted, streams, flock };
+        let layer = Layer { rule, medium, places, sampling, subtracted, streams, weights };
         let Ok((survivors, is_unknown)) = pack::on_wide(level, layer) else { return false };
         self.survivors = survivors;
         self.is_unknown |= is_unknown;
@@ -215,7 +218,7 @@ struct Batch<'a, R> {
     sites: &'a Sites,
     subtracted: &'a [f64; BATCH],
     sampling: Option<f64>,
-    flock: Flock<'a>,
+    weights: Weights<'a>,
     first: usize,
     count: usize,
 }
@@ -232,11 +235,11 @@ impl<R: Collision> Task for Batch<'_, R> {
     /// Answers how many have survived, with those before, and whether some residual was no number.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> (usize, bool) {
-        let Self { rule, sites, subtracted, sampling: single, mut flock, first, count } = self;
+        let Self { rule, sites, subtracted, sampling: single, mut weights, first, count } = self;
         let one = Twin::splat(simd, 1.0);
         let sampling = Twin::splat(simd, single.unwrap_or(1.0));
         let mean_free_path = one / sampling;
-        let is_unknown = flock.meet(
+        let is_unknown = weights.collide(
             simd,
             rule,
             first,
@@ -255,7 +258,7 @@ impl<R: Collision> Task for Batch<'_, R> {
                 Collisions { met, decision: pair(simd, &sites.decision, number) }
             },
         );
-        (flock.survivors, is_unknown)
+        (weights.survivors, is_unknown)
     }
 }
 
@@ -271,7 +274,7 @@ struct Layer<'a, R> {
     sampling: f64,
     subtracted: f64,
     streams: Streams<'a>,
-    flock: Flock<'a>,
+    weights: Weights<'a>,
 }
 
 impl<R: Collision> Task for Layer<'_, R> {
@@ -280,13 +283,13 @@ impl<R: Collision> Task for Layer<'_, R> {
     /// Answers how many have survived, and whether some residual was no number.
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) -> (usize, bool) {
-        let Self { rule, medium, places: [from, unit], sampling, subtracted, streams, mut flock } =
+        let Self { rule, medium, places: [from, unit], sampling, subtracted, streams, mut weights } =
             self;
         let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
         let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
         let [from, unit, sampling, mean_free_path, subtracted] =
             [from, unit, sampling, 1.0 / sampling, subtracted].map(|x| Twin::splat(simd, x));
-        let count = flock.weights.len();
+        let count = weights.values.len();
         let mut is_unknown = false;
         let mut looked_up = [[0.0; PAIR]; ALONE / PAIR];
         for first in (0..count).step_by(ALONE) {
@@ -296,7 +299,7 @@ impl<R: Collision> Task for Layer<'_, R> {
                 integers(&mut places).times_plus(unit, from).store_slice(pair);
             }
             medium.replace_all(batch.as_flattened_mut());
-            is_unknown |= flock.meet(
+            is_unknown |= weights.collide(
                 simd,
                 rule,
                 first,
@@ -309,7 +312,7 @@ impl<R: Collision> Task for Layer<'_, R> {
                 },
             );
         }
-        (flock.survivors, is_unknown)
+        (weights.survivors, is_unknown)
     }
 }
 

@@ -13,7 +13,7 @@
 //! Binomial(m, P(N = i)/P(N ≥ i)) have no more of them: they have escaped. All others have one more
 //! collision, anywhere, and those that survive it are moved together. No logarithm, no lane that
 //! waits, no branch that depends on a walk; the price is that the draws of a request come sorted by
-//! their lookups, that a walk keeps no books, and that one that is killed had seen not the first
+//! their lookups, that a walk keeps no invariant, and that one that is killed had seen not the first
 //! collisions of its ray but any.
 //!
 //! Where the collisions of a layer lie is the same for every σ̂ that is constant, whatever control
@@ -26,14 +26,17 @@
 //!
 //! [`CountLaw::in_layers`]: crate::theory::CountLaw::in_layers
 
+pub mod collisions;
+pub mod walks;
+
 use fearless_simd::{Level, Simd, SimdBase, u64x8};
 
-use super::walkers::{Streams, Walkers};
 use crate::media::{Lookups, Placement};
 use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
 use crate::rng::{Lanes, Xoshiro};
+pub use walks::{OrderFree, Request, Streams, product};
 
 /// Collisions that are looked up together: their numbers stay in the first-level cache.
 pub const BATCH: usize = 512;
@@ -67,15 +70,15 @@ pub fn draw(
     medium: &Lookups,
     placement: &Placement,
     places: &Lanes,
-    requests: &mut [&mut dyn Walkers],
+    requests: &mut [&mut dyn OrderFree],
 ) {
     let mut sites: Option<Box<Sites>> = None;
-    let decides = requests.iter().any(|walkers| walkers.decides());
+    let decides = requests.iter().any(|walks| walks.decides());
     for layer in 0.. {
-        for walkers in requests.iter_mut() {
-            walkers.escape(layer);
+        for walks in requests.iter_mut() {
+            walks.escape(layer);
         }
-        let most = requests.iter().map(|walkers| walkers.walking()).max().unwrap_or(0);
+        let most = requests.iter().map(|walks| walks.walking()).max().unwrap_or(0);
         if most == 0 {
             return;
         }
@@ -100,13 +103,13 @@ pub fn draw(
                 if decides {
                     pack::on(level, Decide { fate: &mut fate, sites });
                 }
-                for walkers in requests.iter_mut() {
-                    walkers.collide(level, sites, first);
+                for walks in requests.iter_mut() {
+                    walks.collide(level, sites, first);
                 }
             }
         }
-        for walkers in requests.iter_mut() {
-            walkers.close(layer);
+        for walks in requests.iter_mut() {
+            walks.close(layer);
         }
     }
 }

@@ -15,7 +15,7 @@ const WALKS: u64 = 6;
 
 /// The functions of a ray and a few walks along it.
 #[derive(Debug, Clone, Default)]
-pub struct Portrait {
+pub struct RayView {
     /// Distances, ascending.
     pub t: Vec<f64>,
     /// σ_t there.
@@ -34,13 +34,13 @@ pub struct Portrait {
     pub walks: Vec<Vec<f64>>,
 }
 
-/// Draws the portrait; walks take their random numbers from the blocks of `address`.
+/// Draws the view; walks take their random numbers from the blocks of `address`.
 #[must_use]
-pub fn portrait(setup: &Setup<TransmittanceCurve>, address: Address) -> Portrait {
+pub fn ray_view(setup: &Setup<TransmittanceCurve>, address: Address) -> RayView {
     let medium = setup.problem.medium();
     let (span, support) = (medium.span(), setup.mesh.support());
     if span.is_empty() {
-        return Portrait::default();
+        return RayView::default();
     }
     let t: Vec<f64> =
         (0..=POINTS).map(|i| span.from + span.length() * (i as f64 / POINTS as f64)).collect();
@@ -76,7 +76,7 @@ pub fn portrait(setup: &Setup<TransmittanceCurve>, address: Address) -> Portrait
             })
             .collect()
     };
-    Portrait {
+    RayView {
         extinction: shown(&|t| medium.extinction(t)),
         control: shown(&|t| setup.control.extinction(t)),
         sampling: shown(&|t| setup.sampling.value(t)),

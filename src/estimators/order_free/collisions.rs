@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use fearless_simd::{Simd, f64x8};
 
-use super::rules::{Collision, Met};
+use crate::estimators::rules::{Collision, Met};
 use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
 
@@ -23,7 +23,7 @@ pub struct Collisions<S: Simd> {
 }
 
 /// What becomes of them.
-struct Fates<S: Simd> {
+struct Outcomes<S: Simd> {
     weight: Packs<S>,
     /// Who survives, as bits.
     survived: u64,
@@ -33,30 +33,30 @@ impl<S: Simd> Collisions<S> {
     /// By a rule, of walks that come with these weights. One whose residual is no number survives, and where
     /// weights change it shows.
     #[inline(always)]
-    fn decide<R: Collision>(&self, rule: &R, weight: Packs<S>) -> Fates<S> {
+    fn decide<R: Collision>(&self, rule: &R, weight: Packs<S>) -> Outcomes<S> {
         let weighed = rule.weigh(weight, &self.met);
         if !R::DECIDES {
-            return Fates { weight: weighed, survived: ALL };
+            return Outcomes { weight: weighed, survived: ALL };
         }
         let survived = ALL & !rule.kills(&self.met, self.decision).to_bitmask();
         let residual = self.met.residual;
-        Fates { weight: Lane::select(residual.at_most(residual), weighed, residual), survived }
+        Outcomes { weight: Lane::select(residual.at_most(residual), weighed, residual), survived }
     }
 }
 
 /// The weights of walks; those that survived the collisions so far come first.
-pub struct Flock<'a> {
+pub struct Weights<'a> {
     /// All that were walking.
-    pub weights: &'a mut [f64],
+    pub values: &'a mut [f64],
     /// How many have survived.
     pub survivors: usize,
 }
 
-impl Flock<'_> {
+impl Weights<'_> {
     /// So many walks, the first of which is number `first`, meet their collisions, two packs at a time; answers
     /// whether some residual was no number. (That some were infinite and of both signs looks the same.)
     #[inline(always)]
-    pub fn meet<S: Simd, R: Collision>(
+    pub fn collide<S: Simd, R: Collision>(
         &mut self,
         simd: S,
         rule: &R,
@@ -69,20 +69,20 @@ impl Flock<'_> {
         for from in (0..whole).step_by(PAIR) {
             let collisions = collisions(from);
             sum = sum + collisions.met.residual;
-            self.meet_packs(simd, rule, first + from, &collisions);
+            self.collide_packs(simd, rule, first + from, &collisions);
         }
         let mut is_unknown = is_none(sum) != 0;
         if whole < count {
             let collisions = collisions(whole);
             let there = (1 << (count - whole)) - 1;
             is_unknown |= is_none(collisions.met.residual) & there != 0;
-            self.meet_last(simd, rule, first + whole..first + count, &collisions);
+            self.collide_last(simd, rule, first + whole..first + count, &collisions);
         }
         is_unknown
     }
 
     #[inline(always)]
-    fn meet_packs<S: Simd, R: Collision>(
+    fn collide_packs<S: Simd, R: Collision>(
         &mut self,
         simd: S,
         rule: &R,
@@ -91,29 +91,29 @@ impl Flock<'_> {
     ) {
         if R::DECIDES && !R::WEIGHS {
             // They have the weight that they began with.
-            let fates = collisions.decide(rule, Packs::splat(simd, 1.0));
-            self.survivors += fates.survived.count_ones() as usize;
+            let outcomes = collisions.decide(rule, Packs::splat(simd, 1.0));
+            self.survivors += outcomes.survived.count_ones() as usize;
             return;
         }
         let Some((places, _)) =
-            self.weights.get_mut(from..).and_then(|rest| rest.split_first_chunk_mut())
+            self.values.get_mut(from..).and_then(|rest| rest.split_first_chunk_mut())
         else {
             return;
         };
-        let fates = collisions.decide(rule, Packs::from_slice(simd, places));
+        let outcomes = collisions.decide(rule, Packs::from_slice(simd, places));
         if R::DECIDES {
             let mut pair = [0.0; PAIR];
-            fates.weight.store_slice(&mut pair);
-            self.keep(&pair, fates.survived);
+            outcomes.weight.store_slice(&mut pair);
+            self.keep(&pair, outcomes.survived);
         } else {
-            fates.weight.store_slice(places);
+            outcomes.weight.store_slice(places);
             self.survivors += PAIR;
         }
     }
 
     /// The last of them do not fill two packs.
     #[inline(always)]
-    fn meet_last<S: Simd, R: Collision>(
+    fn collide_last<S: Simd, R: Collision>(
         &mut self,
         simd: S,
         rule: &R,
@@ -121,12 +121,12 @@ impl Flock<'_> {
         collisions: &Collisions<S>,
     ) {
         let mut pair = [0.0; PAIR];
-        let last = &self.weights[walks];
+        let last = &self.values[walks];
         pair[..last.len()].copy_from_slice(last);
         let there = (1 << last.len()) - 1;
-        let fates = collisions.decide(rule, Packs::from_slice(simd, &pair));
-        fates.weight.store_slice(&mut pair);
-        self.keep(&pair, fates.survived & there);
+        let outcomes = collisions.decide(rule, Packs::from_slice(simd, &pair));
+        outcomes.weight.store_slice(&mut pair);
+        self.keep(&pair, outcomes.survived & there);
     }
 
     /// Writes the survivors of two packs behind those before them.
@@ -134,7 +134,7 @@ impl Flock<'_> {
     fn keep(&mut self, pair: &[f64; PAIR], survived: u64) {
         for (lane, &weight) in pair.iter().enumerate() {
             // Each is written over by the next one that survives.
-            if let Some(place) = self.weights.get_mut(self.survivors) {
+            if let Some(place) = self.values.get_mut(self.survivors) {
                 *place = weight;
             }
             self.survivors += (survived >> lane & 1) as usize;
@@ -168,8 +168,8 @@ mod tests {
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let Self(rule, odd, value) = self;
             let mut weights = [1.0; COUNT];
-            let mut flock = Flock { weights: &mut weights, survivors: 0 };
-            let is_unknown = flock.meet(
+            let mut weights = Weights { values: &mut weights, survivors: 0 };
+            let is_unknown = weights.collide(
                 simd,
                 &rule,
                 0,
@@ -186,7 +186,7 @@ mod tests {
                     }
                 },
             );
-            (flock.weights[..flock.survivors].to_vec(), is_unknown)
+            (weights.values[..weights.survivors].to_vec(), is_unknown)
         }
     }
 
