@@ -15,23 +15,40 @@ use crate::numeric::Lane;
 /// Two unit vectors that are perpendicular to a unit vector and to each other.
 #[inline(always)]
 pub fn across(direction: Point) -> [Point; 2] {
-    let [x, y, z] = direction.0;
-    let sign = 1f64.copysign(z);
-    let a = -1.0 / (sign + z);
+    across_lanes(direction.0).map(Point)
+}
+
+/// The same for directions side by side. A z of −0 counts as one of 0.
+#[inline(always)]
+fn across_lanes<L: Lane>([x, y, z]: [L; 3]) -> [[L; 3]; 2] {
+    let one = z.each(1.0);
+    let sign = L::select(z.below(z.each(0.0)), -one, one);
+    let a = -one / (sign + z);
     let b = x * y * a;
-    [Point([1.0 + sign * x * x * a, sign * b, -sign * x]), Point([b, sign + y * y * a, -y])]
+    [[sign * x * x * a + 1.0, sign * b, -sign * x], [b, sign + y * y * a, -y]]
 }
 
 /// The direction at an angle of the given cosine from another, at an azimuth in turns.
 #[inline(always)]
 pub fn turned(direction: Point, cosine: f64, turns: f64) -> Point {
-    let angle = std::f64::consts::TAU * turns;
-    let sine = Lane::or_more((1.0 - cosine) * (1.0 + cosine), 0.0).sqrt();
-    let [first, second] = across(direction);
-    let turned =
-        first * (sine * Lane::cos(angle)) + second * (sine * Lane::sin(angle)) + direction * cosine;
+    Point(turned_lanes(direction.0, cosine, turns))
+}
+
+/// The same for directions side by side.
+#[inline(always)]
+pub fn turned_lanes<L: Lane>(direction: [L; 3], cosine: L, turns: L) -> [L; 3] {
+    let (angle, one) = (turns * std::f64::consts::TAU, cosine.each(1.0));
+    let sine = ((one - cosine) * (one + cosine)).or_more(one.each(0.0)).root();
+    let (along, aside) = (sine * angle.cos(), sine * angle.sin());
+    let [[a, b, c], [d, e, f]] = across_lanes(direction);
+    let [x, y, z] = direction;
+    let x = a * along + d * aside + x * cosine;
+    let y = b * along + e * aside + y * cosine;
+    let z = c * along + f * aside + z * cosine;
     // A thousand turns must not add up to another length: one step of Newton's for 1/|d|.
-    turned * (1.5 - 0.5 * turned.dot(turned))
+    let square = x * x + y * y + z * z;
+    let factor = one.each(1.5) - square * 0.5;
+    [x * factor, y * factor, z * factor]
 }
 
 #[cfg(test)]

@@ -2,6 +2,8 @@
 
 use std::ops::{Add, Mul, Sub};
 
+use crate::numeric::Lane;
+
 /// A point, or a vector, in units of length.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point(pub [f64; 3]);
@@ -11,6 +13,19 @@ impl Point {
     #[inline]
     pub fn dot(self, other: Self) -> f64 {
         self.0[0] * other.0[0] + self.0[1] * other.0[1] + self.0[2] * other.0[2]
+    }
+
+    /// Scalar product with points side by side.
+    #[inline(always)]
+    pub fn along<L: Lane>(self, [x, y, z]: [L; 3]) -> L {
+        x * self.0[0] + y * self.0[1] + z * self.0[2]
+    }
+
+    /// The squared distance from points side by side, in units of which a scale is the inverse.
+    #[inline(always)]
+    pub fn square_to<L: Lane>(self, [x, y, z]: [L; 3], scale: f64) -> L {
+        let [x, y, z] = [(x - self.0[0]) * scale, (y - self.0[1]) * scale, (z - self.0[2]) * scale];
+        x * x + y * y + z * z
     }
 
     /// Vector product.

@@ -13,7 +13,7 @@
 
 use super::{Extinction, Field, FreeFlight, OpticalDepth, body};
 use crate::catalogue::{Domain, Settings};
-use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::geometry::{Aabb, Bounds, Ray};
 use crate::numeric::{Known, Lane, Span};
 
 /// A homogeneous volume.
@@ -82,8 +82,8 @@ impl Field for Constant {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, _: Point) -> f64 {
-        self.extinction
+    fn extinction_at<L: Lane>(&self, [x, ..]: [L; 3]) -> L {
+        x.each(self.extinction)
     }
 
     fn majorant(&self, _: &Aabb) -> f64 {

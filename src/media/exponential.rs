@@ -140,8 +140,8 @@ impl Field for Exponential {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
-        self.extinction * Lane::exp(-self.rate * p.dot(self.axis))
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        (self.axis.along(p) * -self.rate).exp() * self.extinction
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

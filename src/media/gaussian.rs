@@ -109,14 +109,13 @@ impl Field for Gaussian {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
-        let u = (p - self.centre) * (1.0 / self.width);
-        self.peak * Lane::exp(-0.5 * u.dot(u))
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        (self.centre.square_to(p, 1.0 / self.width) * -0.5).exp() * self.peak
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
         // The exponent of a lookup is rounded, too.
-        self.extinction_at(within.nearest(self.centre)) * (1.0 + 1e-12)
+        self.extinction_at(within.nearest(self.centre).0) * (1.0 + 1e-12)
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Bump {

@@ -32,7 +32,7 @@ use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body, lattice};
 use crate::catalogue::{Domain, Settings};
-use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::geometry::{Aabb, Bounds, Ray};
 use crate::numeric::{Known, Lane, Span};
 
 /// A voxel grid as a volume.
@@ -162,7 +162,7 @@ impl Field for Grid {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
         self.0.value(self.0.lattice(p))
     }
 
@@ -253,6 +253,7 @@ fn own_bounds(settings: &Settings, samples: &Samples) -> Option<Aabb> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
 
     fn grid(seed: u32) -> Grid {
         let hash =

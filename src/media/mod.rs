@@ -49,7 +49,7 @@ pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
 pub use inverse::Inverse;
-pub use lookup::{Lookups, Points};
+pub use lookup::{Batches, Lookups, Points};
 pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
@@ -174,8 +174,8 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// Where the volume may be non-zero; a ray is clipped to it.
     fn bounds(&self) -> Bounds;
 
-    /// `σ_t(p)` for a point within the bounds.
-    fn extinction_at(&self, p: Point) -> f64;
+    /// `σ_t(p)` for a point within the bounds, written once for every lane type.
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L;
 
     /// A number that `σ_t` exceeds nowhere in the box.
     fn majorant(&self, within: &Aabb) -> f64;
@@ -232,6 +232,9 @@ pub trait InSpace: Send + Sync {
     fn extinction_at(&self, p: Point) -> f64;
     /// The same for kernels, at points within the bounds.
     fn points(&self) -> Points<'_>;
+    /// `σ_t` at points within the bounds for the packets of a level of hardware; with `clipped`, zero
+    /// outside them.
+    fn batches(&self, level: Level, clipped: bool) -> Batches<'_>;
     /// See [`Field::majorant`].
     fn majorant(&self, within: &Aabb) -> f64;
     /// See [`Field::single_value`].
@@ -256,11 +259,15 @@ impl<F: Field> InSpace for F {
     }
 
     fn extinction_at(&self, p: Point) -> f64 {
-        if Field::bounds(self).contains(p) { Field::extinction_at(self, p) } else { 0.0 }
+        if Field::bounds(self).contains(p) { Field::extinction_at(self, p.0) } else { 0.0 }
     }
 
     fn points(&self) -> Points<'_> {
         Points::new(self)
+    }
+
+    fn batches(&self, level: Level, clipped: bool) -> Batches<'_> {
+        Batches::new(self, level, clipped)
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

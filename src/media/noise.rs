@@ -38,7 +38,7 @@ use super::cells::Cells;
 use super::lattice::{self, Cell, Fade, Track};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body};
 use crate::catalogue::{Domain, Settings};
-use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::geometry::{Aabb, Bounds, Ray};
 use crate::numeric::{Known, Lane, Span, quadrature::GaussLegendre};
 
 /// A volume of noise.
@@ -234,8 +234,10 @@ impl Field for Noise {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
-        self.spectrum.value((p * self.spectrum.frequency).0, self.unit)
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        let [x, y, z] = p;
+        let frequency = self.spectrum.frequency;
+        self.spectrum.value([x * frequency, y * frequency, z * frequency], self.unit)
     }
 
     fn majorant(&self, _: &Aabb) -> f64 {
@@ -268,6 +270,7 @@ impl Field for Noise {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
 
     fn spectrum(octaves: u32, fade: Fade) -> Spectrum {
         Spectrum { extinction: 1.0, frequency: 1.0, octaves, gain: 0.5, seed: 0, fade }
@@ -306,7 +309,7 @@ mod tests {
     #[test]
     fn a_lattice_point_has_the_mean() {
         let field = Noise::new(spectrum(12, Fade::Cubic), Bounds::Everywhere);
-        assert_eq!(field.extinction_at(Point([3.0, -4.0, 0.0])), 0.5);
+        assert_eq!(field.extinction_at([3.0, -4.0, 0.0]), 0.5);
     }
 
     #[test]

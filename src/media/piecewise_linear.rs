@@ -21,7 +21,7 @@ use std::marker::PhantomData;
 use super::{Field, Piecewise, Smoothness, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
-use crate::numeric::Span;
+use crate::numeric::{Lane, Span};
 
 /// A plane-parallel volume of linearly varying layers.
 pub type PiecewiseLinear = Layers<Lines>;
@@ -89,8 +89,8 @@ impl<P: Points> Field for Layers<P> {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
-        self.pieces.value(p.dot(self.axis))
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        self.pieces.value(self.axis.along(p))
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

@@ -131,9 +131,9 @@ impl Field for Radial {
         Bounds::Sphere { centre: self.centre, radius: self.radius }
     }
 
-    fn extinction_at(&self, p: Point) -> f64 {
-        let u = (p - self.centre) * (1.0 / self.radius);
-        polynomial(self.coefficients, u.dot(u))
+    #[inline(always)]
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
+        polynomial(self.coefficients, self.centre.square_to(p, 1.0 / self.radius))
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
@@ -190,7 +190,7 @@ mod tests {
         let chord = depth(&field, [1.0, 0.75, 0.0]);
         assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
         assert!(chord.error < 1e-13);
-        assert!((field.extinction_at(Point([1.0, 0.0, 2.75])) - 1.5).abs() < 1e-15);
+        assert!((field.extinction_at([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
     }
 
     #[test]

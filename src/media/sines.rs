@@ -175,11 +175,14 @@ impl Field for Sines {
     }
 
     #[inline(always)]
-    fn extinction_at(&self, p: Point) -> f64 {
+    fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
         let swing: f64 = self.waves.iter().map(|(amplitude, ..)| amplitude.abs()).sum();
-        self.waves.iter().fold(self.base - swing, |sum, &(amplitude, vector, phase)| {
-            sum + Wave { amplitude, frequency: 1.0, phase }.raised(vector.dot(p))
-        })
+        // A loop and not a fold: a closure would be compiled for the least machine.
+        let mut sum = p[0].each(self.base - swing);
+        for &(amplitude, vector, phase) in &self.waves {
+            sum = sum + Wave { amplitude, frequency: 1.0, phase }.raised(vector.along(p));
+        }
+        sum
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {

@@ -10,7 +10,8 @@
 
 use super::grid_file::Samples;
 use super::lattice::Track;
-use crate::geometry::{Aabb, Point, Ray};
+use crate::geometry::{Aabb, Ray};
+use crate::numeric::Lane;
 
 /// How a value between samples is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,15 +97,16 @@ impl Voxels {
     }
 
     /// A point in lattice coordinates: cells lie between whole numbers.
-    pub fn lattice(&self, p: Point) -> [f64; 3] {
-        let from = p - self.bounds.low;
-        std::array::from_fn(|j| from.0[j] * self.scale[j] + self.shift)
+    #[inline(always)]
+    pub fn lattice<L: Lane>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        let ([a, b, c], [i, j, k]) = (self.bounds.low.0, self.scale);
+        [(x - a) * i + self.shift, (y - b) * j + self.shift, (z - c) * k + self.shift]
     }
 
     /// A ray in lattice coordinates.
     pub fn track(&self, ray: &Ray) -> Track {
         let slope = std::array::from_fn(|j| ray.direction.0[j] * self.scale[j]);
-        Track { start: self.lattice(ray.origin), slope }
+        Track { start: self.lattice(ray.origin.0), slope }
     }
 
     /// The cell that holds a place and how far the place is into it; a place that rounding left
@@ -123,23 +125,36 @@ impl Voxels {
         (cell, rest)
     }
 
+    /// The same for lanes along one axis.
+    #[inline(always)]
+    fn place_along<L: Lane>(&self, axis: usize, u: L) -> (L, L) {
+        let last = self.last[axis] as f64;
+        let inside = u.or_more(u.each(0.0)).or_less(u.each(last + 1.0));
+        let nearest = inside.nearest();
+        let below = L::select(inside.below(nearest), nearest - 1.0, nearest);
+        let cell = below.or_less(u.each(last));
+        (cell, inside - cell)
+    }
+
     /// The field at a place in lattice coordinates.
     #[inline(always)]
-    pub fn value(&self, u: [f64; 3]) -> f64 {
-        let ([i, j, k], [x, y, z]) = self.place(u);
-        let [nx, ny, _] = self.size;
+    pub fn value<L: Lane>(&self, [x, y, z]: [L; 3]) -> L {
+        let ((i, x), (j, y)) = (self.place_along(0, x), self.place_along(1, y));
+        let (k, z) = self.place_along(2, z);
+        let [nx, ny, _] = self.size.map(|n| n as f64);
         let first = (k * ny + j) * nx + i;
         if self.interpolation == Interpolation::Nearest {
-            return self.values[first];
+            return first.entry(&self.values);
         }
-        let lerp = |f: f64, a: f64, b: f64| a + f * (b - a);
-        let row = |at: usize| {
-            let pair = &self.values[at..at + 2];
-            lerp(x, pair[0], pair[1])
-        };
-        let near = lerp(y, row(first), row(first + nx));
-        let far = lerp(y, row(first + nx * ny), row(first + nx * ny + nx));
-        lerp(z, near, far)
+        let near = between(y, self.row(first, x), self.row(first + nx, x));
+        let above = first + nx * ny;
+        between(z, near, between(y, self.row(above, x), self.row(above + nx, x)))
+    }
+
+    /// Between a sample and the next along x.
+    #[inline(always)]
+    fn row<L: Lane>(&self, at: L, share: L) -> L {
+        between(share, at.entry(&self.values), (at + 1.0).entry(&self.values))
     }
 
     /// The field along a stretch of ray within the cell about `middle`: a polynomial in the place
@@ -172,8 +187,8 @@ impl Voxels {
     /// The largest sample that a lookup in the box can touch.
     pub fn highest(&self, within: &Aabb) -> f64 {
         // A billionth of a cell covers the rounding of a lookup's place.
-        let low = self.place(self.lattice(within.low).map(|u| u - 1e-9)).0;
-        let high = self.place(self.lattice(within.high).map(|u| u + 1e-9)).0;
+        let low = self.place(self.lattice(within.low.0).map(|u| u - 1e-9)).0;
+        let high = self.place(self.lattice(within.high.0).map(|u| u + 1e-9)).0;
         let more = usize::from(self.interpolation == Interpolation::Trilinear);
         let [nx, ny, _] = self.size;
         let mut highest = 0.0f64;
@@ -186,6 +201,12 @@ impl Voxels {
         }
         highest
     }
+}
+
+/// From a value to another, by a share of the way.
+#[inline(always)]
+fn between<L: Lane>(share: L, from: L, to: L) -> L {
+    from + share * (to - from)
 }
 
 /// The sample at an index of the padded grid.
@@ -203,6 +224,7 @@ fn sample(samples: &Samples, at: [usize; 3], pad: usize, placement: Placement) -
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Point;
 
     fn pair(interpolation: Interpolation, placement: Placement) -> impl Fn(f64) -> f64 {
         let samples = Samples {
@@ -212,7 +234,7 @@ mod tests {
         };
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let grid = Voxels::new(&samples, 1.0, cube, interpolation, placement);
-        move |x| grid.value(grid.lattice(Point([x, 2.0, 2.0])))
+        move |x| grid.value(grid.lattice([x, 2.0, 2.0]))
     }
 
     #[test]

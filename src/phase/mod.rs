@@ -92,7 +92,7 @@ macro_rules! phases {
 
             /// The cosine below which a share `u` of all light is scattered; with `u` uniform in
             /// [0, 1], `cos θ` has its law.
-            #[inline]
+            #[inline(always)]
             pub fn cosine<L: Lane>(&self, u: L) -> L {
                 match self { $(Self::$Page(page) => page.cosine(u)),* }
             }

@@ -32,7 +32,7 @@ use crate::phase::Phase;
 pub use super::rod::Values;
 
 /// The most radii.
-const MOST_RADII: usize = 8;
+pub const MOST_RADII: usize = 8;
 
 /// A point source in a homogeneous medium without end.
 #[derive(Clone)]

@@ -63,14 +63,22 @@ impl Sky {
 
     /// The radiance that comes against a direction of looking.
     pub fn radiance(&self, direction: Point) -> f64 {
+        self.radiance_lanes(direction.0)
+    }
+
+    /// The same for directions side by side.
+    #[inline(always)]
+    pub fn radiance_lanes<L: Lane>(&self, direction: [L; 3]) -> L {
+        let each = |value: f64| direction[0].each(value);
         match *self {
-            Self::Constant { radiance } => radiance,
+            Self::Constant { radiance } => each(radiance),
             Self::Gradient { ground, horizon, zenith, up, sun, glare, sharpness } => {
-                let height = direction.dot(up);
-                let end = if height < 0.0 { ground } else { zenith };
-                let share = height.abs().sqrt();
-                let shine = Lane::exp(sharpness * (direction.dot(sun) - 1.0));
-                horizon + (end - horizon) * share + glare * shine
+                let height = up.along(direction);
+                let is_below = height.below(each(0.0));
+                let end = L::select(is_below, each(ground), each(zenith));
+                let share = height.size().root();
+                let shine = ((sun.along(direction) - 1.0) * sharpness).exp();
+                (end - horizon) * share + horizon + shine * glare
             }
         }
     }

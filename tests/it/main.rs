@@ -29,6 +29,7 @@ mod skips;
 mod slab;
 mod small_spreads;
 mod space;
+mod space_packets;
 mod sphere;
 mod stress;
 mod threads;

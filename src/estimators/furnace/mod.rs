@@ -3,9 +3,15 @@
 pub mod particle;
 pub mod splitting;
 
-use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
+use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+
+use crate::estimators::packet::Request;
+use crate::estimators::space::exit::Points;
+use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
+use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;
+use crate::numeric::Lane;
 use crate::problems::Furnace;
 use crate::rng::Stream;
 use crate::theory::{CountLaw, Prediction};
@@ -54,6 +60,40 @@ pub(super) fn draw(
     draw_by(setup, |scene, majorants, start, energy| {
         space::walk(particle, scene, majorants, start, energy, rng)
     })
+}
+
+impl Tally<1> for Furnace {
+    #[inline(always)]
+    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
+        [self.entry, self.direction].map(|point| point.0.map(|x| f64x8::splat(simd, x)))
+    }
+
+    #[inline(always)]
+    fn collided<S: Simd>(&self, [energy]: &mut [f64x8<S>; 1], at: &Collisions<S>) {
+        let rest = at.albedo.each(1.0) - at.albedo;
+        add_where(energy, at.inside, at.weight * at.ratio * rest);
+    }
+
+    #[inline(always)]
+    fn escaped<S: Simd>(&self, [energy]: &mut [f64x8<S>; 1], at: &Departures<S>) {
+        add_where(energy, at.left, at.weight);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &[0]
+    }
+}
+
+/// Makes draws by packets.
+pub(super) fn draw_packets<'a>(
+    level: Level,
+    particle: &Particle,
+    setup: &Setup<Furnace>,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+    let furnace = &*setup.problem;
+    walks(level, furnace, particle, (&furnace.scene, majorants), request)
 }
 
 /// Makes a draw by any steps.

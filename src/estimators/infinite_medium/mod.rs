@@ -2,12 +2,17 @@
 
 pub mod particle;
 
-use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
+use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+
+use crate::estimators::packet::Request;
+use crate::estimators::space::exit::Points;
+use crate::estimators::space::packet::{Collisions, Numbers, add_where, walks};
+use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
-use crate::numeric::Known;
+use crate::numeric::{Known, Lane};
 use crate::problems::InfiniteMedium;
-use crate::problems::infinite_medium::Values;
+use crate::problems::infinite_medium::{MOST_RADII, Values};
 use crate::problems::rod::MOST;
 use crate::rng::Stream;
 use crate::theory::space::infinite;
@@ -147,6 +152,63 @@ pub(super) fn draw(
     let scene = &setup.problem.scene;
     let lookups = space::walk(particle, scene, majorants, start, &mut wander, rng);
     Draw::free(wander.values, lookups)
+}
+
+/// Collisions within each radius, then the squared distance and the collisions.
+struct Spreading<'a> {
+    problem: &'a InfiniteMedium,
+    channels: Vec<usize>,
+}
+
+/// The sums of a draw at most.
+const SUMS: usize = MOST_RADII + 2;
+
+impl Tally<SUMS> for Spreading<'_> {
+    #[inline(always)]
+    fn begin<S: Simd>(
+        &self,
+        simd: S,
+        numbers: &mut Numbers<S>,
+        which: mask64x8<S>,
+    ) -> [Points<S>; 2] {
+        let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
+        let cosine = numbers.uniform_where(which) * 2.0 - 1.0;
+        let turns = numbers.uniform_where(which);
+        [[zero; 3], frame::turned_lanes([zero, zero, one], cosine, turns)]
+    }
+
+    #[inline(always)]
+    fn collided<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], at: &Collisions<S>) {
+        let real = at.weight * at.ratio;
+        let [x, y, z] = at.place;
+        let square = x * x + y * y + z * z;
+        let radii = &self.problem.radii;
+        for (sum, radius) in sums.iter_mut().zip(radii) {
+            let within = square.below(square.each(radius * radius));
+            add_where(sum, at.inside & within, real);
+        }
+        let rest = at.albedo.each(1.0) - at.albedo;
+        add_where(&mut sums[radii.len()], at.inside, real * rest * square);
+        add_where(&mut sums[radii.len() + 1], at.inside, real);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &self.channels
+    }
+}
+
+/// Makes draws by packets.
+pub(super) fn draw_packets<'a>(
+    level: Level,
+    particle: &Particle,
+    setup: &Setup<InfiniteMedium>,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+    let problem = &*setup.problem;
+    let channels = (0..problem.radii.len() + 2).collect();
+    let spreading = Spreading { problem, channels };
+    walks(level, &spreading, particle, (&problem.scene, majorants), request)
 }
 
 /// Makes a draw by any steps.

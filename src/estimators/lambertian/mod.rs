@@ -3,10 +3,16 @@
 pub mod particle;
 pub mod splitting;
 
-use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use crate::estimators::packet::Request;
+use crate::estimators::space::exit::Points;
+use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
+use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
-use crate::numeric::Known;
+use crate::numeric::pack::WIDTH;
+use crate::numeric::{Known, Lane};
 use crate::problems::Lambertian;
 use crate::problems::lambertian::Values;
 use crate::problems::rod::MOST;
@@ -168,6 +174,79 @@ pub(super) fn draw(
     let scene = &setup.problem.scene;
     let lookups = space::walk(particle, scene, majorants, start, &mut stay, rng);
     Draw::free(stay.values(Seen::of(setup, particle)), lookups)
+}
+
+/// Where particles enter, and the sums over their collisions.
+struct Entering<'a> {
+    problem: &'a Lambertian,
+    channels: Vec<usize>,
+}
+
+/// Energy, path length, collisions, tentative collisions.
+impl Tally<4> for Entering<'_> {
+    #[inline(always)]
+    fn begin<S: Simd>(
+        &self,
+        simd: S,
+        numbers: &mut Numbers<S>,
+        which: mask64x8<S>,
+    ) -> [Points<S>; 2] {
+        let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
+        let mut rows = [[0.0; WIDTH]; 6];
+        let [mut us, mut vs] = [[0.0; WIDTH]; 2];
+        u.store_slice(&mut us);
+        v.store_slice(&mut vs);
+        for lane in 0..WIDTH {
+            if which.to_bitmask() >> lane & 1 == 1 {
+                let (place, inward) = self.problem.on_boundary(us[lane], vs[lane]);
+                for (row, x) in rows.iter_mut().zip(place.0.into_iter().chain(inward.0)) {
+                    row[lane] = x;
+                }
+            }
+        }
+        let [a, b, c, x, y, z] = rows.map(|row| f64x8::from_slice(simd, &row));
+        let cosine = (u.each(1.0) - numbers.uniform_where(which)).root();
+        let turns = numbers.uniform_where(which);
+        [[a, b, c], frame::turned_lanes([x, y, z], cosine, turns)]
+    }
+
+    #[inline(always)]
+    fn flown<S: Simd>(&self, sums: &mut [f64x8<S>; 4], length: f64x8<S>, weight: f64x8<S>) {
+        sums[1] += weight * length;
+    }
+
+    #[inline(always)]
+    fn collided<S: Simd>(&self, sums: &mut [f64x8<S>; 4], at: &Collisions<S>) {
+        let [energy, _, collisions, tentative] = sums;
+        let (one, real) = (at.albedo.each(1.0), at.weight * at.ratio);
+        add_where(tentative, at.inside, one);
+        add_where(collisions, at.inside, real);
+        add_where(energy, at.inside, real * (one - at.albedo));
+    }
+
+    #[inline(always)]
+    fn escaped<S: Simd>(&self, [energy, ..]: &mut [f64x8<S>; 4], at: &Departures<S>) {
+        add_where(energy, at.left, at.weight);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &self.channels
+    }
+}
+
+/// Makes draws by packets.
+pub(super) fn draw_packets<'a>(
+    level: Level,
+    particle: &Particle,
+    setup: &Setup<Lambertian>,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+    let (problem, seen) = (&*setup.problem, Seen::of(setup, particle));
+    let channels = [seen.energy, seen.white, seen.white, seen.tentative];
+    let channels = (0..).zip(channels).filter_map(|(sum, is_seen)| is_seen.then_some(sum));
+    let entering = Entering { problem, channels: channels.collect() };
+    walks(level, &entering, particle, (&problem.scene, majorants), request)
 }
 
 /// Makes a draw of an honest particle's channels by any steps and law of the angle with the normal.

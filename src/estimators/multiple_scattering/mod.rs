@@ -3,7 +3,12 @@
 pub mod particle;
 pub mod splitting;
 
-use crate::estimators::space::{self, Particle, Sink, Start};
+use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+
+use crate::estimators::packet::Request;
+use crate::estimators::space::exit::Points;
+use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
+use crate::estimators::space::{self, Particle, Sink, Start, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;
 use crate::numeric::Known;
@@ -61,6 +66,37 @@ pub(super) fn draw(
     let mut gathered = Gathered { sky: &problem.sky, radiance: 0.0 };
     let lookups = space::walk(particle, &problem.scene, majorants, start, &mut gathered, rng);
     Draw::free([gathered.radiance], lookups)
+}
+
+impl Tally<1> for MultipleScattering {
+    #[inline(always)]
+    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
+        let entry = self.entry().unwrap_or([Point([0.0; 3]); 2]);
+        entry.map(|point| point.0.map(|x| f64x8::splat(simd, x)))
+    }
+
+    #[inline(always)]
+    fn escaped<S: Simd>(&self, [radiance]: &mut [f64x8<S>; 1], at: &Departures<S>) {
+        add_where(radiance, at.left, at.weight * self.sky.radiance_lanes(at.direction));
+    }
+
+    fn channels(&self) -> &[usize] {
+        &[0]
+    }
+}
+
+/// Makes draws by packets.
+pub(super) fn draw_packets<'a>(
+    level: Level,
+    particle: &Particle,
+    setup: &Setup<MultipleScattering>,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let problem = &*setup.problem;
+    let (Some(_), Some(majorants)) = (problem.entry(), setup.space.as_deref()) else {
+        return Some(request);
+    };
+    walks(level, problem, particle, (&problem.scene, majorants), request)
 }
 
 estimators! {

@@ -1,5 +1,9 @@
 //! Walks of particles through volumes: what all problems in space share.
 
+pub mod exit;
+pub mod flights;
+mod grazing;
+pub mod packet;
 pub mod particle;
 pub mod walk;
 
@@ -13,6 +17,7 @@ use crate::problems::{Problem, Scene};
 use crate::theory::space::Walks;
 use crate::theory::{Channel, Moments, Tails};
 
+pub use packet::Tally;
 pub use particle::{Particle, Splitting};
 pub use walk::{Collision, Scattering, Sink, Start, Steps, walk, walk_by};
 
@@ -109,6 +114,7 @@ macro_rules! walker {
 
         impl $crate::estimators::Estimator<$Problem> for $Page {
             const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+            const IN_PACKETS: bool = true;
 
             fn read(settings: &$crate::catalogue::Settings) -> Option<Self> {
                 $read(settings).map(Self)
@@ -140,6 +146,16 @@ macro_rules! walker {
                 rng: &mut $crate::rng::Stream,
             ) -> $crate::estimators::Draw<<$Problem as $crate::problems::Problem>::Value> {
                 super::draw(&self.0, setup, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &$crate::estimators::Setup<$Problem>,
+                _: &$crate::media::Lookups,
+                request: $crate::estimators::packet::Request<'a>,
+            ) -> Option<$crate::estimators::packet::Request<'a>> {
+                super::draw_packets(level, &self.0, setup, request)
             }
         }
     };

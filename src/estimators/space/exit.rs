@@ -1,0 +1,128 @@
+//! Where eight rays that begin in a body leave it: [`Bounds::clip`] for rays side by side, bit for bit.
+//!
+//! ```text
+//! ball:  foot = (c − o)·d,  offset = |c − o − foot d|,  end = foot + √((R − offset)(R + offset))
+//! box:   end = min over the axes of the larger of (low − o)/d and (high − o)/d
+//! ```
+//!
+//! Rays that graze a ball lose digits there: they are clipped in 32 digits.
+
+use std::ops::RangeInclusive;
+
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use super::grazing;
+use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::numeric::Lane;
+use crate::numeric::pack::{WIDTH, fuses};
+
+/// Radii of which no square overflows or underflows, nor what is left of one after 32 digits.
+const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
+
+/// Three coordinates of eight points or directions.
+pub type Points<S> = [f64x8<S>; 3];
+
+/// The scalar products of two packs of vectors.
+#[inline(always)]
+pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
+    a * x + b * y + c * z
+}
+
+/// How far it is to the boundary, infinite where there is none, for the rays that a mask names.
+#[inline(always)]
+pub fn exits<S: Simd>(
+    bounds: &Bounds,
+    origin: Points<S>,
+    direction: Points<S>,
+    which: mask64x8<S>,
+) -> f64x8<S> {
+    match bounds {
+        Bounds::Everywhere => origin[0].each(f64::INFINITY),
+        Bounds::Box(within) => of_box(within, origin, direction),
+        Bounds::Sphere { centre, radius } => {
+            let (end, is_plain) = of_ball(*centre, *radius, origin, direction);
+            let is_grazing = which & !is_plain;
+            let grazing = is_grazing.to_bitmask();
+            if grazing == 0 {
+                return end;
+            }
+            if fuses(end.token().level()) && SIZES.contains(radius) {
+                let exit = grazing::exit(*centre, *radius, origin, direction);
+                return Lane::select(is_grazing, exit, end);
+            }
+            let rays = [rows(origin), rows(direction)];
+            end.replaced(|ends| one_by_one(bounds, &rays, grazing, ends))
+        }
+    }
+}
+
+/// Where the lines of rays are nearest to a point, and how near that is.
+#[inline(always)]
+pub fn foot_and_offset<L: Lane>(centre: Point, origin: [L; 3], direction: [L; 3]) -> [L; 2] {
+    let (Point([a, b, c]), [x, y, z]) = (centre, origin);
+    let to_centre = [x.each(a) - x, y.each(b) - y, z.each(c) - z];
+    let foot = dot(to_centre, direction);
+    let [a, b, c] = to_centre;
+    let [x, y, z] = direction;
+    let aside = [a - x * foot, b - y * foot, c - z * foot];
+    [foot, dot(aside, aside).root()]
+}
+
+/// By doubles, and whether these keep the digits: see [`Bounds::clip`].
+#[inline(always)]
+fn of_ball<S: Simd>(
+    centre: Point,
+    radius: f64,
+    origin: Points<S>,
+    direction: Points<S>,
+) -> (f64x8<S>, mask64x8<S>) {
+    let [foot, offset] = foot_and_offset(centre, origin, direction);
+    let size = foot.each(radius);
+    let half = ((size - offset) * (size + offset)).root();
+    let is_large = foot.each(1e-100).below(size);
+    // The origin is in the ball, so that it is not far.
+    (foot + half, offset.below(size * 0.9) & is_large)
+}
+
+/// The same ray by ray, for those whose bits are set.
+#[inline(never)]
+fn one_by_one(bounds: &Bounds, rays: &[[[f64; WIDTH]; 3]; 2], which: u64, ends: &mut [f64]) {
+    for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+        let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
+        *end = bounds.clip(&Ray { origin, direction, length: f64::INFINITY }).to;
+    }
+}
+
+#[inline(always)]
+fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
+    let mut rows = [[0.0; WIDTH]; 3];
+    for (row, coordinate) in rows.iter_mut().zip(points) {
+        coordinate.store_slice(row);
+    }
+    rows
+}
+
+#[inline(always)]
+fn of_box<S: Simd>(within: &Aabb, origin: Points<S>, direction: Points<S>) -> f64x8<S> {
+    let zero = origin[0].each(0.0);
+    let (mut from, mut to) = (zero, zero.each(f64::INFINITY));
+    let mut is_over = zero.below(zero);
+    for axis in 0..3 {
+        let (o, d) = (origin[axis], direction[axis]);
+        let (low, high) = (zero.each(within.low.0[axis]), zero.each(within.high.0[axis]));
+        let is_level = d.at_most(zero) & zero.at_most(d);
+        let is_outside = is_level & (o.below(low) | high.below(o));
+        let (a, b) = ((low - o) / d, (high - o) / d);
+        let later = from.or_more(a.or_less(b));
+        let sooner = to.or_less(a.or_more(b));
+        let is_empty = !is_level & !later.below(sooner);
+        // An empty stretch has its end at its beginning.
+        let end = later.or_less(to).or_more(from);
+        let stays = is_over | (is_level & !is_outside);
+        let next = Lane::select(is_empty, end, sooner);
+        to = Lane::select(stays, to, Lane::select(is_outside, from, next));
+        from = Lane::select(stays | is_level | is_empty, from, later);
+        is_over = is_over | is_outside | is_empty;
+    }
+    to
+}
