@@ -14,24 +14,22 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::exit::Points;
 use super::flights::{Flights, Flown, Ground};
 use super::particle::{Particle, Splitting};
 use crate::estimators::DrawBuffer;
 use crate::estimators::packet::Request;
-use crate::estimators::places::{self, Place, Places};
+pub use crate::estimators::packet::bank::Numbers;
+use crate::estimators::packet::bank::{self, Slot, Slots};
 use crate::geometry::{Point, frame};
 use crate::media::{Batches, Majorants};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
 use crate::problems::{Albedo, Scene};
-use crate::rng::{LANES, PACKS, Xoshiro};
-
-/// The streams of a pack.
-pub type Numbers<S> = Xoshiro<u64x8<S>>;
+use crate::rng::{LANES, PACKS};
 
 /// Eight tentative collisions.
 pub struct Collisions<S: Simd> {
@@ -162,11 +160,11 @@ impl<const SUMS: usize, T: Tally<SUMS>> Task for Walks<'_, '_, SUMS, T> {
         let mut packs: [Pack<S, SUMS>; PACKS] = std::array::from_fn(
             #[inline(always)]
             |pack| {
-                let places = Places::new(count, streams.turn, pack);
-                Pack::begin(simd, &world, lanes[pack].awake(simd), places)
+                let slots = Slots::new(count, streams.turn, pack);
+                Pack::begin(simd, &world, lanes[pack].awake(simd), slots)
             },
         );
-        while packs.iter().any(|pack| pack.places.are_open()) {
+        while packs.iter().any(|pack| pack.slots.are_open()) {
             let mut points = [[0.0; PAIR]; 3];
             let [first, second] = &mut packs;
             let flown = [first.fly(&world, 0, &mut points), second.fly(&world, 1, &mut points)];
@@ -181,10 +179,10 @@ impl<const SUMS: usize, T: Tally<SUMS>> Task for Walks<'_, '_, SUMS, T> {
                 let (ended, inside) = (pack.ended.to_bitmask(), flown[number].inside.to_bitmask());
                 if ended != 0 {
                     let over = pack.finish(&world, (ended, inside), buffer);
-                    places::leave(streams, number, over, pack.numbers);
+                    bank::leave(streams, number, over, pack.numbers);
                     pack.begin_anew(simd, &world);
                 }
-                pack.places.step();
+                pack.slots.step();
                 if pack.turns.to_bitmask() != 0 {
                     pack.flights.enter(&world.ground, pack.turns);
                 }
@@ -204,17 +202,12 @@ struct Pack<S: Simd, const SUMS: usize> {
     ended: mask64x8<S>,
     /// Who goes on from another place in another direction.
     turns: mask64x8<S>,
-    places: Places,
+    slots: Slots,
 }
 
 impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     #[inline(always)]
-    fn begin<T: Tally<SUMS>>(
-        simd: S,
-        world: &World<T>,
-        numbers: Numbers<S>,
-        places: Places,
-    ) -> Self {
+    fn begin<T: Tally<SUMS>>(simd: S, world: &World<T>, numbers: Numbers<S>, slots: Slots) -> Self {
         let one = f64x8::splat(simd, 1.0);
         let all = one.at_most(one);
         let mut pack = Self {
@@ -224,7 +217,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             sums: [one.each(0.0); SUMS],
             ended: all,
             turns: all,
-            places,
+            slots,
         };
         pack.begin_anew(simd, world);
         pack.flights.enter(&world.ground, all);
@@ -335,7 +328,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         for (row, sum) in rows.iter_mut().zip(self.sums) {
             sum.store_slice(row);
         }
-        collect(&rows, world.tally.channels(), (ended, inside), &mut self.places, buffer)
+        collect(&rows, world.tally.channels(), (ended, inside), &mut self.slots, buffer)
     }
 }
 
@@ -346,10 +339,10 @@ fn collect(
     rows: &[[f64; WIDTH]],
     channels: &[usize],
     (ended, inside): (u64, u64),
-    places: &mut Places,
+    slots: &mut Slots,
     buffer: &mut DrawBuffer,
 ) -> u64 {
-    places.fill(ended, |Place { lane, draw, steps }| {
+    slots.fill(ended, |Slot { lane, draw, steps }| {
         for (values, &sum) in buffer.values.iter_mut().zip(channels) {
             values[draw] = rows[sum][lane];
         }
