@@ -38,10 +38,11 @@ use std::sync::OnceLock;
 
 use super::{Problem, Scene};
 use crate::catalogue::Settings;
+use crate::geometry::frame::turned_lanes;
 use crate::geometry::{Bounds, Point};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Medium};
-use crate::numeric::Known;
+use crate::numeric::{Known, Lane};
 
 pub use super::rod::Values;
 
@@ -73,37 +74,49 @@ impl Lambertian {
     /// The place on the boundary that two numbers find, evenly, and the normal there that points inward.
     #[inline(always)]
     pub fn on_boundary(&self, u: f64, v: f64) -> (Point, Point) {
+        let [place, inward] = self.boundary_lanes([u, v]);
+        (Point(place), Point(inward))
+    }
+
+    /// The same for numbers side by side.
+    #[inline(always)]
+    pub fn boundary_lanes<L: Lane>(&self, [u, v]: [L; 2]) -> [[L; 3]; 2] {
+        let (zero, one) = (u.each(0.0), u.each(1.0));
         match self.bounds() {
-            Bounds::Sphere { centre, radius } => {
-                let outward =
-                    crate::geometry::frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * u - 1.0, v);
-                (centre + outward * radius, outward * -1.0)
+            Bounds::Sphere { centre: Point([a, b, c]), radius } => {
+                let [x, y, z] = turned_lanes([zero, zero, one], u * 2.0 - 1.0, v);
+                let place = [x * radius + a, y * radius + b, z * radius + c];
+                [place, [x * -1.0, y * -1.0, z * -1.0]]
             }
             Bounds::Box(within) => {
-                let size = within.high - within.low;
-                let [a, b, c] = size.0;
+                let size = (within.high - within.low).0;
+                let [a, b, c] = size;
                 let areas = [b * c, c * a, a * b];
                 // Which pair of faces, which of the two, and where across it: all from one number.
-                let mut left = u * (areas[0] + areas[1] + areas[2]);
-                let mut axis = 0;
-                while axis < 2 && left >= areas[axis] {
-                    left -= areas[axis];
-                    axis += 1;
+                let left = u * (areas[0] + areas[1] + areas[2]);
+                let not_first = u.each(areas[0]).at_most(left);
+                let left = L::select(not_first, left - areas[0], left);
+                let is_third = not_first & u.each(areas[1]).at_most(left);
+                let left = L::select(is_third, left - areas[1], left);
+                let axes = [!not_first, not_first & !is_third, is_third];
+                let area = L::select(axes[1], u.each(areas[1]), u.each(areas[2]));
+                let area = L::select(axes[0], u.each(areas[0]), area);
+                let share = (left * 2.0 / area).or_less(u.each(2.0));
+                let is_high = one.at_most(share);
+                let along = L::select(is_high, share - 1.0, share).or_less(one);
+                let facing = L::select(is_high, -one, one);
+                let (mut place, mut inward) = ([zero; 3], [zero; 3]);
+                for axis in 0..3 {
+                    let (low, high) = (u.each(within.low.0[axis]), u.each(within.high.0[axis]));
+                    let across = L::select(axes[(axis + 2) % 3], along, v) * size[axis] + low;
+                    let face = L::select(is_high, high, low);
+                    place[axis] = L::select(axes[axis], face, across);
+                    inward[axis] = L::select(axes[axis], facing, zero);
                 }
-                let share = (2.0 * left / areas[axis]).min(2.0);
-                let is_high = share >= 1.0;
-                let along = (if is_high { share - 1.0 } else { share }).min(1.0);
-                let (first, second) = ((axis + 1) % 3, (axis + 2) % 3);
-                let mut place = within.low;
-                place.0[axis] = if is_high { within.high.0[axis] } else { within.low.0[axis] };
-                place.0[first] += along * size.0[first];
-                place.0[second] += v * size.0[second];
-                let mut inward = Point([0.0; 3]);
-                inward.0[axis] = if is_high { -1.0 } else { 1.0 };
-                (place, inward)
+                [place, inward]
             }
             // Refused when it is read.
-            Bounds::Everywhere => (Point([0.0; 3]), Point([0.0, 0.0, 1.0])),
+            Bounds::Everywhere => [[zero; 3], [zero, zero, one]],
         }
     }
 }

@@ -69,13 +69,13 @@ impl Sky {
     /// The same for directions side by side.
     #[inline(always)]
     pub fn radiance_lanes<L: Lane>(&self, direction: [L; 3]) -> L {
-        let each = |value: f64| direction[0].each(value);
+        let like = direction[0];
         match *self {
-            Self::Constant { radiance } => each(radiance),
+            Self::Constant { radiance } => like.each(radiance),
             Self::Gradient { ground, horizon, zenith, up, sun, glare, sharpness } => {
                 let height = up.along(direction);
-                let is_below = height.below(each(0.0));
-                let end = L::select(is_below, each(ground), each(zenith));
+                let is_below = height.below(like.each(0.0));
+                let end = L::select(is_below, like.each(ground), like.each(zenith));
                 let share = height.size().root();
                 let shine = ((sun.along(direction) - 1.0) * sharpness).exp();
                 (end - horizon) * share + horizon + shine * glare

@@ -3,10 +3,10 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use crate::estimators::packet::Request;
-use crate::estimators::space::exit::Points;
+use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
 use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
@@ -65,7 +65,7 @@ pub(super) fn draw(
 impl Tally<1> for Furnace {
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        [self.entry, self.direction].map(|point| point.0.map(|x| f64x8::splat(simd, x)))
+        [splat(simd, self.entry), splat(simd, self.direction)]
     }
 
     #[inline(always)]

@@ -3,7 +3,7 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use crate::estimators::packet::Request;
 use crate::estimators::space::exit::Points;
@@ -11,7 +11,6 @@ use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_wher
 use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
-use crate::numeric::pack::WIDTH;
 use crate::numeric::{Known, Lane};
 use crate::problems::Lambertian;
 use crate::problems::lambertian::Values;
@@ -185,29 +184,12 @@ struct Entering<'a> {
 /// Energy, path length, collisions, tentative collisions.
 impl Tally<4> for Entering<'_> {
     #[inline(always)]
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2] {
+    fn begin<S: Simd>(&self, _: S, numbers: &mut Numbers<S>, which: mask64x8<S>) -> [Points<S>; 2] {
         let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
-        let mut rows = [[0.0; WIDTH]; 6];
-        let [mut us, mut vs] = [[0.0; WIDTH]; 2];
-        u.store_slice(&mut us);
-        v.store_slice(&mut vs);
-        for lane in 0..WIDTH {
-            if which.to_bitmask() >> lane & 1 == 1 {
-                let (place, inward) = self.problem.on_boundary(us[lane], vs[lane]);
-                for (row, x) in rows.iter_mut().zip(place.0.into_iter().chain(inward.0)) {
-                    row[lane] = x;
-                }
-            }
-        }
-        let [a, b, c, x, y, z] = rows.map(|row| f64x8::from_slice(simd, &row));
+        let [place, inward] = self.problem.boundary_lanes([u, v]);
         let cosine = (u.each(1.0) - numbers.uniform_where(which)).root();
         let turns = numbers.uniform_where(which);
-        [[a, b, c], frame::turned_lanes([x, y, z], cosine, turns)]
+        [place, frame::turned_lanes(inward, cosine, turns)]
     }
 
     #[inline(always)]

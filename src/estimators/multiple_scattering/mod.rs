@@ -3,10 +3,10 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use crate::estimators::packet::Request;
-use crate::estimators::space::exit::Points;
+use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
 use crate::estimators::space::{self, Particle, Sink, Start, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
@@ -71,8 +71,8 @@ pub(super) fn draw(
 impl Tally<1> for MultipleScattering {
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        let entry = self.entry().unwrap_or([Point([0.0; 3]); 2]);
-        entry.map(|point| point.0.map(|x| f64x8::splat(simd, x)))
+        let [place, direction] = self.entry().unwrap_or([Point([0.0; 3]); 2]);
+        [splat(simd, place), splat(simd, direction)]
     }
 
     #[inline(always)]

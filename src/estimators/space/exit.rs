@@ -22,6 +22,12 @@ const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
 /// Three coordinates of eight points or directions.
 pub type Points<S> = [f64x8<S>; 3];
 
+/// The same point in every lane.
+#[inline(always)]
+pub fn splat<S: Simd>(simd: S, Point([x, y, z]): Point) -> Points<S> {
+    [f64x8::splat(simd, x), f64x8::splat(simd, y), f64x8::splat(simd, z)]
+}
+
 /// The scalar products of two packs of vectors.
 #[inline(always)]
 pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
@@ -40,20 +46,38 @@ pub fn exits<S: Simd>(
         Bounds::Everywhere => origin[0].each(f64::INFINITY),
         Bounds::Box(within) => of_box(within, origin, direction),
         Bounds::Sphere { centre, radius } => {
-            let (end, is_plain) = of_ball(*centre, *radius, origin, direction);
-            let is_grazing = which & !is_plain;
-            let grazing = is_grazing.to_bitmask();
-            if grazing == 0 {
-                return end;
-            }
-            if fuses(end.token().level()) && SIZES.contains(radius) {
-                let exit = grazing::exit(*centre, *radius, origin, direction);
-                return Lane::select(is_grazing, exit, end);
-            }
-            let rays = [rows(origin), rows(direction)];
-            end.replaced(|ends| one_by_one(bounds, &rays, grazing, ends))
+            chords(*centre, *radius, [origin, direction], which)[1]
         }
     }
+}
+
+/// Where the lines of rays that begin in a ball enter and leave it, for the rays that a mask names; the one is
+/// not before the other where they do not.
+#[inline(always)]
+pub fn chords<S: Simd>(
+    centre: Point,
+    radius: f64,
+    [origin, direction]: [Points<S>; 2],
+    which: mask64x8<S>,
+) -> [f64x8<S>; 2] {
+    let ([from, to], is_plain) = of_ball(centre, radius, origin, direction);
+    let is_grazing = which & !is_plain;
+    let grazing = is_grazing.to_bitmask();
+    if grazing == 0 {
+        return [from, to];
+    }
+    if fuses(to.token().level()) && SIZES.contains(&radius) {
+        let [begin, end] = grazing::chord(centre, radius, origin, direction);
+        return [Lane::select(is_grazing, begin, from), Lane::select(is_grazing, end, to)];
+    }
+    let mut ends = rows([from, to, to]);
+    one_by_one(
+        &Bounds::Sphere { centre, radius },
+        &[rows(origin), rows(direction)],
+        grazing,
+        &mut ends,
+    );
+    [f64x8::from_slice(to.token(), &ends[0]), f64x8::from_slice(to.token(), &ends[1])]
 }
 
 /// Where the lines of rays are nearest to a point, and how near that is.
@@ -75,26 +99,33 @@ fn of_ball<S: Simd>(
     radius: f64,
     origin: Points<S>,
     direction: Points<S>,
-) -> (f64x8<S>, mask64x8<S>) {
+) -> ([f64x8<S>; 2], mask64x8<S>) {
     let [foot, offset] = foot_and_offset(centre, origin, direction);
     let size = foot.each(radius);
     let half = ((size - offset) * (size + offset)).root();
     let is_large = foot.each(1e-100).below(size);
     // The origin is in the ball, so that it is not far.
-    (foot + half, offset.below(size * 0.9) & is_large)
+    ([foot - half, foot + half], offset.below(size * 0.9) & is_large)
 }
 
 /// The same ray by ray, for those whose bits are set.
 #[inline(never)]
-fn one_by_one(bounds: &Bounds, rays: &[[[f64; WIDTH]; 3]; 2], which: u64, ends: &mut [f64]) {
-    for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+fn one_by_one(
+    bounds: &Bounds,
+    rays: &[[[f64; WIDTH]; 3]; 2],
+    which: u64,
+    [from, to, _]: &mut [[f64; WIDTH]; 3],
+) {
+    for lane in (0..WIDTH).filter(|lane| which >> lane & 1 == 1) {
         let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
-        *end = bounds.clip(&Ray { origin, direction, length: f64::INFINITY }).to;
+        let inside = bounds.clip(&Ray { origin, direction, length: f64::INFINITY });
+        (from[lane], to[lane]) = (inside.from, inside.to);
     }
 }
 
+/// The elements of three packs.
 #[inline(always)]
-fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
+pub fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
     let mut rows = [[0.0; WIDTH]; 3];
     for (row, coordinate) in rows.iter_mut().zip(points) {
         coordinate.store_slice(row);

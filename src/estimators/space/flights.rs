@@ -16,6 +16,8 @@ pub struct Ground<'a> {
     /// σ̂, where it is one constant.
     constant: Option<f64>,
     cells: [f64; 3],
+    /// The number of the last cell along each axis.
+    last: [f64; 3],
     low: [f64; 3],
     width: [f64; 3],
     values: &'a [f64],
@@ -29,7 +31,8 @@ impl<'a> Ground<'a> {
     pub fn new(majorants: &'a Majorants, core: Option<(Point, f64)>) -> Self {
         let (cells, low, width, values) = majorants.cells();
         let (constant, cells) = (majorants.single_value(), cells.map(|n| n as f64));
-        Self { majorants, constant, cells, low: low.0, width, values, core }
+        let last = cells.map(|n| n - 1.0);
+        Self { majorants, constant, cells, last, low: low.0, width, values, core }
     }
 }
 
@@ -104,7 +107,7 @@ impl<S: Simd> Flights<S> {
         if ground.constant.is_none() {
             for axis in 0..3 {
                 let place = (self.origin[axis] - ground.low[axis]) / zero.each(ground.width[axis]);
-                let cell = floor(place.or_more(zero).or_less(zero.each(ground.cells[axis] - 1.0)));
+                let cell = floor(place.or_more(zero).or_less(zero.each(ground.last[axis])));
                 self.cell[axis] = Lane::select(which, cell, self.cell[axis]);
                 let slope = self.direction[axis];
                 let is_up = zero.below(slope);
@@ -166,7 +169,13 @@ impl<S: Simd> Flights<S> {
             let axis = [first, !first & y.at_most(edge)];
             let slope = of_axis(axis, self.direction);
             let (is_up, cell) = (zero.below(slope), of_axis(axis, self.cell));
-            let last = of_axis(axis, ground.cells.map(|n| zero.each(n - 1.0)));
+            let last = of_axis(
+                axis,
+                ground.last.map(
+                    #[inline(always)]
+                    |x| zero.each(x),
+                ),
+            );
             let last = Lane::select(is_up, last, zero);
             let is_last = cell.at_most(last) & last.at_most(cell);
             let leaves = on_its_way & (self.end.at_most(edge) | is_last);
@@ -177,8 +186,20 @@ impl<S: Simd> Flights<S> {
             }
             let cell = cell + Lane::select(is_up, one, -one);
             let index = cell + Lane::select(is_up, one, zero);
-            let width = of_axis(axis, ground.width.map(|width| zero.each(width)));
-            let low = of_axis(axis, ground.low.map(|low| zero.each(low)));
+            let width = of_axis(
+                axis,
+                ground.width.map(
+                    #[inline(always)]
+                    |x| zero.each(x),
+                ),
+            );
+            let low = of_axis(
+                axis,
+                ground.low.map(
+                    #[inline(always)]
+                    |x| zero.each(x),
+                ),
+            );
             let plane = (low + width * index - of_axis(axis, self.origin)) / slope;
             let [first, second] = axis;
             for (axis, crossed) in [first, second, !first & !second].into_iter().enumerate() {

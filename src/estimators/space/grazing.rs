@@ -90,12 +90,20 @@ fn sum<L: Lane>([a, b, c]: [Pair<L>; 3]) -> Pair<L> {
     a.plus(b).plus(c)
 }
 
-/// How far it is to the surface, for rays that begin in the ball; its radius is neither so large nor so
-/// small that a square is lost.
+/// Where the lines of rays that begin in a ball enter and leave it; its radius is neither so large nor so
+/// small that a square is lost. Without a chord both are the foot.
 #[inline(always)]
-pub fn exit<L: Lane>(Point(centre): Point, radius: f64, [a, b, c]: [L; 3], direction: [L; 3]) -> L {
+pub fn chord<L: Lane>(
+    Point(centre): Point,
+    radius: f64,
+    [a, b, c]: [L; 3],
+    direction: [L; 3],
+) -> [L; 2] {
     let [x, y, z] = direction;
-    let [u, v, w] = centre.map(|centre| a.each(centre));
+    let [u, v, w] = centre.map(
+        #[inline(always)]
+        |centre| a.each(centre),
+    );
     let to_centre = [two_sum(u, -a), two_sum(v, -b), two_sum(w, -c)];
     let [u, v, w] = to_centre;
     let square = sum([two_product(x, x), two_product(y, y), two_product(z, z)]);
@@ -103,11 +111,14 @@ pub fn exit<L: Lane>(Point(centre): Point, radius: f64, [a, b, c]: [L; 3], direc
     let aside = [u.minus(foot.times(x)), v.minus(foot.times(y)), w.minus(foot.times(z))];
     let [u, v, w] = aside;
     let offset = sum([u.squared(), v.squared(), w.squared()]);
-    let radius = a.each(radius);
+    let (radius, zero) = (a.each(radius), a.each(0.0));
     let half = two_product(radius, radius).minus(offset).over(square);
-    let end = foot.plus(half.root());
-    let zero = a.each(0.0);
-    // Without a chord it ends at its foot.
+    let is_none = half.high.at_most(zero);
+    let half = half.root();
+    let (from, to) = (foot.minus(half), foot.plus(half));
     let foot = (foot.high + foot.low).or_more(zero);
-    L::select(half.high.at_most(zero), foot, end.high + end.low)
+    [from, to].map(
+        #[inline(always)]
+        |end| L::select(is_none, foot, end.high + end.low),
+    )
 }

@@ -3,8 +3,10 @@
 pub mod exit;
 pub mod flights;
 mod grazing;
+mod pack;
 pub mod packet;
 pub mod particle;
+pub mod shadow;
 pub mod walk;
 
 use std::sync::Arc;

@@ -2,20 +2,19 @@
 
 pub mod connect;
 pub mod next_event;
+mod packet;
 pub mod particle;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+use fearless_simd::Level;
 
 use crate::catalogue::rounded;
 use crate::estimators::packet::Request;
-use crate::estimators::space::exit::Points;
-use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, Particle, Start, Steps, Tally};
+use crate::estimators::space::{self, Particle, Start, Steps};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
 use crate::media::Majorants;
 use crate::media::majorants::Flight;
-use crate::numeric::{Known, Lane};
+use crate::numeric::Known;
 use crate::problems::Sphere;
 use crate::problems::sphere::{Light, Sought};
 use crate::rng::Stream;
@@ -279,49 +278,6 @@ fn draw(particle: &Particle, setup: &Setup<Sphere>, rng: &mut Stream) -> Draw<[f
     draw_by(particle, None, setup, rng)
 }
 
-impl Tally<1> for Sphere {
-    #[inline(always)]
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2] {
-        let splat = |point: Point| point.0.map(|x| f64x8::splat(simd, x));
-        let direction = match self.sought {
-            Sought::Radiance => splat(self.direction()),
-            Sought::MeanIntensity => {
-                let cosine = numbers.uniform_where(which) * 2.0 - 1.0;
-                let turns = numbers.uniform_where(which);
-                frame::turned_lanes(splat(Point([0.0, 0.0, 1.0])), cosine, turns)
-            }
-        };
-        [splat(self.entry()), direction]
-    }
-
-    #[inline(always)]
-    fn escaped<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], at: &Departures<S>) {
-        let is_light = match self.light {
-            Light::Environment => at.left,
-            Light::Distant(_) => return,
-            Light::BlackSphere(core) => {
-                let middle = 0.5 * (core + self.radius);
-                let distance = self.centre.square_to(at.place, 1.0).root();
-                at.left & distance.below(distance.each(middle))
-            }
-        };
-        add_where(found, is_light, at.weight);
-    }
-
-    fn core(&self) -> Option<(Point, f64)> {
-        core(self)
-    }
-
-    fn channels(&self) -> &[usize] {
-        &[0]
-    }
-}
-
 /// Makes draws by packets.
 fn draw_packets<'a>(
     level: Level,
@@ -329,9 +285,7 @@ fn draw_packets<'a>(
     setup: &Setup<Sphere>,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
-    let sphere = &*setup.problem;
-    walks(level, sphere, particle, (&sphere.scene, majorants), request)
+    packet::draw_by_packets(level, particle, None, setup, request)
 }
 
 estimators! {

@@ -23,8 +23,11 @@
 //! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
 //! Graphics 33 (2014). The bound is derived in `theory/sphere/mod.rs`.
 
+use fearless_simd::Level;
+
 use super::Honest;
 use crate::catalogue::Settings;
+use crate::estimators::packet::Request;
 use crate::estimators::single_scattering::connection;
 use crate::estimators::space::Particle;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -43,6 +46,7 @@ pub struct NextEvent {
 
 impl Estimator<Sphere> for NextEvent {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let particle = Particle::read(settings);
@@ -65,5 +69,15 @@ impl Estimator<Sphere> for NextEvent {
     #[inline]
     fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
         super::draw_by(&self.particle, Some((&Honest, self.shadow)), setup, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<Sphere>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        super::packet::draw_by_packets(level, &self.particle, Some(self.shadow), setup, request)
     }
 }

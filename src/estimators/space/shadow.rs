@@ -1,0 +1,175 @@
+//! Shadow rays from scatterings side by side: event-based tracking of what next-event estimation asks for.
+//!
+//! ```text
+//! T̂ = e^(−σ_c ℓ) ∏ (1 − (σ_t − σ_c)/σ̂)   ratio and residual-ratio tracking
+//! T̂ = [no u σ̂ < σ_t]                      delta tracking
+//! ```
+//!
+//! A flight along a shadow ray is a step like any other: it shares its logarithm and its lookup with the
+//! walks of the other lanes. Bit for bit what
+//! [`transmittance`](crate::estimators::single_scattering::connection::transmittance) finds.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use super::exit::{Points, chords, rows};
+use super::packet::Numbers;
+use crate::geometry::{Point, Ray};
+use crate::media::Volume;
+use crate::numeric::pack::WIDTH;
+use crate::numeric::{Lane, Span};
+use crate::theory::single::Tracking;
+
+/// How shadow rays are cast: through a volume in a ball.
+pub struct ShadowRays<'a> {
+    /// What is in the way.
+    pub volume: &'a Volume,
+    /// The centre of the ball.
+    pub centre: Point,
+    /// R.
+    pub radius: f64,
+    /// How the transmittance is found.
+    pub tracking: Tracking,
+}
+
+/// Light as eight points see it.
+#[derive(Clone, Copy)]
+pub struct Light<S: Simd> {
+    /// In which direction it is looked for.
+    pub direction: Points<S>,
+    /// What it is worth without a medium.
+    pub share: f64x8<S>,
+    /// How far it is.
+    pub distance: f64x8<S>,
+}
+
+/// Light that has been found, and by which rays.
+pub type Found<S> = (mask64x8<S>, f64x8<S>);
+
+/// The shadow rays of eight particles: one each at most, from where its flight begins.
+#[derive(Clone, Copy)]
+pub struct Shadows<S: Simd> {
+    /// Which particles cast one.
+    pub on: mask64x8<S>,
+    direction: Points<S>,
+    t: f64x8<S>,
+    end: f64x8<S>,
+    through: f64x8<S>,
+    /// The weight times what the light is worth.
+    worth: f64x8<S>,
+}
+
+impl ShadowRays<'_> {
+    /// σ̂; 1 where nothing is tracked.
+    fn sampling(&self) -> f64 {
+        match self.tracking {
+            Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } => sampling,
+            Tracking::Exact => 1.0,
+        }
+    }
+
+    /// In closed form, ray by ray, for those whose bits are set.
+    #[inline(never)]
+    fn exact(&self, which: u64, rays: &[[[f64; WIDTH]; 3]; 2], ends: &mut [f64], from: &[f64]) {
+        for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+            let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
+            let inside = Span::new(from[lane], *end);
+            let ray = Ray { origin, direction, length: f64::INFINITY };
+            let profile = self.volume.along(&ray, inside);
+            *end = Lane::exp(-profile.optical_depth(inside).value);
+        }
+    }
+}
+
+impl<S: Simd> Shadows<S> {
+    /// None.
+    #[inline(always)]
+    pub fn new(simd: S) -> Self {
+        let zero = f64x8::splat(simd, 0.0);
+        let on = zero.below(zero);
+        Self { on, direction: [zero; 3], t: zero, end: zero, through: zero, worth: zero }
+    }
+
+    /// The rays that a mask names begin at places with weights; what needs no tracking is found at once.
+    #[inline(always)]
+    pub fn cast(
+        &mut self,
+        rays: &ShadowRays,
+        which: mask64x8<S>,
+        light: &Light<S>,
+        (origin, weight): (Points<S>, f64x8<S>),
+    ) -> Found<S> {
+        let (zero, one) = (weight.each(0.0), weight.each(1.0));
+        let [from, to] = chords(rays.centre, rays.radius, [origin, light.direction], which);
+        let (from, end) = (from.or_more(zero), light.distance.or_less(to));
+        let is_blocked = which & from.below(end);
+        let worth = weight * light.share;
+        let control = match rays.tracking {
+            Tracking::Ratio { control, .. } => control,
+            Tracking::Delta { .. } => 0.0,
+            Tracking::Exact => {
+                let blocked = is_blocked.to_bitmask();
+                if blocked == 0 {
+                    return (which, worth);
+                }
+                let (lines, [start, ..]) = ([rows(origin), rows(light.direction)], rows([from; 3]));
+                let through = end.replaced(|ends| rays.exact(blocked, &lines, ends, &start));
+                return (which, worth * Lane::select(is_blocked, through, one));
+            }
+        };
+        self.on |= is_blocked;
+        for (direction, light) in self.direction.iter_mut().zip(light.direction) {
+            *direction = Lane::select(is_blocked, light, *direction);
+        }
+        self.t = Lane::select(is_blocked, from, self.t);
+        self.end = Lane::select(is_blocked, end, self.end);
+        self.worth = Lane::select(is_blocked, worth, self.worth);
+        let through = ((end - from) * -control).exp();
+        self.through = Lane::select(is_blocked, through, self.through);
+        (which & !is_blocked, worth)
+    }
+
+    /// Each flies an optical depth through σ̂; answers where, and whether it is still on the ray.
+    #[inline(always)]
+    pub fn fly(
+        &mut self,
+        rays: &ShadowRays,
+        [a, b, c]: Points<S>,
+        depth: f64x8<S>,
+    ) -> (Points<S>, mask64x8<S>) {
+        self.t += depth * (1.0 / rays.sampling());
+        let ([x, y, z], t) = (self.direction, self.t);
+        ([a + x * t, b + y * t, c + z * t], self.on & !self.end.at_most(t))
+    }
+
+    /// What becomes of each, given σ_t where it has come to: those that have come to their ends, or are
+    /// absorbed, have found what they bring.
+    #[inline(always)]
+    pub fn collide(
+        &mut self,
+        rays: &ShadowRays,
+        numbers: &mut Numbers<S>,
+        (place, inside): (Points<S>, mask64x8<S>),
+        extinction: f64x8<S>,
+    ) -> Found<S> {
+        let zero = extinction.each(0.0);
+        let distance = rays.centre.square_to(place, 1.0).root();
+        let is_medium = distance.at_most(zero.each(rays.radius));
+        let extinction = Lane::select(is_medium, extinction, zero);
+        let mut ends = self.on & !inside;
+        match rays.tracking {
+            Tracking::Ratio { sampling, control } => {
+                let kept = zero.each(1.0) - (extinction - control) * (1.0 / sampling);
+                self.through = Lane::select(inside, self.through * kept, self.through);
+            }
+            Tracking::Delta { sampling } => {
+                let number = numbers.uniform_where(inside);
+                let is_absorbed = inside & (number * sampling).below(extinction);
+                self.through = Lane::select(is_absorbed, zero, self.through);
+                ends |= is_absorbed;
+            }
+            Tracking::Exact => {}
+        }
+        self.on &= !ends;
+        (ends, self.worth * self.through)
+    }
+}
