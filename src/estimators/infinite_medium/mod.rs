@@ -2,10 +2,10 @@
 
 pub mod particle;
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use crate::estimators::packet::Request;
-use crate::estimators::space::exit::Points;
+use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::{Collisions, Numbers, add_where, walks};
 use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
@@ -165,16 +165,12 @@ const SUMS: usize = MOST_RADII + 2;
 
 impl Tally<SUMS> for Spreading<'_> {
     #[inline(always)]
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2] {
-        let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
-        let cosine = numbers.uniform_where(which) * 2.0 - 1.0;
-        let turns = numbers.uniform_where(which);
-        [[zero; 3], frame::turned_lanes([zero, zero, one], cosine, turns)]
+    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
+        [splat(simd, Point([0.0; 3])), splat(simd, Point([0.0, 0.0, 1.0]))]
+    }
+
+    fn begins_turned(&self) -> bool {
+        true
     }
 
     #[inline(always)]

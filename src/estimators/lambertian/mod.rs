@@ -186,10 +186,16 @@ impl Tally<4> for Entering<'_> {
     #[inline(always)]
     fn begin<S: Simd>(&self, _: S, numbers: &mut Numbers<S>, which: mask64x8<S>) -> [Points<S>; 2] {
         let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
-        let [place, inward] = self.problem.boundary_lanes([u, v]);
-        let cosine = (u.each(1.0) - numbers.uniform_where(which)).root();
-        let turns = numbers.uniform_where(which);
-        [place, frame::turned_lanes(inward, cosine, turns)]
+        self.problem.boundary_lanes([u, v])
+    }
+
+    fn begins_turned(&self) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn first_cosine<L: Lane>(&self, number: L) -> L {
+        (number.each(1.0) - number).root()
     }
 
     #[inline(always)]

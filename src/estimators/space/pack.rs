@@ -11,7 +11,6 @@ use crate::geometry::frame;
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::twin::PAIR;
-use crate::problems::Scene;
 
 /// Eight walks.
 pub struct Pack<S: Simd, const SUMS: usize> {
@@ -166,12 +165,12 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     /// Those that were scattered cast shadow rays and turn, and these and those that begin set out.
     #[inline(always)]
     pub fn redirect<T: Tally<SUMS>>(&mut self, world: &World<T>) {
-        let (mut turns, mut sets_out) = (self.scattered, self.scattered | self.ended);
+        let begins_turned = world.tally.begins_turned();
+        let sets_out = self.scattered | self.ended;
+        let (mut turns, mut sets_out) =
+            (if begins_turned { sets_out } else { self.scattered }, sets_out);
         if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
             let zero = self.weight.each(0.0);
-            if world.tally.looks_around() {
-                turns |= self.ended;
-            }
             let is_nothing = self.weight.at_most(zero) & zero.at_most(self.weight);
             let casts = turns & !is_nothing;
             if casts.to_bitmask() != 0 {
@@ -184,7 +183,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             sets_out = (sets_out | self.lit) & !self.shadows.on;
         }
         if turns.to_bitmask() != 0 {
-            self.turn(world.scene, turns);
+            self.turn(world, turns);
         }
         if sets_out.to_bitmask() != 0 {
             self.flights.enter(&world.ground, sets_out);
@@ -193,8 +192,12 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
 
     /// Turns those that a mask names.
     #[inline(always)]
-    fn turn(&mut self, scene: &Scene, which: mask64x8<S>) {
-        let cosine = scene.phase.cosine(self.numbers.uniform_where(which));
+    fn turn<T: Tally<SUMS>>(&mut self, world: &World<T>, which: mask64x8<S>) {
+        let number = self.numbers.uniform_where(which);
+        let mut cosine = world.scene.phase.cosine(number);
+        if world.tally.begins_turned() {
+            cosine = Lane::select(self.ended, world.tally.first_cosine(number), cosine);
+        }
         let turns = self.numbers.uniform_where(which);
         let turned = frame::turned_lanes(self.flights.direction, cosine, turns);
         for (to, turned) in self.flights.direction.iter_mut().zip(turned) {

@@ -103,9 +103,15 @@ pub trait Tally<const SUMS: usize> {
         None
     }
 
-    /// Whether a walk begins with a shadow ray, and turns as if it were scattered there.
-    fn looks_around(&self) -> bool {
+    /// Whether a walk begins as if it were scattered: it casts a shadow ray, if particles do, and turns.
+    fn begins_turned(&self) -> bool {
         false
+    }
+
+    /// The cosine with which it turns there, of a uniform number.
+    #[inline(always)]
+    fn first_cosine<L: Lane>(&self, number: L) -> L {
+        number * 2.0 - 1.0
     }
 
     /// The light that shadow rays from places are cast to; those that a mask names may take numbers for it.

@@ -26,6 +26,16 @@ fn anywhere<S: Simd>(numbers: &mut Numbers<S>, which: mask64x8<S>, up: Points<S>
     frame::turned_lanes(up, cosine, numbers.uniform_where(which))
 }
 
+/// Where walks begin, and in which direction; where that is any, they turn from here.
+#[inline(always)]
+fn begin<S: Simd>(simd: S, sphere: &Sphere) -> [Points<S>; 2] {
+    let direction = match sphere.sought {
+        Sought::Radiance => sphere.direction(),
+        Sought::MeanIntensity => UP,
+    };
+    [splat(simd, sphere.entry()), splat(simd, direction)]
+}
+
 /// Whether particles that have left have met the light.
 #[inline(always)]
 fn meets_light<S: Simd>(sphere: &Sphere, at: &Departures<S>) -> mask64x8<S> {
@@ -43,17 +53,12 @@ fn meets_light<S: Simd>(sphere: &Sphere, at: &Departures<S>) -> mask64x8<S> {
 /// Walks without shadow rays.
 impl Tally<1> for Sphere {
     #[inline(always)]
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2] {
-        let direction = match self.sought {
-            Sought::Radiance => splat(simd, self.direction()),
-            Sought::MeanIntensity => anywhere(numbers, which, splat(simd, UP)),
-        };
-        [splat(simd, self.entry()), direction]
+    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
+        begin(simd, self)
+    }
+
+    fn begins_turned(&self) -> bool {
+        self.sought == Sought::MeanIntensity
     }
 
     #[inline(always)]
@@ -81,13 +86,7 @@ impl Tally<1> for Connected<'_> {
 
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        let sphere = self.sphere;
-        let direction = match sphere.sought {
-            Sought::Radiance => sphere.direction(),
-            // From here it turns, as any particle that isotropic scattering turns.
-            Sought::MeanIntensity => UP,
-        };
-        [splat(simd, sphere.entry()), splat(simd, direction)]
+        begin(simd, self.sphere)
     }
 
     #[inline(always)]
@@ -107,8 +106,8 @@ impl Tally<1> for Connected<'_> {
         Some(ShadowRays { volume, centre, radius, tracking: self.shadow })
     }
 
-    fn looks_around(&self) -> bool {
-        self.sphere.sought == Sought::MeanIntensity
+    fn begins_turned(&self) -> bool {
+        self.sphere.begins_turned()
     }
 
     #[inline(always)]
