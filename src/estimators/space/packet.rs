@@ -1,6 +1,6 @@
 //! Walks in space side by side: event-based tracking of sixteen particles.
 //!
-//! Specification: draw j is, bit for bit, the draw that [`super::walk`] makes from stream j mod 16.
+//! Specification: draw j is, bit for bit, the draw that [`walk`](mod@super::walk) makes from stream j mod 16.
 //!
 //! ```text
 //! fly       each particle flies −ln u through σ̂
