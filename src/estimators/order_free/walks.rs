@@ -290,6 +290,21 @@ impl<R: Collision> Task for Layer<'_, R> {
         let [from, unit, sampling, mean_free_path, subtracted] =
             [from, unit, sampling, 1.0 / sampling, subtracted].map(|x| Twin::splat(simd, x));
         let count = weights.values.len();
+        if let Some(value) = medium.single_value() {
+            let residual = Twin::splat(simd, value) - subtracted;
+            let is_unknown = weights.collide(
+                simd,
+                rule,
+                0,
+                count,
+                #[inline(always)]
+                |_| {
+                    let decision = if R::DECIDES { integers(&mut decisions) * SCALE } else { unit };
+                    Collisions { met: Met { residual, sampling, mean_free_path }, decision }
+                },
+            );
+            return (weights.survivors, is_unknown);
+        }
         let mut is_unknown = false;
         let mut looked_up = [[0.0; PAIR]; ALONE / PAIR];
         for first in (0..count).step_by(ALONE) {

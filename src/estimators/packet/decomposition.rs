@@ -79,7 +79,8 @@ impl Decomposition<'_, '_> {
                 flown,
                 reader,
             },
-            medium,
+            #[inline(always)]
+            |places| medium.pair(simd, places),
             request,
         );
     }

@@ -61,7 +61,8 @@ impl Flight<'_, '_> {
             simd,
             #[inline(always)]
             || Flights { ray, course, inside: mask64x8::splat(simd, true), t: from, from },
-            medium,
+            #[inline(always)]
+            |places| medium.pair(simd, places),
             request,
         );
     }

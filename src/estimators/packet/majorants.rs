@@ -55,7 +55,8 @@ impl Task for Local<'_, '_> {
             simd,
             #[inline(always)]
             || Hops { segments, last, survivor, segment, t, end, path, looked, within },
-            medium,
+            #[inline(always)]
+            |places| medium.pair(simd, places),
             request,
         );
     }

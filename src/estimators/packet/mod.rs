@@ -121,11 +121,11 @@ trait Walks<S: Simd> {
     /// What reads their rows.
     fn reader(&self) -> Self::Reader;
 
-    /// Each flies on; answers where σ_t is asked for: inside the support.
+    /// Each flies on; answers where σ_t is asked for.
     fn fly(&mut self, numbers: &Numbers<S>) -> f64x8<S>;
 
-    /// What becomes of each, given σ_t there; walks that end begin anew.
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends;
+    /// What becomes of each, given what was looked up there; walks that end begin anew.
+    fn collide(&mut self, found: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends;
 
     /// Whether all that happened so far is what these walks are made for.
     #[inline(always)]
@@ -227,12 +227,13 @@ struct Draws<'a, R> {
 
 /// Walks until every lane has made its draws; answers whether they are of use, see [`Walks::are_sound`].
 ///
-/// Both packs of streams take each step together: one call looks σ_t up for sixteen lanes.
+/// Both packs of streams take each step together: `look_up` answers for sixteen lanes, σ_t by [`Lookups::pair`] or
+/// what a walk makes of it.
 #[inline(always)]
 fn run<S: Simd, W: Walks<S>>(
     simd: S,
     begin: impl Fn() -> W,
-    medium: &Lookups,
+    look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>>,
     request: Request,
 ) -> bool {
     let decides = W::Reader::DECIDES;
@@ -251,7 +252,7 @@ fn run<S: Simd, W: Walks<S>>(
             let numbers = window.numbers(step, &mut streams, decides);
             let other_numbers = other_window.numbers(step, &mut other_streams, decides);
             let places = Twin(walks.fly(&numbers), others.fly(&other_numbers));
-            let Twin(here, there) = medium.pair(simd, places);
+            let Twin(here, there) = look_up(places);
             let ends = walks.collide(here, &numbers, &mut window.rows[step]);
             window.note(step, &ends, decides);
             let ends = others.collide(there, &other_numbers, &mut other_window.rows[step]);

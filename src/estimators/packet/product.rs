@@ -15,8 +15,8 @@ use crate::estimators::rules::{Collision, Met};
 use crate::estimators::walk::Invariant;
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Lookups, Piecewise};
-use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
+use crate::numeric::{Lane, Twin};
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or one draw after the other is faster.
@@ -51,10 +51,37 @@ impl<R: Collision> Task for Product<'_, '_, R> {
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
         let Self { sampling, control, begin, rule, medium, request } = self;
-        let site = Site { rule, control: Subtracted::new(simd, control), begin };
-        match sampling.even() {
-            Some(even) => walk(simd, site, Even::new(simd, even), medium, request),
-            None => walk(simd, site, Pieces::new(simd, sampling), medium, request),
+        let (site, subtracted) = (Site { rule, begin }, Subtracted::new(simd, control));
+        let Some(even) = sampling.even() else {
+            return walk(
+                simd,
+                site,
+                Pieces::new(simd, sampling),
+                #[inline(always)]
+                |places| subtracted.from(medium.pair(simd, places), places),
+                request,
+            );
+        };
+        let course = Even::new(simd, even);
+        if let (Some(value), Some(control)) = (medium.single_value(), control.single_value()) {
+            let residual = Twin::splat(simd, value - control);
+            walk(
+                simd,
+                site,
+                course,
+                #[inline(always)]
+                |_| residual,
+                request,
+            );
+        } else {
+            walk(
+                simd,
+                site,
+                course,
+                #[inline(always)]
+                |places| subtracted.from(medium.pair(simd, places), places),
+                request,
+            );
         }
     }
 }
@@ -63,9 +90,9 @@ impl<R: Collision> Task for Product<'_, '_, R> {
 #[inline(always)]
 fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
     simd: S,
-    site: Site<S, R>,
+    site: Site<R>,
     course: C,
-    medium: &Lookups,
+    residual: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>> + Copy,
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -77,7 +104,7 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
             simd,
             #[inline(always)]
             || Survivals::new(site, course, all),
-            medium,
+            residual,
             request,
         );
         if is_done {
@@ -91,7 +118,7 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
         simd,
         #[inline(always)]
         || Products { site, course, inside: all, weight, invariant },
-        medium,
+        residual,
         Request { streams, count, buffer },
     );
 }
@@ -120,36 +147,38 @@ impl<'a, S: Simd> Subtracted<'a, S> {
             None => self.control.extinction(t),
         }
     }
+
+    /// `σ_t − σ_c` at the places reached, given σ_t.
+    #[inline(always)]
+    fn from(&self, extinction: Twin<f64x8<S>>, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+        Twin(extinction.0 - self.at(t.0), extinction.1 - self.at(t.1))
+    }
 }
 
 /// What the walks of a product estimator meet.
-pub(super) struct Site<'a, S: Simd, R> {
+pub(super) struct Site<'a, R> {
     pub rule: &'a R,
-    control: Subtracted<'a, S>,
     pub begin: f64,
 }
 
-impl<S: Simd, R> Clone for Site<'_, S, R> {
+impl<R> Clone for Site<'_, R> {
     #[inline(always)]
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<S: Simd, R> Copy for Site<'_, S, R> {}
+impl<R> Copy for Site<'_, R> {}
 
-impl<S: Simd, R> Site<'_, S, R> {
-    /// What is met at the places reached, given σ_t. Beyond the end it means nothing, and nobody asks for it.
-    #[inline(always)]
-    pub(super) fn met<C: Course<S>>(&self, course: &C, extinction: f64x8<S>) -> Met<f64x8<S>> {
-        let residual = extinction - self.control.at(course.reached());
-        Met { residual, sampling: course.sampling(), mean_free_path: course.mean_free_path() }
-    }
+/// What is met at the places reached, given `σ_t − σ_c`. Beyond the end it means nothing, and nobody asks for it.
+#[inline(always)]
+pub(super) fn met<S: Simd>(course: &impl Course<S>, residual: f64x8<S>) -> Met<f64x8<S>> {
+    Met { residual, sampling: course.sampling(), mean_free_path: course.mean_free_path() }
 }
 
 /// The walks of a product estimator.
 struct Products<'a, S: Simd, R, C> {
-    site: Site<'a, S, R>,
+    site: Site<'a, R>,
     course: C,
     inside: mask64x8<S>,
     weight: f64x8<S>,
@@ -171,9 +200,9 @@ impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Products<'_, S, R, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
+    fn collide(&mut self, residual: f64x8<S>, numbers: &Numbers<S>, row: &mut Row) -> Ends {
         let inside = self.inside;
-        let met = self.site.met(&self.course, extinction);
+        let met = met(&self.course, residual);
         let (ratio, outcome) = (met.ratio(), self.site.rule.at(met.ratio()));
         let goes_on = if R::DECIDES {
             inside & !self.site.rule.kills(&met, numbers.decision)

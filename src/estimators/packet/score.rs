@@ -64,7 +64,8 @@ impl<H: Share> Task for Scored<'_, '_, H> {
                 fresh,
                 score: fresh,
             },
-            medium,
+            #[inline(always)]
+            |places| medium.pair(simd, places),
             request,
         );
     }

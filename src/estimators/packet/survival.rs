@@ -9,7 +9,7 @@
 
 use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 
-use super::product::Site;
+use super::product::{Site, met};
 use super::{Ends, Numbers, Walks, ends};
 use crate::estimators::packet::event_queue::{Reader, Row};
 use crate::estimators::rules::Collision;
@@ -19,7 +19,7 @@ use crate::numeric::Lane;
 
 /// The walks.
 pub(super) struct Survivals<'a, S: Simd, R, C> {
-    site: Site<'a, S, R>,
+    site: Site<'a, R>,
     course: C,
     inside: mask64x8<S>,
     /// Where every ratio so far was in `[0, 1]`.
@@ -28,7 +28,7 @@ pub(super) struct Survivals<'a, S: Simd, R, C> {
 
 impl<'a, S: Simd, R, C> Survivals<'a, S, R, C> {
     #[inline(always)]
-    pub(super) fn new(site: Site<'a, S, R>, course: C, all: mask64x8<S>) -> Self {
+    pub(super) fn new(site: Site<'a, R>, course: C, all: mask64x8<S>) -> Self {
         Self { site, course, inside: all, balanced: all }
     }
 }
@@ -49,10 +49,10 @@ impl<S: Simd, R: Collision, C: Course<S>> Walks<S> for Survivals<'_, S, R, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &Numbers<S>, _: &mut Row) -> Ends {
+    fn collide(&mut self, residual: f64x8<S>, numbers: &Numbers<S>, _: &mut Row) -> Ends {
         let inside = self.inside;
-        let met = self.site.met(&self.course, extinction);
-        let (zero, residual) = (met.residual.each(0.0), met.residual);
+        let met = met(&self.course, residual);
+        let zero = residual.each(0.0);
         self.balanced &= !inside | (zero.at_most(residual) & residual.at_most(met.sampling));
         let goes_on = inside & !self.site.rule.kills(&met, numbers.decision);
         self.course.restart(!goes_on);
