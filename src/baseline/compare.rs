@@ -33,7 +33,6 @@ const ROUNDING: f64 = 1e-9;
 
 /// Compares a run with a stored one; answers also what to store next: the run, with the e-values of
 /// both where they multiply.
-#[must_use]
 pub fn compare(
     name: &str,
     stored: &Baseline,

@@ -76,7 +76,6 @@ pub struct Evidence {
 
 impl Baseline {
     /// What a run found, to be stored; `cases` are those of its plan.
-    #[must_use]
     pub fn of(record: &Record, cases: &[Case], executable: &str) -> Self {
         let results = &record.results;
         let digest = |name: &str| cases.iter().find(|case| case.name == name).map(|c| c.digest);

@@ -28,13 +28,11 @@ pub enum Clock {
 
 impl Clock {
     /// The clock for so many threads.
-    #[must_use]
     pub fn of(threads: usize) -> Self {
         if threads > 1 { Self::Elapsed } else { Self::Processor }
     }
 
     /// The word in tables and files.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Processor => "processor",
@@ -83,7 +81,6 @@ pub struct Stopwatch {
 
 impl Stopwatch {
     /// The vector hardware in a word.
-    #[must_use]
     pub fn level_name(&self) -> String {
         pack::word(self.level)
     }

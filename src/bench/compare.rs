@@ -11,7 +11,6 @@ use super::comparison::{Change, Comparison};
 use super::stored::{Stored, Timed};
 
 /// Compares a bench with the stored one called `name`.
-#[must_use]
 pub fn compare(name: &str, stored: &Stored, now: &Stored, tolerance: f64) -> Comparison {
     let before: BTreeMap<&str, &Timed> =
         stored.timed.iter().map(|timed| (timed.id.as_str(), timed)).collect();

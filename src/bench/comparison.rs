@@ -42,13 +42,11 @@ pub struct Change {
 
 impl Comparison {
     /// Whether anything became slower.
-    #[must_use]
     pub fn fails(&self) -> bool {
         self.changes.iter().any(|change| change.is_regression)
     }
 
     /// Whether nothing was compared with anything: such a comparison says nothing.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.compared == 0
     }

@@ -53,7 +53,6 @@ pub struct Error {
 
 impl Sample {
     /// Of an experiment that makes so many draws in a round.
-    #[must_use]
     pub fn of(planned: &Planned, draws: u64) -> Self {
         let truths = planned.outcome.as_ref().map_or_else(
             |_| Vec::new(),
@@ -69,7 +68,6 @@ impl Sample {
     }
 
     /// About these truths, one to a channel.
-    #[must_use]
     pub fn about(truths: &[f64], draws: u64) -> Self {
         let doubled = std::iter::successors(Some(FIRST), |n| n.checked_mul(2));
         let mut looks: Vec<u64> = doubled.take_while(|&n| n < draws).collect();
@@ -126,7 +124,6 @@ impl Sample {
 
 impl ChannelSample {
     /// The error at a look; `None` where no round looked.
-    #[must_use]
     pub fn error(&self, look: usize) -> Option<Error> {
         let sizes = || self.errors.iter().filter_map(|round| Some(round.get(look)?.abs()));
         let n = sizes().count();

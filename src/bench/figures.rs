@@ -4,14 +4,12 @@
 pub const ERRORS: [f64; 3] = [1e-2, 1e-3, 1e-4];
 
 /// The time until the standard error is `error` of the truth: `V/(ε²T²)` draws.
-#[must_use]
 pub fn time_to(error: f64, variance: f64, truth: f64, seconds_per_draw: f64) -> f64 {
     let deviation = variance.sqrt() / (error * truth);
     deviation * deviation * seconds_per_draw
 }
 
 /// `1/(variance · price)`, where both are above 0.
-#[must_use]
 pub fn efficiency(variance: f64, price: f64) -> Option<f64> {
     Some(1.0 / (variance * price)).filter(|efficiency| efficiency.is_finite())
 }

@@ -50,7 +50,6 @@ pub struct Amounts {
 /// told after each experiment of each round how many draws were timed.
 ///
 /// With one thread it times by processor time, with several by elapsed time.
-#[must_use]
 pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     let begin = Instant::now();
     let threads = rayon::current_num_threads();

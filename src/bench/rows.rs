@@ -37,7 +37,6 @@ impl Laps {
 }
 
 /// The row of an experiment that cannot be drawn.
-#[must_use]
 pub fn refused(planned: &Planned, refusal: &Refusal) -> BenchRow {
     BenchRow { is_refused: true, reason: refusal.to_string(), is_first: true, ..named(planned) }
 }
@@ -55,7 +54,6 @@ fn named(planned: &Planned) -> BenchRow {
 }
 
 /// The rows of an experiment, one to a channel.
-#[must_use]
 pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) -> Vec<BenchRow> {
     let observed = sample.lookups.moments().map(|moments| moments.mean);
     let predicted_lookups = ready.prediction.lookups.as_ref().map(|law| law.mean);

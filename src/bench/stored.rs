@@ -46,7 +46,6 @@ pub struct Timed {
 
 impl Stored {
     /// What a bench found, to be stored.
-    #[must_use]
     pub fn of(bench: &Bench) -> Self {
         let timed = |case: &BenchCase, row: &BenchRow| {
             let times = row.times.as_ref()?;

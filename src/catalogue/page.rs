@@ -31,13 +31,11 @@ macro_rules! page {
 
 impl Page {
     /// The name in case files: `residual-ratio`.
-    #[must_use]
     pub fn name(&self) -> String {
         self.module.replace('_', "-")
     }
 
     /// The file's own documentation: its leading `//!` lines.
-    #[must_use]
     pub fn text(&self) -> String {
         let lines = self.source.lines().take_while(|line| line.starts_with("//!"));
         let text: Vec<&str> = lines
@@ -48,7 +46,6 @@ impl Page {
     }
 
     /// The first sentence of the documentation, on one line.
-    #[must_use]
     pub fn summary(&self) -> String {
         let text = self.text();
         let first = text.split("\n\n").next().unwrap_or_default();

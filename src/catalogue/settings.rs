@@ -48,7 +48,6 @@ impl<'a> Settings<'a> {
     }
 
     /// Whether the table has no keys at all.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.table.is_empty()
     }

@@ -9,7 +9,6 @@ pub fn whole(range: &RangeInclusive<u64>) -> String {
 
 /// A number as a message shows it: the shortest digits that read back the same, with an exponent where
 /// plain ones would fill the line.
-#[must_use]
 pub fn number(x: f64) -> String {
     let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
     if scientific.len() < plain.len() { scientific } else { plain }
@@ -17,7 +16,6 @@ pub fn number(x: f64) -> String {
 
 /// The same to six places, for numbers that were computed; six digits and an exponent for those that
 /// six places would hide or pad.
-#[must_use]
 pub fn rounded(x: f64) -> String {
     let size = x.abs();
     let is_plain = x == 0.0 || (1e-3..1e9).contains(&size) || !x.is_finite();

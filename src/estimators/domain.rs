@@ -37,7 +37,6 @@ pub enum Refusal {
 
 impl Refusal {
     /// A mismatch in words.
-    #[must_use]
     pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
         Self::Mismatch { needs, found: found.into() }
     }

@@ -55,7 +55,6 @@ pub struct Draw<V> {
 impl<V> Draw<V> {
     /// A draw of an estimator without a law that holds draw by draw.
     #[inline(always)]
-    #[must_use]
     pub fn free(value: V, lookups: u32) -> Self {
         Self { value, lookups, defect: 0.0 }
     }
@@ -115,13 +114,11 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     }
 
     /// The estimator that it is by definition where it has no control; `None` if it is its own.
-    #[must_use]
     fn without_control() -> Option<&'static str> {
         None
     }
 
     /// The control it uses where the case gives none.
-    #[must_use]
     fn default_control() -> Option<Box<dyn controls::Recipe>> {
         None
     }
@@ -186,7 +183,6 @@ macro_rules! estimators_of {
 }
 
 /// The estimators of every problem, in the order of the problems.
-#[must_use]
 pub fn catalogues() -> Vec<Catalogue> {
     each_problem!(estimators_of)
 }

@@ -25,7 +25,6 @@ pub struct Met<L> {
 impl<L: Lane> Met<L> {
     /// `r = (σ_t − σ_c)/σ̂`.
     #[inline(always)]
-    #[must_use]
     pub fn ratio(&self) -> L {
         self.residual * self.mean_free_path
     }
@@ -40,12 +39,10 @@ pub trait Collision: Rule + Copy + 'static {
     const WEIGHS: bool = true;
 
     /// What happens at a collision with ratio r.
-    #[must_use]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
 
     /// Whether a particle ends by a number in `[0, 1)`; one whose ratio is no number goes on to show it.
     #[inline(always)]
-    #[must_use]
     fn kills<L: Lane>(&self, met: &Met<L>, number: L) -> L::Mask {
         self.at(met.ratio()).survival.at_most(number)
     }
@@ -53,14 +50,12 @@ pub trait Collision: Rule + Copy + 'static {
     /// The weight after a collision, from the one before it: of order-free walks, whose draws no others have
     /// to equal.
     #[inline(always)]
-    #[must_use]
     fn weigh<L: Lane>(&self, weight: L, met: &Met<L>) -> L {
         weight * self.at(met.ratio()).weight
     }
 
     /// `(1 − r)/q`: the factor that a survivor ought to have.
     #[inline(always)]
-    #[must_use]
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
         (ratio.each(1.0) - ratio) / survival
     }

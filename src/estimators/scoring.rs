@@ -19,7 +19,6 @@ pub trait Share {
     const FLIGHT_SCORES: bool;
 
     /// The share of v, where so much of σ̄'s optical depth is left.
-    #[must_use]
     fn of<L: Lane>(&self, left: L) -> L;
 }
 
@@ -37,14 +36,13 @@ pub struct Score<L = f64> {
 impl<L: Lane> Score<L> {
     /// At the beginning, where the share is so large.
     #[inline(always)]
-    #[must_use]
     pub fn open(share: L) -> Self {
         Self { weight: share.each(1.0), last: share, sum: share }
     }
 
     /// After a collision of this ratio `σ_t/σ̄`, where the share is so large.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     pub fn collided(self, ratio: L, share: L) -> Self {
         let weight = self.weight * (ratio.each(1.0) - ratio);
         let last = weight * share;
@@ -53,7 +51,6 @@ impl<L: Lane> Score<L> {
 
     /// What a walk has scored that reaches the end from here.
     #[inline(always)]
-    #[must_use]
     pub fn total<S: Share>(self) -> L {
         if S::FLIGHT_SCORES { self.sum + self.last } else { self.sum }
     }

@@ -52,7 +52,6 @@ pub struct Setup<P> {
 
 impl<P: Problem> Setup<P> {
     /// Joins the parts; σ̂ is restricted to the support.
-    #[must_use]
     pub fn new(
         problem: Arc<P>,
         mesh: Arc<Mesh>,
@@ -165,7 +164,6 @@ impl<P: Problem> Setup<P> {
     }
 
     /// `r`, where medium, control and σ̂ are each one constant on the support.
-    #[must_use]
     pub fn constant_ratio(&self) -> Option<f64> {
         let control = match &self.control {
             Control::None => 0.0,
@@ -179,7 +177,6 @@ impl<P: Problem> Setup<P> {
     }
 
     /// The product estimator with the given rule, for theory.
-    #[must_use]
     pub fn product<'a>(&'a self, rule: &'a dyn Rule) -> Product<'a> {
         let product = Product::new(&self.mesh, &self.sampling, &self.control, rule);
         Product { laws: self.laws, log_unit: self.log_unit, ..product }

@@ -32,13 +32,11 @@ impl DrawBuffer {
     const LEAST: usize = Self::LENGTH / 4;
 
     /// An empty buffer for draws of the given number of channels.
-    #[must_use]
     pub fn new(channels: usize) -> Self {
         Self { values: vec![Vec::new(); channels], lookups: Vec::new(), defects: Vec::new() }
     }
 
     /// How many draws of so many channels a buffer is to be filled with.
-    #[must_use]
     pub fn length(channels: usize) -> usize {
         (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
     }
@@ -98,7 +96,6 @@ impl Order {
     pub const ALL: [Self; 2] = [Self::Along, Self::Free];
 
     /// The word in cases and arguments.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Along => "ordered",
@@ -107,7 +104,6 @@ impl Order {
     }
 
     /// The order of that name.
-    #[must_use]
     pub fn of(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|order| order.word() == word)
     }

@@ -65,7 +65,6 @@ pub struct Invariant<L = f64> {
 impl<L: Lane> Invariant<L> {
     /// Of a particle that begins with a weight.
     #[inline(always)]
-    #[must_use]
     pub fn open(weight: L) -> Self {
         Self { begin: weight, taken: weight.each(0.0), scale: weight.size() }
     }
@@ -81,7 +80,6 @@ impl<L: Lane> Invariant<L> {
 
     /// What is missing at the end, relative to the sizes of all; rounding in a correct walk.
     #[inline(always)]
-    #[must_use]
     pub fn defect(&self, weight: L) -> L {
         (weight + self.taken - self.begin).size() / self.scale
     }

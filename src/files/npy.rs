@@ -55,7 +55,6 @@ pub fn parse(header: &[u8]) -> io::Result<NpyHeader> {
 }
 
 /// The shape in a header's text, if it has more elements than can be counted.
-#[must_use]
 pub fn uncountable(header: &[u8]) -> Option<String> {
     let text = String::from_utf8_lossy(header);
     let (_, shape) = text.split_once("'shape'")?;

@@ -8,7 +8,6 @@ pub use crate::stats::verdict::BLOCK;
 
 /// Where order-free experiments of a case find their collisions, if these are as likely anywhere on
 /// the same stretches: whatever the estimator, the control and σ̂.
-#[must_use]
 pub fn shared(seed: u64, case: &str, stretches: &str) -> Address {
     let experiment = name_hash(&format!("{case}|places{stretches}"));
     Address { seed, experiment, block: 0, lane: 0 }
@@ -16,7 +15,6 @@ pub fn shared(seed: u64, case: &str, stretches: &str) -> Address {
 
 /// The address of an experiment's streams: made of names, so that it keeps its random numbers when
 /// other experiments join or leave the run. `twins` come before it in the case under the same name.
-#[must_use]
 pub fn own(seed: u64, case: &str, names: &Names, variation: Variation, twins: usize) -> Address {
     let Names { sampling, sampling_kind, control, .. } = names;
     // What is the same by definition makes the same draws.

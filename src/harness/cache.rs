@@ -33,14 +33,12 @@ const MOST: usize = 2000;
 
 impl Cache {
     /// Nothing yet, drawn by a program of that fingerprint.
-    #[must_use]
     pub fn new(program: &str) -> Self {
         Self { program: program.to_owned(), ..Self::default() }
     }
 
     /// What the same program wrote with [`Cache::bytes`]. What another one wrote, and what is broken,
     /// is as good as nothing.
-    #[must_use]
     pub fn read(bytes: &[u8], program: &str) -> Self {
         let (content, digest) = bytes.split_at(bytes.len().saturating_sub(size_of::<u64>()));
         let is_whole = digest == hash(content).to_le_bytes();
@@ -49,7 +47,6 @@ impl Cache {
     }
 
     /// The content of a file; `None` where it cannot be encoded.
-    #[must_use]
     pub fn bytes(&self) -> Option<Vec<u8>> {
         let mut bytes = postcard::to_stdvec(self).ok()?;
         bytes.extend(hash(&bytes).to_le_bytes());
@@ -57,7 +54,6 @@ impl Cache {
     }
 
     /// What an experiment drew.
-    #[must_use]
     pub fn drawn(&self, plan: &Plan, case: &PlannedCase, planned: &Planned) -> Option<Drawn> {
         if self.is_fresh || self.experiments.is_empty() {
             return None;
@@ -68,7 +64,6 @@ impl Cache {
     }
 
     /// How many of a plan's experiments need not be drawn, of how many that can be.
-    #[must_use]
     pub fn count(&self, plan: &Plan) -> [usize; 2] {
         let ready = || plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
         let kept = ready().filter(|(case, planned)| self.drawn(plan, case, planned).is_some());

@@ -135,7 +135,6 @@ impl Case {
 
     /// Where an estimator's pilot rays find their random numbers: the same all along a sweep, so that
     /// the theory's line and the experiments on it learn the same σ̂.
-    #[must_use]
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
         let names = self.scenario.names(estimator, None);
         addresses::own(seed, &self.name, &names, None, estimator)

@@ -13,7 +13,6 @@ pub struct Rules {
 
 impl Rules {
     /// Whether any time could be a regression.
-    #[must_use]
     pub fn asks_for_times(&self) -> bool {
         self.time_tolerance < f64::INFINITY
     }
@@ -112,7 +111,6 @@ pub struct Drift {
 
 impl Comparison {
     /// Of nothing yet.
-    #[must_use]
     pub fn new(name: &str, rules: &Rules, sequel: Sequel) -> Self {
         Self {
             name: name.to_owned(),
@@ -132,13 +130,11 @@ impl Comparison {
     }
 
     /// Whether anything became worse.
-    #[must_use]
     pub fn fails(&self) -> bool {
         !self.drifts.is_empty() || self.changes.iter().any(|change| change.is_regression)
     }
 
     /// Whether nothing of the run was compared with anything: such a comparison says nothing.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.compared == 0 && self.times == 0 && self.multiplied == 0
     }

@@ -15,7 +15,6 @@ use crate::theory::optimum::{Optimum, best_constants};
 const POINTS: usize = 48;
 
 /// The lines of a case with a sweep.
-#[must_use]
 pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Sweep> {
     let seed = options.seed;
     let axis = case.sweep.as_ref()?;
@@ -65,7 +64,6 @@ pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Swe
 
 /// The best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or
 /// are refused at every σ̂.
-#[must_use]
 pub fn best_of_each(case: &PlannedCase, seed: u64) -> Vec<Vec<Option<Optimum>>> {
     // Experiments that differ in nothing but σ̂ have the same.
     let asked = |planned: &Planned| {

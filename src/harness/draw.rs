@@ -51,7 +51,6 @@ pub enum Answer {
 
 /// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
 /// the draws that it would make alone; the processor time is shared out evenly.
-#[must_use]
 pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
     // Processor time, not wall time: other processes do not count.
     let begin = ThreadTime::now();
@@ -253,7 +252,6 @@ impl Answer {
 }
 
 /// The larger of two, or not a number where one is none.
-#[must_use]
 pub fn larger(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }

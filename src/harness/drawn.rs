@@ -70,7 +70,6 @@ pub struct Draws {
 
 impl Drawn {
     /// Nothing yet.
-    #[must_use]
     pub fn new(planned: &Planned) -> Self {
         let totals = planned.questions.iter().map(|question| match &question.kind {
             Kind::Scalar(_) => Total::Gate(GateState {

@@ -103,7 +103,6 @@ fn read_if<T: ?Sized>(
 
 impl ParsedEstimator {
     /// In which order the collisions of its draws come.
-    #[must_use]
     pub fn order(&self) -> Order {
         if self.features.is_order_free { self.order } else { Order::Along }
     }
@@ -119,13 +118,11 @@ impl ParsedEstimator {
     }
 
     /// The estimator with its settings; without `albedo` the albedo is left out.
-    #[must_use]
     pub fn label(&self, albedo: bool) -> String {
         self.label_of(&self.name, albedo)
     }
 
     /// The same under the name of the estimator that it is by definition without a control.
-    #[must_use]
     pub fn alias(&self) -> Option<String> {
         self.features.alias.map(|name| self.label_of(name, true))
     }
@@ -235,7 +232,6 @@ impl Estimators {
     }
 
     /// σ̂ of an estimator; `None` where it takes none.
-    #[must_use]
     pub fn sampling_of<'a>(
         &'a self,
         parsed: &'a ParsedEstimator,
@@ -245,7 +241,6 @@ impl Estimators {
     }
 
     /// The control that is given for an estimator.
-    #[must_use]
     pub fn given_control<'a>(
         &'a self,
         parsed: &'a ParsedEstimator,
@@ -255,7 +250,6 @@ impl Estimators {
     }
 
     /// The control of an estimator.
-    #[must_use]
     pub fn control_of<'a>(&'a self, parsed: &'a ParsedEstimator) -> &'a dyn controls::Recipe {
         let default = parsed.features.default_control.as_deref();
         let default = default.filter(|_| parsed.features.inputs.control);

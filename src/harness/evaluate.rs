@@ -22,7 +22,6 @@ use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
 
 /// What is found of a run: per case, per experiment, per question.
-#[must_use]
 pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
     let mut findings: Vec<Vec<Vec<Finding>>> = pairs
@@ -139,7 +138,6 @@ fn of_question(
 
 /// Why what a channel's draws would say cannot be tested, whatever they say: known before the first
 /// draw. Empty where all of it can.
-#[must_use]
 pub fn untestable(planned: &Planned, channel: usize) -> String {
     let about = |question: &&Question| question.channel.is_none_or(|about| about == channel);
     let reasons = planned.questions.iter().filter(about).filter_map(|question| {

@@ -21,7 +21,6 @@ impl Filter {
     }
 
     /// Whether an experiment is meant; `estimator` is its label, settings included.
-    #[must_use]
     pub fn keeps(&self, case: &str, estimator: &str) -> bool {
         let name = estimator.split(' ').next().unwrap_or_default();
         let matches = |text: &str| self.0.is_match(text);

@@ -30,7 +30,6 @@ pub struct Levels {
 
 impl Levels {
     /// The levels at which so many scalars, laws and declared biases share α.
-    #[must_use]
     pub fn new(alpha: f64, [scalars, laws, biased]: [usize; 3]) -> Self {
         let share = alpha * (1.0 - LAW_SHARE) / scalars.max(1) as f64;
         Self {

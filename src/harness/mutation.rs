@@ -7,7 +7,6 @@ use crate::estimators::{Experiment, Refusal};
 use crate::mutants::{About, Target};
 
 /// Finds a mutant's experiment in a plan that has its case.
-#[must_use]
 pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planned)> {
     let fits = |planned: &Planned| {
         let swept = planned.variation.map(|(_, value)| value);
@@ -21,7 +20,6 @@ pub fn find<'p>(target: &Target, plan: &'p Plan) -> Option<(&'p Case, &'p Planne
 
 /// A mutant's experiment, prepared as the plan prepared the honest one; `None` if the case's problem
 /// has no mutant of that name.
-#[must_use]
 pub fn experiment(
     about: &About,
     walk: Walk,

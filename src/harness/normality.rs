@@ -29,27 +29,23 @@ pub struct Tails {
 }
 
 /// The fewest terms whose mean is near normal, by `E[y⁴]/E[y²]²` and their rare-event size.
-#[must_use]
 pub fn needed(heaviness: f64, rare_event_size: f64) -> f64 {
     (heaviness / HEAVY).max(SEEN * rare_event_size)
 }
 
 /// The relative standard error of a sample variance of n draws.
-#[must_use]
 pub fn variance_error(kurtosis: f64, n: f64) -> f64 {
     ((kurtosis - (n - 3.0) / (n - 1.0)).max(0.0) / n).sqrt()
 }
 
 impl Tails {
     /// Whether the mean of n draws is near normal.
-    #[must_use]
     pub fn has_normal_mean(&self, n: f64) -> bool {
         let known = self.kurtosis.zip(self.rare_event_size);
         known.is_some_and(|(kurtosis, rare)| n >= needed(kurtosis, rare))
     }
 
     /// Whether the sample variance of n draws is near normal.
-    #[must_use]
     pub fn has_normal_variance(&self, n: f64) -> bool {
         let known = self.eighth_moment_ratio.zip(self.rare_event_size);
         let is_near = known.is_some_and(|(eighth, rare)| n >= needed(eighth, rare));

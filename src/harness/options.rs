@@ -84,7 +84,6 @@ pub struct Tolerance {
 
 impl Tolerance {
     /// Whether the case has any.
-    #[must_use]
     pub fn says_something(&self) -> bool {
         *self != Self::default()
     }

@@ -51,7 +51,6 @@ pub struct PlannedCase<'a> {
 impl PlannedCase<'_> {
     /// The experiment before this one that it is by definition: their draws are the same, and made
     /// once.
-    #[must_use]
     pub fn twin(&self, index: usize) -> Option<usize> {
         let this = &self.experiments[index];
         let asked = |planned: &Planned| -> Vec<String> {
@@ -108,13 +107,11 @@ impl Planned {
     }
 
     /// How many rows it has in a record: one per channel, or one that says why it is refused.
-    #[must_use]
     pub fn channels(&self) -> usize {
         self.outcome.as_ref().map_or(1, |ready| ready.prediction.channels.len())
     }
 
     /// The streams of a block.
-    #[must_use]
     pub fn streams(&self, block: u64) -> Streams {
         let own = (self.find_streams)(Address { block, ..self.address });
         match self.shared {
@@ -129,7 +126,6 @@ impl Planned {
 
 impl<'a> Plan<'a> {
     /// Prepares every experiment of the cases.
-    #[must_use]
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
         let mut cases: Vec<PlannedCase> = cases
             .par_iter()
@@ -169,7 +165,6 @@ impl<'a> Plan<'a> {
 
     /// The plan of one experiment at the levels of another plan; `None` if the case has no such
     /// experiment.
-    #[must_use]
     pub fn of_one(
         case: &'a Case,
         options: &Options,

@@ -35,7 +35,6 @@ macro_rules! kinds {
 }
 
 /// The problem at a position of the catalogue.
-#[must_use]
 pub fn kind(index: usize) -> ProblemKind {
     each_problem!(kinds)[index]()
 }

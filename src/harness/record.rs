@@ -117,7 +117,6 @@ pub struct CaseRecord {
 
 impl CaseRecord {
     /// Whether a row is the first of its experiment; what is refused has one row only.
-    #[must_use]
     pub fn begins_experiment(&self, row: usize) -> bool {
         let stream = |row: usize| self.rows[row].stream;
         row == 0 || stream(row).is_none() || stream(row - 1) != stream(row)

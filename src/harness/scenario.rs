@@ -48,19 +48,16 @@ impl Scenario {
     }
 
     /// The field's name in the catalogue.
-    #[must_use]
     pub fn medium(&self) -> &str {
         self.body.name()
     }
 
     /// The distance that each channel of a draw is about.
-    #[must_use]
     pub fn distances(&self) -> Vec<f64> {
         self.problem.distances()
     }
 
     /// How many estimators are listed.
-    #[must_use]
     pub fn estimators(&self) -> usize {
         self.estimators.list.len()
     }
@@ -73,7 +70,6 @@ impl Scenario {
     }
 
     /// Whether an estimator depends on a swept quantity.
-    #[must_use]
     pub fn depends_on(&self, estimator: usize, what: What) -> bool {
         let parsed = &self.estimators.list[estimator];
         let inputs = parsed.features.inputs;
@@ -90,7 +86,6 @@ impl Scenario {
     }
 
     /// How an experiment is called in tables.
-    #[must_use]
     pub fn names(&self, estimator: usize, variation: Variation) -> Names {
         let parsed = &self.estimators.list[estimator];
         let swept_albedo = matches!(variation, Some((What::Albedo, _)));
@@ -113,7 +108,6 @@ impl Scenario {
     }
 
     /// Whether the case declares an estimator biased.
-    #[must_use]
     pub fn expects_bias(&self, estimator: usize) -> bool {
         self.estimators.list[estimator].expect_biased
     }
@@ -137,7 +131,6 @@ impl Scenario {
 
     /// What theory says of an experiment, with `what_if` of that constant σ̂ in place of its own;
     /// `None` if it is refused.
-    #[must_use]
     pub fn predict(
         &self,
         estimator: usize,
@@ -151,7 +144,6 @@ impl Scenario {
 
     /// The ray seen from the side and the places where the control was fitted, for estimators of a
     /// curve.
-    #[must_use]
     pub fn ray_view(
         &self,
         estimator: usize,
@@ -166,7 +158,6 @@ impl Scenario {
     }
 
     /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
-    #[must_use]
     pub fn natural_scale(&self, estimator: usize, variation: Variation) -> f64 {
         let parts = self.parts(estimator, variation, None, NOWHERE);
         let control = parts.and_then(|parts| self.problem.fitting_control(estimator, parts));
@@ -176,7 +167,6 @@ impl Scenario {
     }
 
     /// A mutant in an estimator's place; `None` if the problem has none of that name.
-    #[must_use]
     pub fn mutated(
         &self,
         estimator: usize,

@@ -25,13 +25,11 @@ pub struct BuiltIn {
 
 impl BuiltIn {
     /// All files, in order.
-    #[must_use]
     pub fn all(self) -> Vec<Source> {
         self.files.iter().map(|file| self.source(file)).collect()
     }
 
     /// The file of a name.
-    #[must_use]
     pub fn find(self, name: &str) -> Option<Source> {
         self.files.iter().find(|file| file.0 == name).map(|file| self.source(file))
     }
@@ -89,13 +87,11 @@ pub enum CaseError {
 
 impl CaseError {
     /// How many mistakes it lists.
-    #[must_use]
     pub fn mistakes(&self) -> usize {
         if let Self::Faulty { faults, .. } = self { faults.len() } else { 1 }
     }
 
     /// The error with the lines of the file it is about, a caret under each mistake.
-    #[must_use]
     pub fn render(&self, colour: bool) -> String {
         let Self::Faulty { source_text, faults } = self else {
             return format!("error: {self}");

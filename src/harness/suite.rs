@@ -66,19 +66,16 @@ const CALIBRATION: BuiltIn = cases![
 ];
 
 /// The cases on which the gate itself is tested.
-#[must_use]
 pub fn calibration() -> Vec<Source> {
     CALIBRATION.all()
 }
 
 /// Every built-in case, in the order of the suite.
-#[must_use]
 pub fn suite() -> Vec<Source> {
     CASES.all()
 }
 
 /// The built-in case of a name.
-#[must_use]
 pub fn find(name: &str) -> Option<Source> {
     CASES.find(name).or_else(|| CALIBRATION.find(name))
 }

@@ -53,13 +53,11 @@ pub struct SweepAxis {
 
 impl What {
     /// The key in case files.
-    #[must_use]
     pub fn key(self) -> &'static str {
         self.kind().1
     }
 
     /// The axis title with symbol and unit.
-    #[must_use]
     pub fn axis(self) -> &'static str {
         self.kind().2
     }

@@ -16,7 +16,6 @@ use super::{curves, evaluate, summary};
 use crate::numeric::pack;
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
-#[must_use]
 pub fn planned(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
         let rows = case.experiments.iter().flat_map(|planned| {
@@ -42,7 +41,6 @@ pub fn planned(plan: &Plan) -> Record {
 }
 
 /// What theory says: the rows of a plan.
-#[must_use]
 pub fn predicted(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
         case.experiments.iter().flat_map(|planned| theory_rows(case, planned)).collect()
@@ -51,7 +49,6 @@ pub fn predicted(plan: &Plan) -> Record {
 }
 
 /// The same with the best constant σ̂ of each experiment and channel, which takes a hundred predictions.
-#[must_use]
 pub fn predicted_with_optima(plan: &Plan) -> Record {
     let mut record = predicted(plan);
     let cases = plan.cases.par_iter().map(|case| curves::best_of_each(case, plan.options.seed));
@@ -71,7 +68,6 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
 }
 
 /// What a plan drew, judged.
-#[must_use]
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
     let findings = evaluate::run(plan, draws);

@@ -140,7 +140,6 @@ pub struct IndependenceFinding {
 
 impl IndependenceFinding {
     /// Whether a dependence was found.
-    #[must_use]
     pub fn is_refuted(&self) -> bool {
         !self.reason.is_empty()
     }
@@ -148,7 +147,6 @@ impl IndependenceFinding {
 
 impl Judgement {
     /// What was found of a scalar.
-    #[must_use]
     pub fn finding(&self, check: &str) -> Option<&ScalarFinding> {
         self.findings.iter().find(|finding| finding.check == check)
     }

@@ -142,7 +142,6 @@ impl Trial {
     }
 
     /// Judges draws that are in memory; there are no lookups with them.
-    #[must_use]
     pub fn judge_all(&self, draws: &[f64]) -> Judgement {
         let length = draws.len() as u64;
         let most = usize::try_from(self.wanted.most.unwrap_or(length)).unwrap_or(usize::MAX);

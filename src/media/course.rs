@@ -47,7 +47,6 @@ pub struct Even<'a, S: Simd> {
 impl<'a, S: Simd> Even<'a, S> {
     /// At the beginning of a field.
     #[inline(always)]
-    #[must_use]
     pub fn new(simd: S, field: &'a even::Even) -> Self {
         let begin = f64x8::splat(simd, field.from);
         let end = f64x8::splat(simd, field.to);
@@ -109,7 +108,6 @@ pub struct Pieces<'a, S: Simd> {
 impl<'a, S: Simd> Pieces<'a, S> {
     /// At the first knot.
     #[inline(always)]
-    #[must_use]
     pub fn new(simd: S, field: &'a Piecewise) -> Self {
         let zero = f64x8::splat(simd, 0.0);
         let t = f64x8::splat(simd, field.knots[0]);

@@ -22,7 +22,6 @@ pub struct Even {
 impl Even {
     /// The pieces of a [`super::Piecewise`] as such a field; `None` where they have several values, or
     /// too many gaps.
-    #[must_use]
     pub fn of(knots: &[f64], left: &[f64], slope: &[f64]) -> Option<Self> {
         let is_zero = |i: usize| left[i] == 0.0 && slope[i] == 0.0;
         let Some(first) = (0..left.len()).find(|&i| !is_zero(i)) else {
@@ -52,7 +51,6 @@ impl Even {
 
     /// The distance that is reached on a way without gaps.
     #[inline(always)]
-    #[must_use]
     pub fn spread<L: Lane>(&self, way: L) -> L {
         let mut t = way;
         for &[after, length] in &self.gaps {

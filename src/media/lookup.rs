@@ -77,7 +77,6 @@ pub struct Lookups<'a> {
 
 impl<'a> Lookups<'a> {
     /// Those of a field on the hardware of a level.
-    #[must_use]
     pub fn new<F: Extinction>(field: &'a F, level: Level) -> Self {
         let (single_value, is_costly) = (field.single_value(), field.is_costly());
         Self { batch: pack::on(level, Compile(field)), single_value, is_costly }
@@ -85,20 +84,17 @@ impl<'a> Lookups<'a> {
 
     /// `σ_t`, where it has one value.
     #[inline(always)]
-    #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         self.single_value
     }
 
     /// See [`Extinction::is_costly`].
-    #[must_use]
     pub fn is_costly(&self) -> bool {
         self.is_costly
     }
 
     /// `σ_t` at the distances of two packs.
     #[inline(always)]
-    #[must_use]
     pub fn pair<S: Simd>(&self, simd: S, t: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
         if let Some(value) = self.single_value {
             return Twin::splat(simd, value);
@@ -177,14 +173,12 @@ pub struct Points<'a>(&'a dyn AtPoint);
 
 impl<'a> Points<'a> {
     /// Those of a field.
-    #[must_use]
     pub fn new<F: Field>(field: &'a F) -> Self {
         Self(field)
     }
 
     /// `σ_t` at a point.
     #[inline(always)]
-    #[must_use]
     pub fn extinction(&self, p: Point) -> f64 {
         self.0.one(p)
     }
@@ -236,7 +230,6 @@ pub struct Batches<'a> {
 impl<'a> Batches<'a> {
     /// Those of a field on the hardware of a level; `clipped` fields are looked up outside their bounds too,
     /// where they are 0.
-    #[must_use]
     pub fn new<F: Field>(field: &'a F, level: Level, clipped: bool) -> Self {
         let bounds = clipped.then(|| field.bounds()).filter(|&b| b != Bounds::Everywhere);
         let single_value = field.single_value().filter(|_| bounds.is_none());
@@ -245,7 +238,6 @@ impl<'a> Batches<'a> {
 
     /// `σ_t` at the points of two packs.
     #[inline(always)]
-    #[must_use]
     pub fn pair<S: Simd>(&self, simd: S, points: &[[f64; PAIR]; 3]) -> Twin<f64x8<S>> {
         match self.single_value {
             Some(value) => Twin::splat(simd, value),

@@ -48,7 +48,6 @@ pub struct Flight {
 impl Flight {
     /// Where the particle is.
     #[inline(always)]
-    #[must_use]
     pub fn place(&self) -> Point {
         self.origin + self.direction * self.t
     }
@@ -56,7 +55,6 @@ impl Flight {
 
 impl Majorants {
     /// One σ̂ everywhere on a volume.
-    #[must_use]
     pub fn constant(value: f64, volume: &Volume) -> Self {
         let bounds = volume.bounds();
         let highest = match bounds.enclosing_box() {
@@ -71,7 +69,6 @@ impl Majorants {
 
     /// The bounds of a volume in the cells of a grid over it, times a factor; `None` for a volume
     /// without bounds.
-    #[must_use]
     pub fn grid(cells: [usize; 3], factor: f64, volume: &Volume) -> Option<Self> {
         let bounds = volume.bounds();
         let within = bounds.enclosing_box()?;
@@ -100,13 +97,11 @@ impl Majorants {
     }
 
     /// Where particles are followed.
-    #[must_use]
     pub fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
     /// σ̂, where it is one constant.
-    #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         match *self.values.as_slice() {
             [value] => Some(value),
@@ -115,19 +110,16 @@ impl Majorants {
     }
 
     /// The largest σ̂.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
     }
 
     /// A number that `σ_t/σ̂` exceeds nowhere: exact for cells up to their own margin.
-    #[must_use]
     pub fn largest_ratio(&self) -> f64 {
         self.largest_ratio
     }
 
     /// `∫σ̂ dV`; `None` for cells over a ball, of which its boundary cuts off parts.
-    #[must_use]
     pub fn content(&self) -> Option<f64> {
         match (self.single_value(), self.bounds) {
             (Some(value), _) => Some(value * self.bounds.content()),
@@ -140,7 +132,6 @@ impl Majorants {
     }
 
     /// The share of the box in which σ̂ is 0.
-    #[must_use]
     pub fn empty_share(&self) -> f64 {
         let empty = self.values.iter().filter(|&&value| value == 0.0).count();
         empty as f64 / self.values.len() as f64
@@ -148,14 +139,12 @@ impl Majorants {
 
     /// The values of the cells, the first index fastest, with their number along each axis, the
     /// lowest corner and the width of a cell.
-    #[must_use]
     pub fn cells(&self) -> ([usize; 3], Point, [f64; 3], &[f64]) {
         (self.cells, self.low, self.width, &self.values)
     }
 
     /// A particle at a place in the body, or on its boundary, about to fly in a direction.
     #[inline(always)]
-    #[must_use]
     pub fn enter(&self, origin: Point, direction: Point) -> Flight {
         let ray = Ray { origin, direction, length: f64::INFINITY };
         let end = self.bounds.clip(&ray).to;
@@ -185,7 +174,6 @@ impl Majorants {
 
     /// σ̂ where the particle is.
     #[inline(always)]
-    #[must_use]
     pub fn here(&self, flight: &Flight) -> f64 {
         let [i, j, k] = flight.cell;
         self.values[(k * self.cells[1] + j) * self.cells[0] + i]

@@ -23,14 +23,12 @@ pub struct Medium {
 
 impl Medium {
     /// The field on `span`, zero outside `support`.
-    #[must_use]
     pub fn new(profile: Arc<Profile>, span: Span, support: Span) -> Self {
         let support = support.intersect(span);
         Self { profile, span, support, blurs: [0.0; 2] }
     }
 
     /// The same with a support whose ends are known to some error only.
-    #[must_use]
     pub fn clipped(profile: Arc<Profile>, span: Span, ends: [Known; 2]) -> Self {
         let medium = Self::new(profile, span, Span::new(ends[0].value, ends[1].value));
         let blurs =
@@ -43,25 +41,21 @@ impl Medium {
     }
 
     /// The whole ray.
-    #[must_use]
     pub fn span(&self) -> Span {
         self.span
     }
 
     /// The part of the ray where the field may be non-zero.
-    #[must_use]
     pub fn support(&self) -> Span {
         self.support
     }
 
     /// The field on the whole line.
-    #[must_use]
     pub fn profile(&self) -> &Profile {
         &*self.profile
     }
 
     /// `σ_t(t)`, zero outside the support. Not for loops: it finds the type anew each time.
-    #[must_use]
     pub fn extinction(&self, t: f64) -> f64 {
         if t < self.support.from || t > self.support.to {
             return 0.0;
@@ -70,7 +64,6 @@ impl Medium {
     }
 
     /// `σ_t` at many distances inside the support.
-    #[must_use]
     pub fn extinctions(&self, at: &[f64]) -> Vec<f64> {
         let mut found = at.to_vec();
         self.lookups(Level::new()).replace(&mut found);
@@ -78,13 +71,11 @@ impl Medium {
     }
 
     /// `σ_t` inside the support, for kernels on the hardware of a level.
-    #[must_use]
     pub fn lookups(&self, level: Level) -> Lookups<'_> {
         self.profile.lookups(level)
     }
 
     /// `τ` over the part of `span` inside the support.
-    #[must_use]
     pub fn optical_depth(&self, span: Span) -> Known {
         let inside = span.intersect(self.support);
         let [first, last] = self.blurs;
@@ -99,13 +90,11 @@ impl Medium {
 
     /// The distance where the optical depth from the beginning of the support reaches `depth`;
     /// `None` where the ray leaves first.
-    #[must_use]
     pub fn free_flight(&self, depth: f64) -> Option<f64> {
         if self.support.is_empty() { None } else { self.profile.free_flight(self.support, depth) }
     }
 
     /// The same for many depths.
-    #[must_use]
     pub fn inverse(&self) -> Inverse {
         let needs_table = !self.support.is_empty() && !self.profile.is_direct();
         let table = needs_table.then(|| Table::of(self.profile(), self.support));
@@ -113,13 +102,11 @@ impl Medium {
     }
 
     /// The kinks of the field inside the support, in any order.
-    #[must_use]
     pub fn breaks(&self) -> Vec<f64> {
         self.profile.breaks(self.support)
     }
 
     /// See [`super::OpticalDepth::panel_nodes`].
-    #[must_use]
     pub fn panel_nodes(&self) -> Option<usize> {
         self.profile.panel_nodes()
     }

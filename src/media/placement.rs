@@ -26,7 +26,6 @@ enum Shape<'a> {
 
 impl<'a> Placement<'a> {
     /// In a field that is not negative.
-    #[must_use]
     pub fn new(field: &'a Piecewise) -> Self {
         let depth = field.depth[field.depth.len() - 1];
         let shape = if let Some(even) = field.even() {
@@ -45,14 +44,12 @@ impl<'a> Placement<'a> {
     }
 
     /// Λ.
-    #[must_use]
     pub fn depth(&self) -> f64 {
         self.depth
     }
 
     /// σ̂, where it has one value.
     #[inline(always)]
-    #[must_use]
     pub fn single_value(&self) -> Option<f64> {
         match self.shape {
             Shape::Even { even, .. } => Some(even.value),
@@ -62,7 +59,6 @@ impl<'a> Placement<'a> {
 
     /// Where σ̂ has one value without gaps: `[from, length, σ̂]`, and a number u lies at `from + u·length`,
     /// as in [`Placement::at`].
-    #[must_use]
     pub fn plain(&self) -> Option<[f64; 3]> {
         match self.shape {
             Shape::Even { even, length } if even.gaps.is_empty() => {
@@ -76,7 +72,6 @@ impl<'a> Placement<'a> {
     ///
     /// Within a piece, `y₀ s + k s²/2 = d` as in [`Piecewise::fly`], and `σ̂ = √(y₀² + 2kd)`.
     #[inline(always)]
-    #[must_use]
     pub fn at<L: Lane>(&self, uniform: L) -> (L, L) {
         match &self.shape {
             &Shape::Even { even, length } => {

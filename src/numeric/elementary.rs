@@ -120,7 +120,6 @@ fn pair<L: Lane, const N: usize>(i: usize, x: L, c: &[f64; N]) -> L {
 /// x = m·2^k, √½ ≤ m < √2;  s = (m − 1)/(m + 1);  ln x = k ln 2 + 2s(1 + s²/3 + s⁴/5 + …)
 /// ```
 #[inline(always)]
-#[must_use]
 pub fn ln<L: Lane>(x: L) -> L {
     let (m, k) = x.split();
     let s = (m - 1.0) / (m + 1.0);
@@ -136,7 +135,6 @@ pub fn ln<L: Lane>(x: L) -> L {
 /// k = round(x / ln 2), f = x − k ln 2, |f| ≤ 0.347;  e^x = 2^k (1 + f + f² p(f))
 /// ```
 #[inline(always)]
-#[must_use]
 pub fn exp<L: Lane>(x: L) -> L {
     let (low, high) = (x.each(-708.0), x.each(709.0));
     let within = x.or_more(low).or_less(high);
@@ -167,7 +165,6 @@ fn reduce_by_pi<L: Lane>(x: L) -> (L, L) {
 /// f = x − kπ, |f| ≤ π/2;  cos x = (−1)^k (1 + f² p(f²))
 /// ```
 #[inline(always)]
-#[must_use]
 pub fn cos<L: Lane>(x: L) -> L {
     let (f, k) = reduce_by_pi(x);
     let z = f * f;
@@ -180,7 +177,6 @@ pub fn cos<L: Lane>(x: L) -> L {
 /// f = x − kπ, |f| ≤ π/2;  sin x = (−1)^k f(1 + f² p(f²))
 /// ```
 #[inline(always)]
-#[must_use]
 pub fn sin<L: Lane>(x: L) -> L {
     let (f, k) = reduce_by_pi(x);
     let z = f * f;
@@ -193,7 +189,6 @@ pub fn sin<L: Lane>(x: L) -> L {
 /// f = x − round(x), |f| ≤ ½;  |cos πx| = 1 + f² p(f²)
 /// ```
 #[inline(always)]
-#[must_use]
 pub fn cos_pi_size<L: Lane>(x: L) -> L {
     let f = x - x.nearest();
     let z = f * f;
@@ -208,7 +203,6 @@ pub fn cos_pi_size<L: Lane>(x: L) -> L {
 /// ```
 ///
 /// Scalar: it serves what is prepared once for all draws. Relative error 1e-15.
-#[must_use]
 pub fn atan(x: f64) -> f64 {
     let mut x = x;
     // x²: beyond 1e150 it overflows, and the angle is a right one to the last bit.

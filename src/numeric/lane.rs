@@ -56,8 +56,8 @@ pub trait Lane:
     fn replaced(self, replace: impl FnMut(&mut [f64])) -> Self;
 
     /// Applies a scalar function to each element.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn map(self, mut f: impl FnMut(f64) -> f64) -> Self {
         self.replaced(
             #[inline(always)]
@@ -70,8 +70,8 @@ pub trait Lane:
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
     /// `Σ cₙ selfⁿ`.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn polynomial<const N: usize>(self, c: &[f64; N]) -> Self {
         elementary::by_pairs(self, c)
     }
@@ -85,15 +85,12 @@ pub trait Lane:
     fn size(self) -> Self;
 
     /// `self < other`.
-    #[must_use]
     fn below(self, other: Self) -> Self::Mask;
 
     /// `self ≤ other`.
-    #[must_use]
     fn at_most(self, other: Self) -> Self::Mask;
 
     /// `yes` where the mask says so, else `no`.
-    #[must_use]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
     /// The nearest integer, for `|self| < 2^51`; of two, the even one.
@@ -101,7 +98,6 @@ pub trait Lane:
     fn nearest(self) -> Self;
 
     /// `(m, k)` with `self = m·2^k` and `√½ ≤ m < √2`, for positive normal numbers.
-    #[must_use]
     fn split(self) -> (Self, Self);
 
     /// `2^self`, for integers from −1022 to 1023.
@@ -113,11 +109,9 @@ pub trait Lane:
     fn alternate(self, k: Self) -> Self;
 
     /// The last 32 bits of an integer, `|self| < 2^51`, in both words.
-    #[must_use]
     fn words(self) -> Self::Words;
 
     /// `yes` where those of an element's 64 bits that are in `bits` are as in `wanted`, else `no`.
-    #[must_use]
     fn where_bits(words: Self::Words, bits: u64, wanted: u64, yes: Self, no: Self) -> Self;
 
     /// `self`, negated where the given one of an element's 64 bits is set.
@@ -130,54 +124,53 @@ pub trait Lane:
     fn entry(self, list: &[f64]) -> Self;
 
     /// The first five columns of the rows of a table with these numbers, likewise.
-    #[must_use]
     fn columns(self, table: &[Row]) -> [Self; 5];
 
     /// The larger; `other` where one is no number.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn or_more(self, other: Self) -> Self {
         Self::select(other.below(self), self, other)
     }
 
     /// The smaller; `other` where one is no number.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn or_less(self, other: Self) -> Self {
         Self::select(self.below(other), self, other)
     }
 
     /// Natural logarithm of a positive, normal number.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn ln(self) -> Self {
         elementary::ln(self)
     }
 
     /// `e^self`; zero below −708, infinite above 709.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn exp(self) -> Self {
         elementary::exp(self)
     }
 
     /// `cos self`, in radians, `|self| < 1e9`.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn cos(self) -> Self {
         elementary::cos(self)
     }
 
     /// `sin self`, in radians, `|self| < 1e9`.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn sin(self) -> Self {
         elementary::sin(self)
     }
 
     /// `|cos(π self)|`, in half turns, `|self| < 2^51`.
-    #[inline(always)]
     #[must_use]
+    #[inline(always)]
     fn cos_pi_size(self) -> Self {
         elementary::cos_pi_size(self)
     }

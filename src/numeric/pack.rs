@@ -18,7 +18,6 @@ pub const WIDTH: usize = 8;
 
 /// Whether the packs of a level multiply and add in one rounding.
 #[inline(always)]
-#[must_use]
 pub fn fuses(level: Level) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return level.as_avx2().is_some();
@@ -33,7 +32,6 @@ pub fn fuses(level: Level) -> bool {
 
 /// Whether a level converts 64-bit integers by one instruction.
 #[inline(always)]
-#[must_use]
 pub fn converts<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return simd.level().as_avx512().is_some();
@@ -46,7 +44,6 @@ pub fn converts<S: Simd>(simd: S) -> bool {
 
 /// Whether a register holds a pack, and there are enough of them for two.
 #[inline(always)]
-#[must_use]
 pub fn is_widest<S: Simd>(simd: S) -> bool {
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     return simd.level().as_avx512().is_some();
@@ -58,7 +55,6 @@ pub fn is_widest<S: Simd>(simd: S) -> bool {
 }
 
 /// A level in a word, as in `avx512`.
-#[must_use]
 pub fn word(level: Level) -> String {
     let name = format!("{level:?}");
     name.split('(').next().unwrap_or_default().to_lowercase()

@@ -36,7 +36,6 @@ pub struct Narrow(pub f32);
 
 impl Narrow {
     /// A double, rounded.
-    #[must_use]
     #[allow(clippy::cast_possible_truncation)] // to 24 bits
     pub fn of(x: f64) -> Self {
         Self(x as f32)
@@ -45,7 +44,6 @@ impl Narrow {
 
 /// The place of a number, an integer from 0 to `2^32`, in a list: the last place beyond the last.
 #[inline(always)]
-#[must_use]
 pub fn place(number: f64, length: usize) -> usize {
     let [number, _] = apart((number + ROUNDER).to_bits());
     (number as usize).min(length - 1)

@@ -26,14 +26,12 @@ pub const PAIR: usize = 2 * WIDTH;
 impl<S: Simd> Twin<f64x8<S>> {
     /// The same value in every element.
     #[inline(always)]
-    #[must_use]
     pub fn splat(simd: S, value: f64) -> Self {
         Self(f64x8::splat(simd, value), f64x8::splat(simd, value))
     }
 
     /// From a row.
     #[inline(always)]
-    #[must_use]
     pub fn from_slice(simd: S, row: &[f64; PAIR]) -> Self {
         Self(f64x8::from_slice(simd, &row[..WIDTH]), f64x8::from_slice(simd, &row[WIDTH..]))
     }
@@ -49,7 +47,6 @@ impl<S: Simd> Twin<f64x8<S>> {
 impl<S: Simd> Both<mask64x8<S>> {
     /// As bits.
     #[inline(always)]
-    #[must_use]
     pub fn to_bitmask(self) -> u64 {
         self.0.to_bitmask() | self.1.to_bitmask() << WIDTH
     }

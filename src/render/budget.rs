@@ -112,7 +112,6 @@ impl Plan {
     }
 
     /// The draws of the covered pixel of a number: the whole part of their share so far.
-    #[must_use]
     pub fn draws_of(&self, number: usize) -> u64 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2⁵³
         let until = |n: usize| (self.draws * n as f64).floor() as u64;
@@ -120,7 +119,6 @@ impl Plan {
     }
 
     /// Gathers what pixels came to.
-    #[must_use]
     pub fn gather(&self, pixels: &[PixelDraws]) -> PixelValues {
         let spread = |pixel: &PixelDraws| {
             let n = pixel.draws as f64;

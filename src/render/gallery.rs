@@ -24,13 +24,11 @@ const PICTURES: BuiltIn = pictures![
 ];
 
 /// Every built-in picture, in the order of the gallery.
-#[must_use]
 pub fn gallery() -> Vec<Source> {
     PICTURES.all()
 }
 
 /// The built-in picture of a name.
-#[must_use]
 pub fn find(name: &str) -> Option<Source> {
     PICTURES.find(name)
 }

@@ -99,13 +99,11 @@ impl Picture {
     }
 
     /// How many rows of pixels it has.
-    #[must_use]
     pub fn rows(&self) -> usize {
         self.scene.view.size[1]
     }
 
     /// Renders it with a seed; `progress` is told of every row, twice.
-    #[must_use]
     pub fn render(&self, seed: u64, progress: &(dyn Fn() + Sync)) -> PictureRecord {
         let rendered = self.scene.render(&Request { seed, name: &self.name, progress });
         PictureRecord::new([&self.name, &self.title, &self.problem], &self.scene.view, rendered)

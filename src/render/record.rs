@@ -133,7 +133,6 @@ impl PictureRecord {
 
 impl PictureRecord {
     /// Why there is nothing to show, and what would help; `None` where there is.
-    #[must_use]
     pub fn refusal(&self) -> Option<String> {
         if self.covered == 0 {
             return Some("the volume covers no pixel: turn the camera, or move it".into());

@@ -30,7 +30,6 @@ impl Camera {
     /// A camera that looks from a position at a target, with the angle between the directions of the
     /// picture's lower and upper edge in degrees; `None` where `up` points along the view, or nothing is
     /// looked at.
-    #[must_use]
     pub fn new(
         position: Point,
         target: Point,
@@ -72,7 +71,6 @@ impl Camera {
     }
 
     /// The direction of the ray through the middle of a pixel.
-    #[must_use]
     pub fn direction(&self, column: usize, row: usize) -> Option<Point> {
         let [width, height] = self.size.map(|n| n as f64);
         let x = 2.0 * (column as f64 + 0.5) / width - 1.0;
@@ -123,13 +121,11 @@ impl View {
     }
 
     /// How many pixels there are.
-    #[must_use]
     pub fn pixels(&self) -> usize {
         self.size[0] * self.size[1]
     }
 
     /// The ray of a pixel, row after row from the top.
-    #[must_use]
     pub fn ray(&self, pixel: usize) -> Option<Ray> {
         let [width, _] = self.size;
         let direction = self.camera.direction(pixel % width, pixel / width)?;
@@ -137,14 +133,12 @@ impl View {
     }
 
     /// The ray of a pixel if it meets the volume.
-    #[must_use]
     pub fn covered(&self, pixel: usize) -> Option<Ray> {
         self.ray(pixel).filter(|ray| !self.volume.bounds().clip(ray).is_empty())
     }
 
     /// The pixel whose ray a control is fitted to that this one uses: that in the middle of its block,
     /// if the volume covers it.
-    #[must_use]
     pub fn leader(&self, pixel: usize) -> usize {
         let ([width, height], block) = (self.size, self.shared_control);
         let middle = |at: usize, end: usize| (at / block * block + block / 2).min(end - 1);
@@ -153,13 +147,11 @@ impl View {
     }
 
     /// What is seen at a pixel that the volume does not cover.
-    #[must_use]
     pub fn background(&self, pixel: usize) -> f64 {
         if self.shows_sky { self.behind(pixel) } else { 0.0 }
     }
 
     /// The radiance of the sky behind a pixel.
-    #[must_use]
     pub fn behind(&self, pixel: usize) -> f64 {
         self.ray(pixel).map_or(0.0, |ray| self.sky.radiance(ray.direction))
     }

@@ -15,7 +15,6 @@ use crate::report::failures::{Failure, failing};
 const MOST: usize = 10;
 
 /// The commands, one to a line; empty where all is well.
-#[must_use]
 pub fn text(record: &Record) -> String {
     let of = |verdict| failing(record, verdict).into_iter().map(move |t| of_failure(verdict, &t));
     let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));

@@ -22,7 +22,6 @@ pub enum Cell {
 
 impl Cell {
     /// The field in a CSV file; empty where unknown.
-    #[must_use]
     pub fn csv(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),

@@ -31,7 +31,6 @@ pub enum View {
 
 impl View {
     /// Whether it shows theory only.
-    #[must_use]
     pub fn is_theory(self) -> bool {
         matches!(self, Self::Predict | Self::Moments)
     }
@@ -43,7 +42,6 @@ const NARROWEST: usize = 20;
 const WIDE: usize = 120;
 
 /// The table of a record.
-#[must_use]
 pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
     let mut text = String::new();
     let mut marks = false;
@@ -57,7 +55,6 @@ pub fn table(record: &Record, view: View, pen: layout::Pen) -> String {
 }
 
 /// The table of a run in short: one line per case, and below it the rows that do not pass.
-#[must_use]
 pub fn brief(record: &Record, pen: layout::Pen) -> String {
     let (mut text, mut marks) = (String::new(), false);
     for case in &record.results.cases {

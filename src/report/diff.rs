@@ -19,7 +19,6 @@ pub struct Difference<'a> {
 
 impl Difference<'_> {
     /// Everything on one line, but for the command.
-    #[must_use]
     pub fn line(&self) -> String {
         format!("{}: {}", self.experiment, self.what)
     }
@@ -76,7 +75,6 @@ pub(super) fn listed(why: &str, ids: &[String]) -> String {
 }
 
 /// Why nothing was compared, where that is so.
-#[must_use]
 pub fn nothing(comparison: &Comparison) -> Option<String> {
     comparison.is_empty().then(|| {
         let counts = counts(&left_out(comparison));
@@ -86,7 +84,6 @@ pub fn nothing(comparison: &Comparison) -> Option<String> {
 }
 
 /// Why no time was compared, where that is so.
-#[must_use]
 pub fn no_times(comparison: &Comparison) -> Option<String> {
     let is_about_all = |why: &str| !why.starts_with("variance") && !why.starts_with("lookups");
     (comparison.times == 0).then(|| {
@@ -97,7 +94,6 @@ pub fn no_times(comparison: &Comparison) -> Option<String> {
 }
 
 /// What was compared, how, and what was left out.
-#[must_use]
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, rules, compared, times, .. } = comparison;
     let (alpha, tolerance) = (short(rules.alpha, 3), short(rules.time_tolerance, 3));
@@ -127,7 +123,6 @@ pub fn remarks(comparison: &Comparison) -> Vec<String> {
 }
 
 /// What changed: what became worse first.
-#[must_use]
 pub fn all(comparison: &Comparison) -> Vec<Difference<'_>> {
     let mut told: Vec<Difference> = comparison.drifts.iter().map(drift).collect();
     let tolerance = comparison.rules.time_tolerance;

@@ -21,7 +21,6 @@ pub struct Failure<'a> {
 
 /// The failures of all rows with this verdict. What concerns an experiment as a whole stands in all
 /// of its rows and is said once.
-#[must_use]
 pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
     let seed = record.results.seed;
     let mut failures = Vec::new();
@@ -41,7 +40,6 @@ pub fn failing(record: &Record, verdict: Verdict) -> Vec<Failure<'_>> {
 }
 
 /// The findings that gave a row its verdict.
-#[must_use]
 pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Failure<'a>> {
     let guilty = row.findings.iter().filter(|finding| Some(finding.verdict) == row.verdict);
     let mut failures: Vec<Failure> =
@@ -53,7 +51,6 @@ pub fn of_row<'a>(case: &'a CaseRecord, row: &'a Row, seed: u64) -> Vec<Failure<
 }
 
 /// What an experiment is called within its case: `ratio, σ̂ 0.5, control mean, T(5)`.
-#[must_use]
 pub fn experiment(case: &CaseRecord, row: &Row) -> String {
     named(case, row, &row.channel)
 }
@@ -82,27 +79,23 @@ fn named(case: &CaseRecord, row: &Row, channel: &str) -> String {
 
 impl<'a> Failure<'a> {
     /// What it is about; without a channel where that is the experiment as a whole.
-    #[must_use]
     pub fn experiment(&self) -> String {
         let channel = self.finding.map_or(&self.row.channel, |finding| &finding.channel);
         named(self.case, self.row, channel)
     }
 
     /// The check's name; empty where the row has no findings.
-    #[must_use]
     pub fn check(&self) -> &'a str {
         self.finding.map_or("", |finding| finding.check.as_str())
     }
 
     /// Why, with the most important numbers.
-    #[must_use]
     pub fn reason(&self) -> &'a str {
         let reason = self.finding.map_or("", |finding| finding.reason.as_str());
         if reason.is_empty() { self.row.reason.as_str() } else { reason }
     }
 
     /// Where the random numbers are: `seed 1, block 3`.
-    #[must_use]
     pub fn place(&self) -> String {
         let mut place = format!("seed {}", self.seed);
         if let Some(block) = self.finding.and_then(|finding| finding.block) {
@@ -112,7 +105,6 @@ impl<'a> Failure<'a> {
     }
 
     /// Everything on one line, but for the command.
-    #[must_use]
     pub fn line(&self) -> String {
         let experiment = self.experiment();
         let parts = [self.case.name.as_str(), &experiment, self.check(), self.reason()];
@@ -121,7 +113,6 @@ impl<'a> Failure<'a> {
     }
 
     /// Everything that is known, one name and value to a line.
-    #[must_use]
     pub fn details(&self) -> String {
         let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}\n"));
         lines.collect()

@@ -16,7 +16,6 @@ pub struct Labels {
 
 impl Labels {
     /// Of a case.
-    #[must_use]
     pub fn of(case: &CaseRecord) -> Self {
         Self::new(case.rows.iter().flat_map(|row| [row.sampling, row.swept]))
     }
@@ -27,7 +26,6 @@ impl Labels {
     }
 
     /// One of the values.
-    #[must_use]
     pub fn text(&self, value: f64) -> String {
         short(value, self.digits)
     }

@@ -14,7 +14,6 @@ use crate::report::totals;
 const MOST: usize = 50;
 
 /// The record as a page of Markdown.
-#[must_use]
 pub fn text(record: &Record) -> String {
     let mut text = String::from("## Trueflight\n\n");
     let counts: Vec<String> = totals::counts(&record.results.cases)

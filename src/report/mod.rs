@@ -113,7 +113,6 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
 
 /// Writes the artifacts below `out_dir`, each under a temporary name that is then renamed. What can be
 /// written is, whatever becomes of the others; answers what could not.
-#[must_use]
 pub fn write(artifacts: &[Artifact], out_dir: &Path) -> Vec<ReportError> {
     artifacts.iter().filter_map(|artifact| write_one(artifact, out_dir).err()).collect()
 }
@@ -132,7 +131,6 @@ fn write_one(artifact: &Artifact, out_dir: &Path) -> Result<(), ReportError> {
 }
 
 /// A case's file: its name, which may have folders, with an ending.
-#[must_use]
 pub fn case_path(case: &str, ending: &str) -> PathBuf {
     PathBuf::from(format!("{case}.{ending}"))
 }

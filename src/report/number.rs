@@ -1,14 +1,12 @@
 //! Numbers as text: exact for files, short for people.
 
 /// The shortest text that reads back as the same number, plain or with an exponent.
-#[must_use]
 pub fn exact(x: f64) -> String {
     crate::catalogue::number(x)
 }
 
 /// At most `digits` significant digits, with an exponent where plain notation would hide or pad
 /// them.
-#[must_use]
 pub fn short(x: f64, digits: usize) -> String {
     let text = fixed(x, digits);
     match text.split_once('e') {
@@ -18,7 +16,6 @@ pub fn short(x: f64, digits: usize) -> String {
 }
 
 /// Exactly `digits` significant digits, for columns; otherwise as [`short`].
-#[must_use]
 pub fn fixed(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return format!("{x}");
@@ -35,19 +32,16 @@ pub fn fixed(x: f64, digits: usize) -> String {
 }
 
 /// A count in full below a million, with three places and an exponent beyond.
-#[must_use]
 pub fn count(n: u64) -> String {
     if n < 1_000_000 { n.to_string() } else { short(n as f64, 4) }
 }
 
 /// Two places and a sign, for z-scores; an exponent where that would be wide.
-#[must_use]
 pub fn signed(z: f64) -> String {
     if z.abs() < 1e4 || !z.is_finite() { format!("{z:+.2}") } else { format!("{z:+.1e}") }
 }
 
 /// A time in the unit that suits it, from nanoseconds to years.
-#[must_use]
 pub fn time(seconds: f64) -> String {
     const UNITS: [(f64, &str); 8] = [
         (1e-6, "ns"),
@@ -66,13 +60,11 @@ pub fn time(seconds: f64) -> String {
 }
 
 /// A share in percent.
-#[must_use]
 pub fn percent(share: f64) -> String {
     format!("{} %", short(100.0 * share, 3))
 }
 
 /// A range of shares in percent.
-#[must_use]
 pub fn range([least, most]: [f64; 2]) -> String {
     let [least, most] = [least, most].map(percent);
     if least == most { least } else { format!("{least} … {most}") }

@@ -26,7 +26,6 @@ pub struct JoinedRow<'a> {
 
 impl JoinedRow<'_> {
     /// Nanoseconds of processor time for one lookup of `σ_t`; `None` where nothing was looked up.
-    #[must_use]
     pub fn ns_per_lookup(&self) -> Option<f64> {
         let lookups = self.row.drawn? as f64 * self.row.lookups_per_draw?;
         (lookups > 0.0).then_some(self.seconds? * 1e9 / lookups)
@@ -34,7 +33,6 @@ impl JoinedRow<'_> {
 }
 
 /// Every row of the record, joined.
-#[must_use]
 pub fn joined(record: &Record) -> Vec<JoinedRow<'_>> {
     let seed = record.results.seed;
     let mut rows = Vec::new();
@@ -54,7 +52,6 @@ pub fn joined(record: &Record) -> Vec<JoinedRow<'_>> {
 pub const TIMED: [&str; 3] = ["seconds", "ns_per_lookup", "reused"];
 
 /// The columns, in the order in which files have them.
-#[must_use]
 pub fn columns<'a>() -> Vec<Column<JoinedRow<'a>>> {
     columns! {
         "case" = |joined| &joined.case.name;

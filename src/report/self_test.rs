@@ -14,7 +14,6 @@ use crate::self_test::{Calibration, Caught, SelfTest, StreamVerdicts};
 const KEPT: [&str; 2] = ["kept", "BROKEN"];
 
 /// The tables for the screen.
-#[must_use]
 pub fn table(found: &SelfTest, pen: Pen) -> String {
     let mut text = String::new();
     promises(&mut text, pen, &found.calibration);

@@ -11,7 +11,6 @@ pub const NOT_NORMAL: &str = "(z): the draws are too few, or their tails too hea
                               verdict does not rest on it";
 
 /// How many rows have each verdict, without those that none has.
-#[must_use]
 pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
     let rows = || cases.iter().flat_map(|case| &case.rows);
     let number = |verdict| rows().filter(|row| row.verdict == Some(verdict)).count();
@@ -20,7 +19,6 @@ pub fn counts(cases: &[CaseRecord]) -> Vec<(Verdict, usize)> {
 }
 
 /// The verdicts of a case: `15 pass, 1 underpowered`.
-#[must_use]
 pub fn words(case: &CaseRecord) -> String {
     let counts = counts(std::slice::from_ref(case));
     let words: Vec<String> =
@@ -29,21 +27,18 @@ pub fn words(case: &CaseRecord) -> String {
 }
 
 /// How many draws a case took; the rows of one experiment share theirs.
-#[must_use]
 pub fn draws(case: &CaseRecord) -> String {
     let own = case.rows.iter().enumerate().filter(|(i, _)| case.begins_experiment(*i));
     count(own.filter_map(|(_, row)| row.drawn).sum())
 }
 
 /// An entry of the e-BH list: `case: experiment: mean (ln E = 9.1)`.
-#[must_use]
 pub fn suspect(suspect: &Suspect) -> String {
     let Suspect { case, experiment, check, ln_e } = suspect;
     format!("{case}: {experiment}: {check} (ln E = {})", short(*ln_e, 3))
 }
 
 /// The error control of a run, fact by fact: levels, margins, what is assumed, what was cut.
-#[must_use]
 pub fn control(record: &Record) -> Vec<String> {
     let results = &record.results;
     let gate = &results.gate;

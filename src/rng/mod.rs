@@ -53,7 +53,6 @@ impl Address {
     ///
     /// Source: M. E. O'Neill, *PCG: A family of simple fast space-efficient statistically good
     /// algorithms for random number generation*, Harvey Mudd College HMC-CS-2014-0905 (2014).
-    #[must_use]
     fn seeder(self) -> Pcg64 {
         let mut hash = 0x7472_7565_666c_6967; // "trueflig": keeps seed 0 away from state 0
         for word in [self.seed, self.experiment, self.block, self.lane] {
@@ -69,13 +68,11 @@ impl Address {
     }
 
     /// The generator of a pilot ray, which learns a sampling extinction before the first draw.
-    #[must_use]
     pub fn pilot(self) -> Pcg64 {
         Self { lane: PILOT, ..self }.seeder()
     }
 
     /// The stream at its beginning.
-    #[must_use]
     pub fn stream(self) -> Stream {
         let mut seeder = self.seeder();
         let mut word = || seeder.next_u64();
@@ -83,7 +80,6 @@ impl Address {
     }
 
     /// The streams of the block, at their beginnings.
-    #[must_use]
     pub fn streams(self) -> Streams {
         let stream = |lane: usize| Self { lane: lane as u64, ..self }.stream();
         Streams { lanes: std::array::from_fn(stream), turn: 0, counts: stream(LANES) }
@@ -111,7 +107,6 @@ impl Streams {
     }
 
     /// The streams, pack by pack.
-    #[must_use]
     pub fn packs(&self) -> [Lanes; PACKS] {
         let (packs, _) = self.lanes.as_chunks();
         std::array::from_fn(|pack| Lanes::of(&packs[pack]))
@@ -156,13 +151,11 @@ fn mix(mut z: u64) -> u64 {
 }
 
 /// FNV-1a of a name, mixed: an experiment keeps its streams when others join or leave the run.
-#[must_use]
 pub fn name_hash(name: &str) -> u64 {
     hash(name.as_bytes())
 }
 
 /// A 64-bit hash of any bytes.
-#[must_use]
 pub fn hash(bytes: &[u8]) -> u64 {
     let fnv = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
     mix(bytes.iter().fold(0xcbf2_9ce4_8422_2325, fnv))

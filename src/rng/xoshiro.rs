@@ -44,7 +44,6 @@ pub trait Words: Copy {
     #[must_use]
     fn rotated(self, bits: u32) -> Self;
     /// The upper 53 bits as an integer.
-    #[must_use]
     fn upper(self) -> Self::Numbers;
 }
 
@@ -123,7 +122,6 @@ pub struct Xoshiro<W> {
 impl<W: Words> Xoshiro<W> {
     /// At a state, which must not be zero.
     #[inline(always)]
-    #[must_use]
     pub fn at(state: [W; 4]) -> Self {
         Self { state }
     }
@@ -172,7 +170,6 @@ pub struct Lanes([[u64; WIDTH]; 4]);
 
 impl Lanes {
     /// The streams side by side.
-    #[must_use]
     pub fn of(streams: &[Xoshiro<u64>; WIDTH]) -> Self {
         let word = |word: usize, lane: usize| streams[lane].state[word];
         Self(std::array::from_fn(|i| std::array::from_fn(|lane| word(i, lane))))
@@ -185,14 +182,12 @@ impl Lanes {
     }
 
     /// Each of the streams by itself.
-    #[must_use]
     pub fn apart(&self) -> [Xoshiro<u64>; WIDTH] {
         std::array::from_fn(|lane| Xoshiro { state: self.0.map(|words| words[lane]) })
     }
 
     /// In the hardware's registers.
     #[inline(always)]
-    #[must_use]
     pub fn awake<S: Simd>(&self, simd: S) -> Xoshiro<u64x8<S>> {
         let [a, b, c, d] = &self.0;
         Xoshiro {
@@ -237,7 +232,6 @@ impl<S: Simd> Xoshiro<u64x8<S>> {
 
     /// Where the streams stand.
     #[inline(always)]
-    #[must_use]
     pub fn at_rest(self) -> Lanes {
         // One by one: a reference to the state would keep it out of the registers.
         let [a, b, c, d] = self.state;

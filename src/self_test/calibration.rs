@@ -87,7 +87,6 @@ pub struct Calibration {
 
 impl Calibration {
     /// Whether no promise is refuted.
-    #[must_use]
     pub fn holds(&self) -> bool {
         let shares = self.uniformity.iter().flat_map(|check| &check.below);
         let are_uniform =

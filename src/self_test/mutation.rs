@@ -40,14 +40,12 @@ pub struct Caught {
 
 impl Caught {
     /// Whether the bug was caught and the twin was not.
-    #[must_use]
     pub fn is_right(&self) -> bool {
         self.draws.is_some() && self.twin_passes
     }
 }
 
 /// The names of the checks that some mutant names.
-#[must_use]
 pub fn named_checks() -> Vec<&'static str> {
     let estimators = mutants::all().into_iter().map(|about| about.check);
     let mut names: Vec<_> =

@@ -182,7 +182,6 @@ impl Law {
     }
 
     /// What is claimed; `None` where the law has nothing of it.
-    #[must_use]
     pub fn claim(self, claims: Claims) -> Option<Claim> {
         let (truth, variance, kurtosis, range) = self.moments();
         let given = Given { truth, rounding: ROUNDING, ..Given::default() };
@@ -228,7 +227,6 @@ impl Law {
     }
 
     /// The draws of one stream.
-    #[must_use]
     pub fn draws(self, stream: u64) -> Vec<f64> {
         let experiment = crate::rng::name_hash(&self.to_string());
         let mut rng = Address { seed: 1, experiment, block: stream, lane: 0 }.stream();
@@ -238,7 +236,6 @@ impl Law {
 
 impl StreamVerdicts {
     /// Whether the promise that a correct stream fails with chance α at most is not refuted.
-    #[must_use]
     pub fn is_kept(&self) -> bool {
         binomial::interval(self.failed, self.streams, CERTAIN).0 <= ALPHA
     }
@@ -264,7 +261,6 @@ pub struct StreamVerdicts {
 }
 
 /// Judges so many streams of every law with every claim; `step` is told of each stream.
-#[must_use]
 pub fn all(streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerdicts> {
     LAWS.iter().flat_map(|&law| of_law(law, streams, step)).collect()
 }

@@ -28,7 +28,6 @@ const LEAST: f64 = 100.0;
 /// vector `g` with eigenvalue `λ` solves `k(N − k) Δ²g_k + g_k/λ = 0`, polynomials of degree `j + 1`
 /// do, and their leading terms give `λ_j = 1/(j(j + 1))` exactly, `j < N`. The added `1/N` is the
 /// mean of the terms cut off, whose variance is below `2/(3(N − 1)³)`: 7e-10 for `N = 1024`.
-#[must_use]
 pub fn p_value_of_classes(counts: &[f64]) -> Option<f64> {
     let classes = counts.len() as f64;
     let n: f64 = counts.iter().sum();
@@ -59,7 +58,6 @@ pub fn p_value_of_classes(counts: &[f64]) -> Option<f64> {
 /// chance exceeds it by 2 % or less at `n = 100`, 5 % at `n = 50` and 6 % at `n = 20`. The correction
 /// of G. Marsaglia, J. Marsaglia, *Evaluating the Anderson–Darling distribution*, Journal of
 /// Statistical Software 9 (2004), is good to 1e-4 absolutely and so no use at levels of 1e-6.
-#[must_use]
 pub fn p_value_of_uniforms(sorted: &[f64]) -> f64 {
     if sorted.is_empty() {
         return 1.0;
@@ -92,7 +90,6 @@ fn statistic(sorted: &[f64]) -> f64 {
 /// ```
 ///
 /// by Gauss–Chebyshev rules, which absorb the roots at both ends. Relative error 1e-12; NaN for NaN.
-#[must_use]
 pub fn upper_tail(x: f64) -> f64 {
     if x.is_nan() {
         return x;

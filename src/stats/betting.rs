@@ -92,7 +92,6 @@ fn side(
 
 impl Bets {
     /// Bets on draws in `[low, high]` about 0; `floor` is δ. Without an aim nothing is bet on a pass.
-    #[must_use]
     pub fn new([low, high]: [f64; 2], aim: Option<Aim>, floor: f64) -> Self {
         let mut factors: Vec<Factor> = side(1.0, floor - low, floor, &PLANNED, aim).collect();
         factors.extend(side(-1.0, high + floor, -floor, &PLANNED, aim));
@@ -106,7 +105,6 @@ impl Bets {
     }
 
     /// The share of the capital of each bet on draws in a range, with an aim.
-    #[must_use]
     pub fn shares(range: [f64; 2]) -> Gains {
         let far = range.map(|end| if end.is_finite() { end.signum() * 2.0 } else { end });
         let bets = Self::new(far, Some(Aim { tolerance: 1.0, variance: 1.0 }), 0.0);
@@ -120,7 +118,6 @@ impl Bets {
     }
 
     /// What the bets gain on some draws. Each draw must lie in the range.
-    #[must_use]
     pub fn gains(&self, y: &[f64]) -> Gains {
         let mut sums = vec![0.0; self.factors.len()];
         pack::on(Level::new(), Sums { factors: &self.factors, y, totals: &mut sums });

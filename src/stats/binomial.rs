@@ -17,7 +17,6 @@ use crate::numeric::roots;
 ///
 /// Without trials nothing is known, and certainty knows nothing: `(0, 1)`. More successes than trials
 /// and a level outside `[0, 1]` give NaN.
-#[must_use]
 pub fn interval(successes: u64, trials: u64, level: f64) -> (f64, f64) {
     if successes > trials || !(0.0..=1.0).contains(&level) {
         return (f64::NAN, f64::NAN);

@@ -64,7 +64,6 @@ fn joined(shares: &[f64], x: &[f64]) -> f64 {
 
 impl Capital {
     /// Capital that is shared among the bets as given, `against` and each side of `pass` with a sum of 1.
-    #[must_use]
     pub fn shared(shares: Gains) -> Self {
         Self { shares, ..Self::default() }
     }
@@ -93,7 +92,6 @@ impl Capital {
     }
 
     /// ln E.
-    #[must_use]
     pub fn ln_e(&self) -> f64 {
         if self.sum.against.is_empty() {
             0.0
@@ -103,13 +101,11 @@ impl Capital {
     }
 
     /// ln of the evidence against a mean of +ε or more, and of −ε or less; −∞ where nothing was bet.
-    #[must_use]
     pub fn ln_pass(&self) -> [f64; 2] {
         [0, 1].map(|side| joined(&self.shares.pass[side], &self.sum.pass[side]))
     }
 
     /// ln `E_c`.
-    #[must_use]
     pub fn ln_change(&self) -> f64 {
         if self.later.is_empty() {
             return 0.0;
@@ -119,7 +115,6 @@ impl Capital {
     }
 
     /// The block at which a change most likely begins.
-    #[must_use]
     pub fn change(&self) -> u64 {
         let best = self.later.iter().max_by(|a, b| a.ln_best.total_cmp(&b.ln_best));
         best.map_or(0, |later| later.block)

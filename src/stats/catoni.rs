@@ -30,7 +30,6 @@ const INFINITE: i64 = 0x7ff;
 const LARGE: f64 = 1e100;
 
 /// ψ itself.
-#[must_use]
 pub fn psi(t: f64) -> f64 {
     let size = t.abs();
     let ln = if size > LARGE {
@@ -88,7 +87,6 @@ impl<const N: usize> PsiSums<N> {
     }
 
     /// The sums.
-    #[must_use]
     pub fn totals(&self) -> [f64; N] {
         self.products.map(|product| {
             let mantissas: f64 =

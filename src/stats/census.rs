@@ -42,7 +42,6 @@ impl<T> Census<T> {
 
 impl Census<f64> {
     /// Counts numbers, told apart by their bits; `None` where too many of them differ.
-    #[must_use]
     pub fn of(draws: &[f64]) -> Option<Self> {
         let mut table = Table::EMPTY;
         let (rows, rest) = draws.as_chunks::<FOLD>();
@@ -92,7 +91,6 @@ impl Table {
 
 impl Census<u32> {
     /// Counts whole numbers; `None` where they are large, or too many of them differ.
-    #[must_use]
     pub fn of(draws: &[u32]) -> Option<Self> {
         let largest = in_fused_code(
             #[inline(always)]

@@ -87,7 +87,6 @@ const LEAST: f64 = 500.0;
 /// ```
 ///
 /// Source: K. Pearson, *On the criterion …*, Philosophical Magazine 50 (1900), 157–175.
-#[must_use]
 pub fn p_value(observed: &[f64], probability: &[f64]) -> Option<f64> {
     let draws = observed.iter().sum::<f64>();
     let mut bins: Vec<(f64, f64)> = Vec::new();
@@ -130,13 +129,11 @@ fn two_bins(count: f64, probability: f64, draws: f64) -> f64 {
 }
 
 /// `P(χ² > statistic)`; NaN where the statistic is not a number or the degrees are not positive.
-#[must_use]
 pub fn upper(statistic: f64, degrees: f64) -> f64 {
     tails(statistic, degrees)[0]
 }
 
 /// `P(χ² < statistic)`; NaN as for [`upper`].
-#[must_use]
 pub fn lower(statistic: f64, degrees: f64) -> f64 {
     tails(statistic, degrees)[1]
 }
@@ -145,14 +142,12 @@ pub fn lower(statistic: f64, degrees: f64) -> f64 {
 /// small; NaN as for [`upper`].
 ///
 /// Right to 1e-9, relative, up to 1e9 degrees and beyond, at levels down to 1e-12.
-#[must_use]
 pub fn two_sided(statistic: f64, degrees: f64) -> f64 {
     let [above, below] = tails(statistic, degrees);
     (2.0 * if above < below { above } else { below }).clamp(0.0, 1.0)
 }
 
 /// The number of bins that [`p_value`] would test at a planned number of draws.
-#[must_use]
 pub fn testable_bins(probability: &[f64], draws: f64) -> usize {
     let mut bins = 0;
     let mut expected = 0.0;

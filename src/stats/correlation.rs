@@ -24,7 +24,6 @@ use crate::stats::chi_square;
 /// Source: F. E. Satterthwaite, *An approximate distribution of estimates of variance components*,
 /// Biometrics Bulletin 2 (1946), 110–114. Exact for normal `z`; otherwise good down to levels of
 /// 1e-7 for `L ≥ 1000 κ/B` and `E[z⁸] ≤ 0.06 L B³`: with heavier tails one draw decides.
-#[must_use]
 pub fn index_sums(sums: &[f64], streams: usize, excess_kurtosis: f64) -> Option<f64> {
     let scale = 1.0 + excess_kurtosis / (2.0 * streams as f64);
     if sums.is_empty() || streams == 0 || !scale.is_finite() || scale <= 0.0 {
@@ -56,7 +55,6 @@ pub struct Lagged {
 /// Bonferroni's bound: C. E. Bonferroni, *Teoria statistica delle classi e calcolo delle probabilità*
 /// (1936). A product of two kurtoses `κ_a κ_b` leaves `z` an excess kurtosis of `(κ_a κ_b − 3)/m`: for
 /// normal values `m ≥ 1e4` is enough at levels of 1e-6. Where `a` is `b`, leave out lag 0.
-#[must_use]
 pub fn lagged(a: &[f64], b: &[f64], lags: RangeInclusive<i32>) -> Option<Lagged> {
     let mut tested = 0.0;
     let mut largest: Option<(i32, f64)> = None;

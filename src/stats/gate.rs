@@ -77,13 +77,11 @@ pub enum Decision {
 }
 
 /// The ε that `draws` draws are planned for: `√(27 V/n)`.
-#[must_use]
 pub fn tolerance_of(variance: f64, draws: f64) -> f64 {
     (PLANNED * variance / draws).sqrt()
 }
 
 /// The draws that an ε is planned for: `27 V/ε²`.
-#[must_use]
 pub fn draws_of(variance: f64, tolerance: f64) -> f64 {
     PLANNED * variance / (tolerance * tolerance)
 }
@@ -91,7 +89,6 @@ pub fn draws_of(variance: f64, tolerance: f64) -> f64 {
 impl Design {
     /// A question about a scalar of variance at most V: ε is narrowed to √V/4 where it is wider,
     /// and widened to 4δ where it is narrower.
-    #[must_use]
     pub fn new(variance: f64, tolerance: f64, floor: f64) -> Self {
         let tolerance = tolerance.min(WIDEST * variance.sqrt()).max(4.0 * floor);
         Self { variance, tolerance, floor }
@@ -102,7 +99,6 @@ impl Design {
     }
 
     /// The arguments of the five sums: three of `fail`, two of `pass`.
-    #[must_use]
     pub fn arguments(&self) -> [Argument; SUMS] {
         let fail = |m: f64| Argument { slope: m * self.slope(), shift: 0.0 };
         let calm = CALM * self.slope();
@@ -112,14 +108,12 @@ impl Design {
     }
 
     /// The evidence in the sums over `draws` draws.
-    #[must_use]
     pub fn evidence(&self, sums: [f64; SUMS], draws: f64) -> Evidence {
         self.gains(sums, draws).evidence()
     }
 
     /// What the sums over `draws` draws add to each L and P. Where V or ε is chosen anew before a
     /// block, from what came before it, the gains of the blocks add up.
-    #[must_use]
     pub fn gains(&self, sums: [f64; SUMS], draws: f64) -> Gains {
         let price = |slope: f64, variance: f64| draws * (0.5 * slope * slope * variance).ln_1p();
         let variance = self.variance + self.floor * self.floor;
@@ -151,7 +145,6 @@ impl Gains {
     }
 
     /// The evidence that they are.
-    #[must_use]
     pub fn evidence(&self) -> Evidence {
         Evidence { ln_e: ln_mean_exp(&self.against), ln_pass: self.pass }
     }
@@ -170,7 +163,6 @@ impl Evidence {
 
     /// What it says at the levels `ln(K/α)` and `ln(1/β)`. A fail comes first; evidence that is not
     /// a number decides nothing.
-    #[must_use]
     pub fn decision(&self, ln_fail: f64, ln_pass: f64) -> Decision {
         if self.ln_e >= ln_fail {
             Decision::Failed
@@ -183,7 +175,6 @@ impl Evidence {
 }
 
 /// ln of the mean of `e^x`; not a number if one of them is none.
-#[must_use]
 pub fn ln_mean_exp(x: &[f64]) -> f64 {
     let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
     if x.iter().any(|x| x.is_nan()) {

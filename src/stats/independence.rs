@@ -192,13 +192,11 @@ impl Independence {
     }
 
     /// ln E.
-    #[must_use]
     pub fn ln_e(&self) -> f64 {
         super::gate::ln_mean_exp(&self.questions().map(|found| found.ln_e).collect::<Vec<_>>())
     }
 
     /// The first dependence whose own evidence reaches `ln_limit`, else the strongest.
-    #[must_use]
     pub fn strongest(&self, ln_limit: f64) -> Option<Dependence> {
         let all = (LAGS + SCALES) as f64;
         let first = self.questions().find(|found| found.ln_e >= ln_limit + all.ln());
@@ -206,7 +204,6 @@ impl Independence {
     }
 
     /// The least number of consecutive draws whose sums show no dependence at `ln_limit`, nor do larger ones.
-    #[must_use]
     pub fn free_batch(&self, ln_limit: f64) -> Option<u64> {
         let limit = ln_limit + ((LAGS + SCALES) as f64).ln();
         let is_refuted = |signs: &Signs| signs.ln_e() >= limit;

@@ -19,7 +19,6 @@ use std::cmp::Ordering;
 
 /// Which hypotheses Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses` of which
 /// those without a p-value count as 1.
-#[must_use]
 pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
     let hypotheses = hypotheses.max(p.len());
     let p: Vec<f64> = p.iter().map(|&p| if p.is_nan() { 1.0 } else { p }).collect();
@@ -37,7 +36,6 @@ pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
 
 /// The indices on the e-BH list at false discovery rate `alpha`, largest e-value first, ties by
 /// index.
-#[must_use]
 pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..ln_e.len()).collect();
     order.sort_by(|&i, &j| largest_first(ln_e[i], ln_e[j]));
@@ -49,13 +47,11 @@ pub fn e_benjamini_hochberg(ln_e: &[f64], alpha: f64) -> Vec<usize> {
 }
 
 /// `ln(K/α)`: what the logarithm of one e-value among `K` must reach at family-wise level `α`.
-#[must_use]
 pub fn e_bonferroni_threshold(hypotheses: usize, alpha: f64) -> f64 {
     (hypotheses.max(1) as f64 / alpha).ln()
 }
 
 /// `ln((1/K) Σ e)`; 0, no evidence, without e-values.
-#[must_use]
 pub fn mean_e_value(ln_e: &[f64]) -> f64 {
     let largest = ln_e.iter().copied().map(evidence).fold(f64::NEG_INFINITY, f64::max);
     if ln_e.is_empty() {

@@ -3,13 +3,11 @@
 use statrs::distribution::{ContinuousCDF, Normal};
 
 /// The `z` that a standard normal exceeds with probability `tail`.
-#[must_use]
 pub fn upper_quantile(tail: f64) -> f64 {
     -Normal::standard().inverse_cdf(tail)
 }
 
 /// The `z` that a standard normal exceeds in absolute value with probability `level`.
-#[must_use]
 pub fn two_sided(level: f64) -> f64 {
     upper_quantile(0.5 * level)
 }

@@ -40,7 +40,6 @@ impl Powers {
     }
 
     /// How many draws.
-    #[must_use]
     pub fn draws(&self) -> u64 {
         self.draws
     }
@@ -51,26 +50,22 @@ impl Powers {
     }
 
     /// The mean of y.
-    #[must_use]
     pub fn mean(&self) -> f64 {
         self.raw(1)
     }
 
     /// The mean of y².
-    #[must_use]
     pub fn mean_square(&self) -> f64 {
         self.raw(2)
     }
 
     /// s², with `n − 1` in the denominator.
-    #[must_use]
     pub fn variance(&self) -> f64 {
         let n = self.draws as f64;
         (self.raw(2) - self.raw(1) * self.raw(1)).max(0.0) * n / (n - 1.0).max(1.0)
     }
 
     /// The sample kurtosis; infinite for draws without spread.
-    #[must_use]
     pub fn kurtosis(&self) -> f64 {
         let [m, m2, m3, m4] = [1, 2, 3, 4].map(|k| self.raw(k));
         let variance = m2 - m * m;
@@ -80,13 +75,11 @@ impl Powers {
     }
 
     /// How many draws make the variance: n over the sample kurtosis; 0 for draws without spread.
-    #[must_use]
     pub fn effective_draws(&self) -> f64 {
         self.draws as f64 / self.kurtosis()
     }
 
     /// The relative standard error of the mean of y²; infinite where all y are 0.
-    #[must_use]
     pub fn square_error(&self) -> f64 {
         let (square, fourth) = (self.raw(2), self.raw(4));
         if square > 0.0 {
@@ -97,7 +90,6 @@ impl Powers {
     }
 
     /// An upper estimate of `E[y²]`: the mean of y² and three of its standard errors.
-    #[must_use]
     pub fn upper_square(&self) -> f64 {
         let (square, fourth) = (self.raw(2), self.raw(4));
         square + 3.0 * ((fourth - square * square).max(0.0) / self.draws as f64).sqrt()

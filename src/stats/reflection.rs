@@ -16,7 +16,6 @@ use std::f64::consts::{FRAC_1_SQRT_2, PI};
 const TERMS: i32 = 8;
 
 /// `P(max_{0≤t≤1} |W(t)| > x)`; 1 for `x ≤ 0`.
-#[must_use]
 pub fn upper_tail(x: f64) -> f64 {
     if x <= 0.0 {
         return 1.0;

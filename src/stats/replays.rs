@@ -61,7 +61,6 @@ impl Replays {
     }
 
     /// The most frequent distance; `None` where no value occurs twice.
-    #[must_use]
     pub fn most_frequent(&self) -> Option<Replay> {
         let mut kept = self.kept.clone();
         kept.sort_unstable();

@@ -34,7 +34,6 @@ pub struct Moments2 {
 
 impl Tally {
     /// The sums of one block, or a part of it.
-    #[must_use]
     pub fn of(values: &[f64], shift: f64, scale: f64) -> Self {
         let inverse = 1.0 / scale;
         let y = |value: f64| (value - shift) * inverse;
@@ -71,7 +70,6 @@ impl Tally {
     }
 
     /// The same of values that come so many times each.
-    #[must_use]
     pub fn counted<T: Copy + Into<f64>>(census: &Census<T>, shift: f64, scale: f64) -> Self {
         let mut tally = Self::default();
         for (&value, &times) in census.values.iter().zip(&census.times) {
@@ -95,13 +93,11 @@ impl Tally {
     }
 
     /// `mean of y²`: the variance about the shift; `None` without draws.
-    #[must_use]
     pub fn mean_square(&self) -> Option<f64> {
         (self.draws > 0).then(|| self.squares.value() / self.draws as f64)
     }
 
     /// Mean and variance of the `y`s; `None` without draws.
-    #[must_use]
     pub fn moments(&self) -> Option<Moments2> {
         let n = self.draws as f64;
         if self.draws == 0 {

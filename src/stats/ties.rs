@@ -13,7 +13,6 @@ use crate::stats::chi_square;
 /// How many values equal another one before them; sorts the values.
 ///
 /// `0` and `−0` are equal; NaN equals nothing.
-#[must_use]
 pub fn ties(values: &mut [f64]) -> usize {
     values.sort_unstable_by(f64::total_cmp);
     values.windows(2).filter(|pair| pair[0] == pair[1]).count()
@@ -21,7 +20,6 @@ pub fn ties(values: &mut [f64]) -> usize {
 
 /// `log₂` of how many equally probable values make so many pairs, among draws that come once or twice;
 /// `None` where fewer than 5 come twice or 100 once. Sorts the values. Atoms of a law come more often.
-#[must_use]
 pub fn resolution(values: &mut [f64]) -> Option<f64> {
     values.sort_unstable_by(f64::total_cmp);
     let count = |size: usize| {
@@ -33,7 +31,6 @@ pub fn resolution(values: &mut [f64]) -> Option<f64> {
 }
 
 /// The chance of so many ties or more where `expected` are expected: a Poisson number of them.
-#[must_use]
 pub fn p_value(ties: usize, expected: f64) -> f64 {
     if ties == 0 {
         return 1.0;
@@ -43,7 +40,6 @@ pub fn p_value(ties: usize, expected: f64) -> f64 {
 }
 
 /// Whether every finite value is a single-precision number; false without finite values.
-#[must_use]
 #[allow(clippy::cast_possible_truncation)] // what the truncation loses is the question
 pub fn all_single_precision(values: &[f64]) -> bool {
     let mut finite = values.iter().filter(|x| x.is_finite()).peekable();
@@ -51,7 +47,6 @@ pub fn all_single_precision(values: &[f64]) -> bool {
 }
 
 /// The bits that are set in at least one word.
-#[must_use]
 pub fn or_of_words(words: impl Iterator<Item = u64>) -> u64 {
     words.fold(0, |seen, word| seen | word)
 }

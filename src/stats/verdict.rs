@@ -29,7 +29,6 @@ pub enum Verdict {
 
 impl Verdict {
     /// The word in tables and files.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Pass => "pass",

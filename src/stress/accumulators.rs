@@ -24,7 +24,6 @@ const BUFFERS: u64 = 256;
 const BOUND: f64 = 516.0 * f64::EPSILON / 2.0;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let parts = effort.of(8, 1024);
     let mut rows = whole_numbers("uniform draws", seed, parts, &UNIFORM);

@@ -29,7 +29,6 @@ const ASKED: usize = 32;
 const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(16, "balls", seed, |part| {
         let number = part.number;

@@ -24,7 +24,6 @@ const TERMS: usize = 48;
 const ORDERS: usize = 4;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
     let rows = ["variance", "fourth moment"]

@@ -26,7 +26,6 @@ use crate::theory::space::content;
 const FEW_CHORDS: f64 = 4e3;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(2, 64);
     in_parts(16, "contents", seed, |part| {

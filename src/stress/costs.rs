@@ -19,7 +19,6 @@ use crate::theory::product::Product;
 use crate::theory::{CountLaw, Mesh, curve, flight, rod};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(4, 150);
     in_parts(16, "costs", seed, |part| {

@@ -11,7 +11,6 @@ use crate::numeric::sum::Sum;
 use crate::numeric::{Span, Wide};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(10, 300);
     in_parts(32, "depths", seed, |part| {

@@ -5,7 +5,6 @@ use super::{Effort, Measure, Row, in_parts};
 use crate::numeric::{Lane, Wide};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(32, "elementary", seed, |part| {
         let rows = [

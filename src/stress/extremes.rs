@@ -20,7 +20,6 @@ const DRAWS: u64 = 1 << 13;
 const COSTLY: f64 = 100.0;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let mut rows = swept(effort, seed);
     rows.push(at_breaks(effort, seed));

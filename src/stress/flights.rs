@@ -7,7 +7,6 @@ use crate::media::Piecewise;
 use crate::numeric::{Span, Wide};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(30, 3000);
     in_parts(16, "flights", seed, |part| {

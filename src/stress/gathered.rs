@@ -26,7 +26,6 @@ use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Track
 const STEPS: u32 = 40;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let range = "four fields, controls, light 1e-3 … 10 away, g to 0.8, σ̂ = 0.6 … 5 of the largest; panels of s";
     let rows = ["variance", "fourth moment"]

@@ -14,7 +14,6 @@ use crate::stats::{anderson_darling, chi_square, correlation, ties};
 const GRAIN: f64 = f64::EPSILON / 2.0;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     vec![
         ends(),

@@ -8,7 +8,6 @@ use crate::numeric::double_double::{two_prod, two_sum};
 use crate::numeric::{Known, Span, Wide};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(40, 5000);
     in_parts(16, "geometry", seed, |part| {

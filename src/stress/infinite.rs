@@ -20,7 +20,6 @@ use crate::theory::space::infinite;
 const STEPS: i32 = 6;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(1, 12);
     let (nodes, angles) = (cut_nodes(), angles());

@@ -28,7 +28,6 @@ const TERMS: usize = 22;
 const POWERS: u32 = 4;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(16, "inside", seed, |part| {
         let range = "to order 6, 1 … 4 parts, two albedos, τ = 1e-6 … 30";

@@ -98,7 +98,6 @@ pub enum Effort {
 
 impl Effort {
     /// A number of trials for either.
-    #[must_use]
     pub fn of<T>(self, quick: T, full: T) -> T {
         match self {
             Self::Quick => quick,
@@ -120,7 +119,6 @@ pub struct Stress {
 
 impl Stress {
     /// Whether every bound holds.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.rows.iter().all(Row::holds)
     }

@@ -16,7 +16,6 @@ use crate::theory::product::Product;
 use crate::theory::{Mesh, Rule};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(6, 200);
     let ranges: [(&str, Draw); 2] = [

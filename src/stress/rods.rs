@@ -18,7 +18,6 @@ use crate::theory::particle::ParticleRule;
 use crate::theory::{Mesh, rod as rods};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(4, 150);
     in_parts(16, "rods", seed, |part| {

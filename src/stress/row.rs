@@ -19,7 +19,6 @@ pub enum Measure {
 
 impl Measure {
     /// The words in tables.
-    #[must_use]
     pub fn words(self) -> &'static str {
         match self {
             Self::Relative => "relative",
@@ -57,7 +56,6 @@ pub struct Row {
 
 impl Row {
     /// Before the first trial.
-    #[must_use]
     pub fn new(
         quantity: impl Into<String>,
         range: impl Into<String>,
@@ -71,25 +69,21 @@ impl Row {
     }
 
     /// In units of the stated error.
-    #[must_use]
     pub fn stated(quantity: impl Into<String>, range: impl Into<String>) -> Self {
         Self::new(quantity, range, Measure::OfStated, 1.0)
     }
 
     /// Relative to what is exact.
-    #[must_use]
     pub fn relative(quantity: impl Into<String>, range: impl Into<String>, bound: f64) -> Self {
         Self::new(quantity, range, Measure::Relative, bound)
     }
 
     /// Of which none may be wrong.
-    #[must_use]
     pub fn wrong(quantity: impl Into<String>, range: impl Into<String>) -> Self {
         Self::new(quantity, range, Measure::Count, 0.0)
     }
 
     /// Independent random numbers: one false alarm in a million.
-    #[must_use]
     pub fn improbable(quantity: impl Into<String>, range: impl Into<String>) -> Self {
         Self::new(quantity, range, Measure::Improbability, 6.0)
     }
@@ -141,13 +135,11 @@ impl Row {
     }
 
     /// Whether the bound holds. What was never tried does not, nor what was mostly skipped.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.trials > 0 && !self.is_mostly_skipped() && self.worst <= self.bound
     }
 
     /// Whether more was skipped than compared: such a row says nothing of its range.
-    #[must_use]
     pub fn is_mostly_skipped(&self) -> bool {
         self.skipped > self.trials
     }

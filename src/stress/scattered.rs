@@ -26,7 +26,6 @@ use crate::theory::single::{Along, Camera, Node, Scene, Tracking};
 const TECHNIQUES: u64 = 6;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = |part: u64, rest: u64| effort.of(u32::from(part % 2 == rest), 6);
     let shallow = in_parts(16, "scattered", seed, |part| {

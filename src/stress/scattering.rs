@@ -27,7 +27,6 @@ use crate::theory::Mesh;
 use crate::theory::single::{Along, Camera, Scene, Tracking};
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(1, 80);
     in_parts(16, "scattering", seed, |part| {

@@ -18,7 +18,6 @@ const ORDINATES: usize = 72;
 pub(super) const LIGHTS: usize = 8;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(16, "slabs", seed, |part| {
         let some = |every: u64, full: u32| effort.of(u32::from(part.number % every == 0), full);

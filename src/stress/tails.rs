@@ -11,7 +11,6 @@ use crate::stats::{anderson_darling, binomial, chi_square, normal};
 use crate::theory::CountLaw;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let trials = effort.of(4, 160);
     in_parts(16, "tails", seed, |part| {

@@ -12,7 +12,6 @@ pub struct Dice(Stream);
 
 impl Dice {
     /// Those of a part of a quantity.
-    #[must_use]
     pub fn new(seed: u64, quantity: &str, part: u64) -> Self {
         let experiment = name_hash(&format!("stress|{quantity}"));
         Self(Address { seed, experiment, block: part, lane: 0 }.stream())

@@ -19,7 +19,6 @@ use crate::harness::{Amount, Case, Options, Plan, evaluate, run, verdict};
 const ALPHA: f64 = 1e-7;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     vec![
         correct(effort, seed),

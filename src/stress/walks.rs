@@ -40,7 +40,6 @@ const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FI
 const FAINT: f64 = 1e-9;
 
 /// All rows.
-#[must_use]
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     in_parts(16, "walks", seed, |part| {
         let some = |every: u64, full: u32| effort.of(u32::from(part.number % every == 0), full);

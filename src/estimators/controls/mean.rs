@@ -19,7 +19,6 @@ pub struct Mean;
 
 impl Mean {
     /// Reads `{}`.
-    #[must_use]
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }

@@ -20,7 +20,6 @@ pub struct Minimum;
 
 impl Minimum {
     /// Reads `{}`.
-    #[must_use]
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }

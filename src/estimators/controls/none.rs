@@ -13,7 +13,6 @@ pub struct None;
 
 impl None {
     /// Reads `{}`.
-    #[must_use]
     pub fn read(_: &Settings, _: Option<&Body>) -> Option<Self> {
         Some(Self)
     }

@@ -256,7 +256,6 @@ const NOTHING: Draw<Values> =
 
 /// The cosine with the normal of Lambertian light, `√u` of a uniform number.
 #[inline(always)]
-#[must_use]
 pub fn lambertian(u: f64) -> f64 {
     (1.0 - u).sqrt()
 }

@@ -101,7 +101,6 @@ pub struct Slot {
 
 impl Slots {
     /// Those of a pack among so many draws, of which the first comes from the lane whose turn it is.
-    #[must_use]
     pub fn new(count: usize, turn: usize, pack: usize) -> Self {
         let mut next = [0; WIDTH];
         for (lane, draw) in (pack * WIDTH..).zip(&mut next) {
@@ -113,7 +112,6 @@ impl Slots {
 
     /// Whether some lane has draws left.
     #[inline(always)]
-    #[must_use]
     pub fn are_open(&self) -> bool {
         self.open > 0
     }

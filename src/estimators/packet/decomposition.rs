@@ -16,7 +16,6 @@ use crate::problems::Problem;
 
 /// The draws of decomposition tracking beside a constant control, on the hardware of a level; a request
 /// is handed back where the hardware is too narrow or one draw after the other is faster.
-#[must_use]
 pub fn decomposition<'a, P: Problem>(
     level: Level,
     setup: &Setup<P>,

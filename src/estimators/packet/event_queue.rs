@@ -55,14 +55,12 @@ pub struct Notes {
 
 impl Notes {
     /// Nothing yet.
-    #[must_use]
     pub fn empty() -> Self {
         Self { ended: [0; STEPS], escaped: [0; STEPS] }
     }
 
     /// The same by lanes.
     #[inline(always)]
-    #[must_use]
     pub fn by_lanes<S: Simd, R: Reader>(&self, simd: S) -> [Endings; WIDTH] {
         let (ended, escaped) =
             (u8x64::from_slice(simd, &self.ended), u8x64::from_slice(simd, &self.escaped));
@@ -120,7 +118,6 @@ impl<'a> EventQueue<'a> {
     }
 
     /// Whether some lane of a pack has draws left.
-    #[must_use]
     pub fn is_open(&self, pack: usize) -> bool {
         self.accounts[pack].open > 0
     }

@@ -16,7 +16,6 @@ use crate::problems::Problem;
 
 /// Free flights by Woodcock tracking, on the hardware of a level, or handed back where one draw after the
 /// other is faster.
-#[must_use]
 pub fn flight<'a, P: Problem>(
     level: Level,
     setup: &Setup<P>,

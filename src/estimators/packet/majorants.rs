@@ -14,7 +14,6 @@ use crate::numeric::{self, Lane};
 
 /// The draws of local-majorant tracking, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or no segment has an extinction.
-#[must_use]
 pub fn majorants<'a, P>(
     level: Level,
     setup: &Setup<P>,

@@ -23,7 +23,6 @@ use crate::theory::ParticleRule;
 
 /// The draws of a rule, with roulette on weights below a number where one is given, on the hardware of a level;
 /// a request is handed back where the hardware is too narrow or one draw after the other is faster.
-#[must_use]
 pub fn walks<'a>(
     level: Level,
     setup: &Setup<Rod>,

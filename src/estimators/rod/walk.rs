@@ -69,7 +69,6 @@ pub struct Fate {
 impl Fate {
     /// What each channel of the rod sees of it.
     #[inline(always)]
-    #[must_use]
     pub fn values(&self, channels: &[Quantity]) -> Values {
         let mut values = Values { at: [0.0; MOST], count: channels.len() };
         for (value, seen) in values.at.iter_mut().zip(channels) {

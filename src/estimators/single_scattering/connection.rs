@@ -54,7 +54,6 @@ pub fn read_shadow(settings: &Settings) -> Option<Tracking> {
 }
 
 /// A shadow in words.
-#[must_use]
 pub fn shadow_label(shadow: Tracking) -> String {
     match shadow {
         Tracking::Exact => "exact shadow".into(),
@@ -104,7 +103,6 @@ impl Connection {
     }
 
     /// In words, as in `ratio camera, delta shadow 1.2`.
-    #[must_use]
     pub fn label(&self) -> String {
         let camera = match self.camera {
             Along::Exact => "exact camera",
@@ -115,7 +113,6 @@ impl Connection {
     }
 
     /// What the walk from the ray's origin takes.
-    #[must_use]
     pub fn inputs(&self) -> Inputs {
         match self.camera {
             Along::Exact => Inputs::NONE,
@@ -139,7 +136,6 @@ impl Connection {
     }
 
     /// For theory, with more kinks of what is integrated.
-    #[must_use]
     pub fn scene<'a>(&self, setup: &'a Setup<SingleScattering>, cuts: Vec<f64>) -> Scene<'a> {
         let camera = Camera::new(&setup.mesh, &setup.sampling, &setup.control, self.camera);
         Scene::new(&setup.problem, camera, self.shadow, cuts)

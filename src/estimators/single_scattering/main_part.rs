@@ -26,7 +26,6 @@ pub struct MainPart<'a> {
 impl<'a> MainPart<'a> {
     /// The control of a setup; `None` if that has no straight pieces.
     #[inline(always)]
-    #[must_use]
     pub fn of(setup: &'a Setup<SingleScattering>) -> Option<Self> {
         let Control::Pieces(pieces) = &setup.control else { return None };
         let support = setup.problem.medium().support();
@@ -35,7 +34,6 @@ impl<'a> MainPart<'a> {
 
     /// The point that a uniform number finds.
     #[inline(always)]
-    #[must_use]
     pub fn point(&self, u: f64) -> f64 {
         let depth = -Lane::ln(1.0 - u * self.absorbed);
         let mut cursor = self.pieces.begin();
@@ -46,7 +44,6 @@ impl<'a> MainPart<'a> {
 
     /// Its density, 1/length.
     #[inline(always)]
-    #[must_use]
     pub fn density(&self, s: f64) -> f64 {
         self.pieces.value(s) * Lane::exp(-self.depth(s).value) / self.absorbed
     }
@@ -58,14 +55,12 @@ impl<'a> MainPart<'a> {
     }
 
     /// A relative error bound of the density.
-    #[must_use]
     pub fn blur(&self, s: f64) -> f64 {
         DENSITY + self.depth(s).error
     }
 }
 
 /// The kinks of the density.
-#[must_use]
 pub fn cuts(setup: &Setup<SingleScattering>) -> Vec<f64> {
     setup.control.breaks()
 }

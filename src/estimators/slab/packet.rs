@@ -26,7 +26,6 @@ use crate::theory::ParticleRule;
 
 /// The draws of a rule, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or one draw after the other is faster.
-#[must_use]
 pub fn walks<'a>(
     level: Level,
     setup: &Setup<Slab>,

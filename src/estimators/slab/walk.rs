@@ -54,7 +54,6 @@ impl Steps for ParticleRule {
 
 /// The cosine with the normal after a deflection about the direction of travel.
 #[inline(always)]
-#[must_use]
 pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
     let (zero, one) = (cosine.each(0.0), cosine.each(1.0));
     let across = (one - cosine * cosine) * (one - deflection * deflection);

@@ -27,7 +27,6 @@ pub struct Ground<'a> {
 
 impl<'a> Ground<'a> {
     /// That of σ̂, with a black ball in it or without.
-    #[must_use]
     pub fn new(majorants: &'a Majorants, core: Option<(Point, f64)>) -> Self {
         let (cells, low, width, values) = majorants.cells();
         let (constant, cells) = (majorants.single_value(), cells.map(|n| n as f64));

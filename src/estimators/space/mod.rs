@@ -38,7 +38,6 @@ pub fn majorants<P: Problem>(setup: &Setup<P>) -> Result<&Arc<Majorants>, Refusa
 }
 
 /// What bounds on the walks of a particle depend on.
-#[must_use]
 pub fn walks(scene: &Scene, majorants: &Majorants, particle: &Particle) -> Walks {
     let across = match majorants.bounds() {
         Bounds::Everywhere => f64::INFINITY,
@@ -95,7 +94,6 @@ pub fn energy(walks: &Walks) -> Result<Channel, Refusal> {
 }
 
 /// The same given the bound, and `∫σ̂` straight through.
-#[must_use]
 pub fn energy_channel(bound: f64, depth: f64) -> Channel {
     // A walk that nothing ends wanders for about depth² collisions, and each rounds.
     let rounding = ROUNDING + 4.0 * f64::EPSILON * depth * depth;

@@ -145,7 +145,6 @@ pub fn add_where<S: Simd>(sum: &mut f64x8<S>, mask: mask64x8<S>, term: f64x8<S>)
 
 /// The draws of a particle, on the hardware of a level; a request is handed back where that is too narrow,
 /// where the particle splits, and where draws have other channels.
-#[must_use]
 pub fn walks<'a, const SUMS: usize, T: Tally<SUMS>>(
     level: Level,
     tally: &T,

@@ -29,7 +29,6 @@ pub struct Particle {
 
 impl Particle {
     /// By a rule alone.
-    #[must_use]
     pub fn of(rule: ParticleRule) -> Self {
         Self { rule, roulette: None, splitting: Splitting::None }
     }
@@ -69,7 +68,6 @@ impl Particle {
     }
 
     /// Its settings in words.
-    #[must_use]
     pub fn label(&self) -> String {
         let splitting = match self.splitting {
             Splitting::None => String::new(),

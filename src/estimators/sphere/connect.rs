@@ -59,7 +59,6 @@ fn cone(core: f64, distance: f64) -> f64 {
 
 /// How far it is to a sphere, for what comes from outside and meets it.
 #[inline(always)]
-#[must_use]
 pub fn meets(origin: Point, direction: Point, centre: Point, radius: f64) -> Option<f64> {
     let to_centre = centre - origin;
     let foot = to_centre.dot(direction);
@@ -79,13 +78,11 @@ pub struct Seeker<'a> {
 
 impl<'a> Seeker<'a> {
     /// With shadow rays, or without.
-    #[must_use]
     pub fn new(sphere: &'a Sphere, connect: Option<(&'a dyn Connect, Tracking)>) -> Self {
         Self { sphere, connect, found: 0.0 }
     }
 
     /// What it has found.
-    #[must_use]
     pub fn found(&self) -> f64 {
         self.found
     }

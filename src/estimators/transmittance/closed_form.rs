@@ -23,7 +23,6 @@ use crate::theory::{Channel, CountLaw, Law, Moments, Prediction, Tails};
 pub struct ClosedForm;
 
 /// The prediction of an estimator that always gives the exact answer.
-#[must_use]
 pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
     let depth = setup.mesh.optical_depth();
     let value = transmittance(depth, setup.log_unit).value;

@@ -39,7 +39,6 @@ pub fn unbiased_where_covered(setup: &Setup<Transmittance>) -> Result<(), Refusa
 }
 
 /// The moments on this page's head, and the whole law where r is constant.
-#[must_use]
 pub fn predict_weighted(setup: &Setup<Transmittance>) -> Prediction {
     let prediction = setup.product(&Weight).predict();
     let law = setup.constant_ratio().map(|ratio| {

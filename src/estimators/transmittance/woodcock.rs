@@ -30,7 +30,6 @@ pub struct Woodcock;
 pub const ZERO_OR_ONE: &str = "τ ≤ 300 (draws are 0 or 1, and a 1 is never seen)";
 
 /// Adds the law of a draw that is 1 with probability T, else 0.
-#[must_use]
 pub fn zero_or_one(prediction: Prediction) -> Prediction {
     let alive = prediction.channels[0].truth.value;
     let law = Some(Law::Atoms(vec![(0.0, 1.0 - alive), (1.0, alive)]));

@@ -37,7 +37,6 @@ use crate::theory::{Prediction, curve};
 pub struct DoubleCurve;
 
 /// One walk: its tentative collisions `(t, σ_t(t), weight after it)`.
-#[must_use]
 pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream) -> Vec<[f64; 3]> {
     let mut cursor = setup.sampling.begin();
     let mut weight = 1.0;

@@ -29,7 +29,6 @@ use crate::problems::transmittance_curve::MOST;
 
 /// The draws of a curve, on the hardware of a level; a request is handed back where the hardware is too
 /// narrow or one draw after the other is faster.
-#[must_use]
 pub fn curve<'a>(
     level: Level,
     setup: &Setup<TransmittanceCurve>,

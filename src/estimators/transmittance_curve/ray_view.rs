@@ -35,7 +35,6 @@ pub struct RayView {
 }
 
 /// Draws the view; walks take their random numbers from the blocks of `address`.
-#[must_use]
 pub fn ray_view(setup: &Setup<TransmittanceCurve>, address: Address) -> RayView {
     let medium = setup.problem.medium();
     let (span, support) = (medium.span(), setup.mesh.support());

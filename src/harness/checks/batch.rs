@@ -27,7 +27,6 @@ pub struct Batch<'a> {
 
 impl<'a> Batch<'a> {
     /// Counts what can be batch.
-    #[must_use]
     pub fn new(draws: &'a DrawBuffer) -> Self {
         let values = draws.values.iter().map(|values| Census::<f64>::of(values)).collect();
         let lookups = Census::<u32>::of(&draws.lookups);
@@ -68,7 +67,6 @@ impl<'a> Batch<'a> {
     }
 
     /// The tally of a channel.
-    #[must_use]
     pub fn tally(&self, channel: usize, shift: f64, scale: f64) -> Tally {
         match &self.values[channel] {
             Some(census) => Tally::counted(census, shift, scale),
@@ -77,7 +75,6 @@ impl<'a> Batch<'a> {
     }
 
     /// The tally of the lookups about their expected number.
-    #[must_use]
     pub fn tally_of_lookups(&self, expected: f64) -> Tally {
         if let Some(census) = &self.lookups {
             return Tally::counted(census, expected, 1.0);

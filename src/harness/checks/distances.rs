@@ -52,7 +52,6 @@ pub struct Classes {
 
 impl Classes {
     /// As many as theory has.
-    #[must_use]
     pub fn of(subject: &Subject) -> Option<Self> {
         let Some(theory::Law::Distances { bins, end, escape, .. }) = &subject.prediction.law else {
             return None;
@@ -116,7 +115,6 @@ impl Classes {
     }
 
     /// How many draws are in each class, in order, and of the rays that escape.
-    #[must_use]
     pub fn count(&self, draws: &DrawBuffer) -> Vec<f64> {
         let mut counts = vec![[0_u32; FOLD]; self.total + 1];
         // The cells of a row at once: that has no branches and no lists.

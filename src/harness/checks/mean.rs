@@ -21,7 +21,6 @@ use crate::theory::Channel;
 const CAP: f64 = 0.05;
 
 /// Whether rounding spoils what the draws' spread says, if they have any.
-#[must_use]
 pub fn is_faint(subject: &Subject, channel: &Channel) -> bool {
     deviation(channel).is_some_and(|deviation| deviation <= 1e3 * floor(subject, channel))
 }

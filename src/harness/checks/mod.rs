@@ -59,7 +59,6 @@ impl Check {
 }
 
 /// All questions of all checks, in the order of the catalogue.
-#[must_use]
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let pages = CATALOGUE.pages.iter().zip(ALL);
     let asking = pages.filter(|(_, check)| check.of_biased || !subject.expect_biased);
@@ -77,7 +76,6 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
 }
 
 /// Whether the p-values of the check of that name are uniform when all is well.
-#[must_use]
 pub fn is_uniform(name: &str) -> bool {
     let named = CATALOGUE.pages.iter().zip(ALL).find(|(page, _)| page.name() == name);
     named.is_some_and(|(_, check)| check.is_uniform)

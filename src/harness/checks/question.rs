@@ -43,7 +43,6 @@ pub struct Pilot {
 
 impl Pilot {
     /// Of some draws.
-    #[must_use]
     pub fn of(values: &[f64]) -> Self {
         let n = values.len() as f64;
         let mean = values.iter().sum::<f64>() / n;
@@ -69,14 +68,12 @@ pub struct Question {
 
 impl Question {
     /// A question about the experiment as a whole, without the name of its check.
-    #[must_use]
     pub fn whole(what: &str, kind: Kind) -> Self {
         let (check, what) = (String::new(), what.to_owned());
         Self { check, channel: None, what, kind, expects_bias: false }
     }
 
     /// The same about one channel.
-    #[must_use]
     pub fn channel(channel: usize, what: &str, kind: Kind) -> Self {
         Self { channel: Some(channel), ..Self::whole(what, kind) }
     }
@@ -138,7 +135,6 @@ pub struct Wanted {
 
 impl Scalar {
     /// Plans a question: ε from the case, or from the planned draws.
-    #[must_use]
     pub fn new(subject: &Subject, known: Known, wanted: Wanted, observe: Observe) -> Self {
         let variance = known.variance * (1.0 + known.error);
         let draws = subject.draws as f64;
@@ -191,7 +187,6 @@ pub struct Inspected<'a> {
 
 impl Inspected<'_> {
     /// The first `count` values of the first block's draws, last channel.
-    #[must_use]
     pub fn first_draws(&self, count: u64) -> Vec<f64> {
         let mut streams = (self.streams)(0);
         let mut buffer = DrawBuffer::new(self.channels);
@@ -213,13 +208,11 @@ pub struct Always {
 }
 
 /// Rounding of a product of `lookups` factors, relative to the result.
-#[must_use]
 pub fn rounding(lookups: f64) -> f64 {
     16.0 * f64::EPSILON * (1.0 + lookups)
 }
 
 /// The same for an experiment: by its expected lookups.
-#[must_use]
 pub fn rounding_of(subject: &Subject) -> f64 {
     rounding(subject.prediction.lookups.as_ref().map_or(0.0, |lookups| lookups.mean))
 }

@@ -73,7 +73,6 @@ impl std::fmt::Display for Column {
 
 impl Format {
     /// The format that a file's ending stands for; `None` where it stands for none.
-    #[must_use]
     pub fn of_path(path: &Path) -> Option<Self> {
         let ending = path.extension()?.to_str()?.to_ascii_lowercase();
         match ending.as_str() {
@@ -153,7 +152,6 @@ impl Draws {
     }
 
     /// How many draws there are in all, where the file says so.
-    #[must_use]
     pub fn known_length(&self) -> Option<u64> {
         match &self.source {
             Source::Csv(_) => None,
@@ -179,7 +177,6 @@ impl Draws {
     }
 
     /// The lookups of the draws that were read last; none where no column has them.
-    #[must_use]
     pub fn lookups(&self) -> &[f64] {
         &self.lookups
     }

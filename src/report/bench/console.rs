@@ -48,7 +48,6 @@ fn range(spread: Spread) -> String {
 }
 
 /// The table, `width` columns wide, with ANSI colours if asked for.
-#[must_use]
 pub fn table(bench: &Bench, pen: Pen) -> String {
     let mut text = String::new();
     for case in &bench.cases {

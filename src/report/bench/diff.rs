@@ -6,7 +6,6 @@ use crate::report::diff::{counts, ending, listed, not_empty};
 use crate::report::number::{fixed, short};
 
 /// What was compared, and how.
-#[must_use]
 pub fn remarks(comparison: &Comparison) -> Vec<String> {
     let Comparison { name, tolerance, compared, .. } = comparison;
     let tolerance = short(*tolerance, 3);
@@ -32,14 +31,12 @@ fn left_out(comparison: &Comparison) -> Vec<(&'static str, &[String])> {
 }
 
 /// Why nothing was compared, where that is so.
-#[must_use]
 pub fn nothing(comparison: &Comparison) -> Option<String> {
     let is_empty = comparison.is_empty();
     is_empty.then(|| format!("nothing was compared: {}", counts(&left_out(comparison))))
 }
 
 /// What changed, what became slower first: whether it did, and the numbers.
-#[must_use]
 pub fn all(comparison: &Comparison) -> Vec<(bool, String)> {
     let mut told: Vec<_> =
         comparison.changes.iter().map(|change| (change.is_regression, line(change))).collect();

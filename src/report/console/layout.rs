@@ -38,7 +38,6 @@ pub enum Paint {
 
 impl Pen {
     /// The text in a colour, if the screen shows colours.
-    #[must_use]
     pub fn paint(self, paint: Paint, text: &str) -> String {
         let code = match paint {
             Paint::Plain => return text.to_owned(),
@@ -91,13 +90,11 @@ pub struct Field {
 
 impl Field {
     /// A field without colour.
-    #[must_use]
     pub fn plain(text: String) -> Self {
         Self { text, paint: Paint::Plain }
     }
 
     /// A word in green or red.
-    #[must_use]
     pub fn judged(is_good: bool, [good, bad]: [&str; 2]) -> Self {
         let (text, paint) = if is_good { (good, Paint::Green) } else { (bad, Paint::Red) };
         Self { text: text.to_owned(), paint }
@@ -153,7 +150,6 @@ pub struct Grid {
 
 impl Grid {
     /// A table of rows.
-    #[must_use]
     pub fn of<T>(rows: &[T], specs: &[Spec<T>]) -> Self {
         let column =
             |&(head, right, rank, text): &Spec<T>| Column::of(rows, (head, right, rank), text);
@@ -161,7 +157,6 @@ impl Grid {
     }
 
     /// The width of its lines.
-    #[must_use]
     pub fn width(&self) -> usize {
         let gaps = GAP.len() * self.columns.len().saturating_sub(1);
         self.columns.iter().map(Column::width).sum::<usize>() + gaps
@@ -196,7 +191,6 @@ impl Grid {
     }
 
     /// The lines, with headings.
-    #[must_use]
     pub fn render(&self, pen: Pen) -> String {
         let rows = self.columns.iter().map(|column| column.fields.len()).max().unwrap_or(0);
         let widths: Vec<usize> = self.columns.iter().map(Column::width).collect();
@@ -225,7 +219,6 @@ impl Grid {
 }
 
 /// Columns that all stay, in as many tables as it takes, one below the other, each with the names.
-#[must_use]
 pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Grid> {
     rest.retain(|column| column.fields.iter().any(|field| !field.text.is_empty()));
     rest.iter_mut().for_each(Column::fill);
@@ -246,13 +239,11 @@ pub fn blocks(names: Vec<Column>, mut rest: Vec<Column>, width: usize) -> Vec<Gr
 }
 
 /// The columns of the screen that a text takes.
-#[must_use]
 pub fn width(text: &str) -> usize {
     text.width()
 }
 
 /// The text cut at its end to a width, with an ellipsis.
-#[must_use]
 pub fn end_elided(text: &str, room: usize) -> String {
     if width(text) <= room {
         return text.to_owned();
@@ -262,7 +253,6 @@ pub fn end_elided(text: &str, room: usize) -> String {
 }
 
 /// The text with its middle cut out, so that its beginning and its end stay readable.
-#[must_use]
 pub fn middle_elided(text: &str, room: usize) -> String {
     if width(text) <= room {
         return text.to_owned();
@@ -284,7 +274,6 @@ fn head(text: &str, room: usize) -> String {
 }
 
 /// The text in lines of at most this width, broken between words.
-#[must_use]
 pub fn wrapped(text: &str, room: usize) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

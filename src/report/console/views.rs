@@ -61,7 +61,6 @@ const PLAN: &[Spec] = &[
 ];
 
 /// The columns that name the rows of a case, empty ones and all.
-#[must_use]
 pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
     let column = |what, text: &dyn Fn(&Row) -> String| Column::of(&case.rows, what, text);
     let sampling = |row: &Row| match row.sampling {
@@ -82,7 +81,6 @@ pub fn names(case: &CaseRecord, labels: Labels) -> Vec<Column> {
 }
 
 /// The columns that say something of the rows, empty ones and all.
-#[must_use]
 pub fn columns(case: &CaseRecord, view: View) -> Vec<Column> {
     let mut specs = Vec::new();
     // What all rows share stands over the table.
@@ -129,7 +127,6 @@ pub fn shared<T: PartialEq>(case: &CaseRecord, value: fn(&Row) -> Option<T>) -> 
 }
 
 /// Where in their case these rows stand, in words: `σ̂ 0.4, 0.5; T(5)`.
-#[must_use]
 pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
     let mut swept: Vec<_> = rows.iter().filter_map(|row| Some(labels.text(row.swept?))).collect();
     let mut channels: Vec<_> = rows.iter().map(|row| row.channel.clone()).collect();
@@ -150,13 +147,11 @@ pub fn positions(case: &CaseRecord, rows: &[&Row], labels: Labels) -> String {
 }
 
 /// Whether a row is planned but neither drawn nor refused, for a reason.
-#[must_use]
 pub fn is_skipped(row: &Row, view: View) -> bool {
     view == View::Plan && row.verdict.is_none() && row.draws.is_none() && !row.reason.is_empty()
 }
 
 /// The word for what became of a row.
-#[must_use]
 pub fn status(row: &Row, view: View) -> Field {
     match row.verdict {
         Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
@@ -166,7 +161,6 @@ pub fn status(row: &Row, view: View) -> Field {
 }
 
 /// The colour of a verdict.
-#[must_use]
 pub fn paint(verdict: Verdict) -> Paint {
     match verdict {
         Verdict::Pass => Paint::Green,
@@ -186,7 +180,6 @@ fn digits(value: Option<f64>, digits: usize) -> String {
 }
 
 /// A z, in parentheses where it is not to be read as normal.
-#[must_use]
 pub fn score(row: &Row, name: &str, z: Option<f64>) -> String {
     let text = z.map(signed).unwrap_or_default();
     if row.not_normal.contains(&name) { format!("({text})") } else { text }

@@ -11,7 +11,6 @@ use crate::report::number::{count, fixed, short, signed};
 const INDENT: usize = 10;
 
 /// The block, `width` columns wide.
-#[must_use]
 pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     let mut text = String::new();
     let mut line = |word: &str, what: &str| {
@@ -46,7 +45,6 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
 }
 
 /// What several verdicts come to.
-#[must_use]
 pub fn together(judged: &[(String, Judgement)], worst: Verdict, alpha: f64) -> String {
     let of = |verdict: Verdict| {
         let count = judged.iter().filter(|(_, judgement)| judgement.verdict == verdict).count();

@@ -52,7 +52,6 @@ impl Axis {
 
     /// Where a value stands: 0 at the beginning, 1 at the end; `None` where the axis has no place
     /// for it at all, as a logarithmic one for zero.
-    #[must_use]
     pub fn place(&self, value: f64) -> Option<f64> {
         let [low, high, at] = [self.low, self.high, value].map(|v| self.scaled(v));
         let place = (at - low) / (high - low);
@@ -60,7 +59,6 @@ impl Axis {
     }
 
     /// The marks, about as many labels as `count`.
-    #[must_use]
     pub fn ticks(&self, count: usize) -> Vec<Tick> {
         let mut ticks = if self.log { self.log_ticks(count) } else { self.even_ticks(count) };
         ticks.retain(|tick| self.place(tick.at).is_some_and(|p| (-1e-9..=1.0 + 1e-9).contains(&p)));

@@ -34,7 +34,6 @@ impl Typeface {
     }
 
     /// The width of a text.
-    #[must_use]
     pub fn width(&self, text: &str, em: f64) -> f64 {
         let font = self.0.as_scaled(self.scale(em));
         text.chars().map(|c| f64::from(font.h_advance(font.glyph_id(c)))).sum()
@@ -66,7 +65,6 @@ impl Typeface {
 }
 
 /// The text cut to a width, with an ellipsis where something went.
-#[must_use]
 pub fn fit(face: &Typeface, text: &str, em: f64, width: f64) -> String {
     if face.width(text, em) <= width {
         return text.to_owned();

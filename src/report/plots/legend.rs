@@ -47,7 +47,6 @@ fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, usize, f64)
 }
 
 /// The height of a legend of this width.
-#[must_use]
 pub fn height(face: &Typeface, entries: &[Entry], width: f64) -> f64 {
     if entries.is_empty() { 0.0 } else { layout(face, entries, width).1 as f64 * LINE }
 }

@@ -30,25 +30,21 @@ pub struct Panel {
 
 impl Panel {
     /// Where a point stands on the sheet, inside the panel or not.
-    #[must_use]
     pub fn spot(&self, x: f64, y: f64) -> Option<Spot> {
         Some([self.across(x)?, self.down(y)?])
     }
 
     /// Where a value of the horizontal axis stands on the sheet.
-    #[must_use]
     pub fn across(&self, x: f64) -> Option<f64> {
         Some(self.left + (self.right - self.left) * self.x.place(x)?)
     }
 
     /// Where a value of the vertical axis stands on the sheet.
-    #[must_use]
     pub fn down(&self, y: f64) -> Option<f64> {
         Some(self.bottom - (self.bottom - self.top) * self.y.place(y)?)
     }
 
     /// Whether a spot lies in the panel.
-    #[must_use]
     pub fn holds(&self, [x, y]: Spot) -> bool {
         (self.left - 0.5..=self.right + 0.5).contains(&x)
             && (self.top - 0.5..=self.bottom + 0.5).contains(&y)

@@ -18,14 +18,12 @@ pub struct Series<'a> {
 
 impl Series<'_> {
     /// Whether it is drawn once, outside of the sweep.
-    #[must_use]
     pub fn is_fixed(&self) -> bool {
         self.curve.is_none() && self.rows.iter().all(|row| row.swept.is_none())
     }
 
     /// Theory's line, through the curve's points, or through the rows' own predictions where there
     /// is no curve.
-    #[must_use]
     pub fn theory(
         &self,
         of_point: fn(&CurvePoint) -> f64,
@@ -38,7 +36,6 @@ impl Series<'_> {
     }
 
     /// The entry of the legend.
-    #[must_use]
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
         let once = if self.is_fixed() { " (not swept)" } else { "" };
@@ -52,7 +49,6 @@ impl Series<'_> {
     }
 
     /// What the plots cannot show of it, in words.
-    #[must_use]
     pub fn note(&self) -> Option<String> {
         let count = |test: fn(&Row) -> bool| self.rows.iter().filter(|row| test(row)).count();
         let refused = count(|row| row.verdict == Some(Verdict::Refused));
@@ -75,7 +71,6 @@ impl Series<'_> {
 type Key<'a> = (&'a str, &'a str, usize);
 
 /// The series of a case, in the order of its rows; a curve without rows is a series, too.
-#[must_use]
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
     let mut groups: Vec<(Key, Vec<&Row>)> = Vec::new();
     for row in &case.rows {

@@ -93,7 +93,6 @@ pub struct Sheet {
 
 impl Sheet {
     /// An empty sheet.
-    #[must_use]
     pub fn new(width: f64, height: f64) -> Self {
         Self { width, height, shapes: Vec::new() }
     }

@@ -5,7 +5,6 @@ use plotters::style::RGBAColor;
 use crate::report::plots::sheet::{Sheet, Spot};
 
 /// A colour that covers what is behind it.
-#[must_use]
 pub const fn ink(red: u8, green: u8, blue: u8) -> RGBAColor {
     RGBAColor(red, green, blue, 1.0)
 }
@@ -47,7 +46,6 @@ pub struct Style {
 impl Style {
     /// The look of the series with this number. The periods 7, 5 and 12 have no common factor, so
     /// that 420 series are distinct.
-    #[must_use]
     pub fn of(index: usize) -> Self {
         let marker = Marker::ALL[index % Marker::ALL.len()];
         Self { colour: COLOURS[index % COLOURS.len()], dash: DASHES[index % DASHES.len()], marker }

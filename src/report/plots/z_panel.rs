@@ -56,7 +56,6 @@ pub fn draw(
 }
 
 /// What the band and the dashes mean, in words.
-#[must_use]
 pub fn note(sweep: &Sweep) -> String {
     let band = format!("(d): 95 % of the scores of a correct estimator lie in the band, ±{USUAL}");
     let limit =
@@ -65,7 +64,6 @@ pub fn note(sweep: &Sweep) -> String {
 }
 
 /// What hollow points mean, where there are any.
-#[must_use]
 pub fn legend_of_hollow(series: &[Series]) -> Option<String> {
     let any = series.iter().flat_map(|one| &one.rows).any(|row| !row.not_normal.is_empty());
     any.then(|| "(d): the law of hollow scores is not near normal".to_owned())

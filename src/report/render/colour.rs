@@ -18,7 +18,6 @@ const DIVERGING: [[f64; 3]; 9] = [
 const STEPS: f64 = 24.0;
 
 /// A radiance in grey, for screens with the sRGB curve: 1 is white, and nothing is darker than black.
-#[must_use]
 pub fn grey(radiance: f64) -> [u8; 3] {
     let x = radiance.clamp(0.0, 1.0);
     let shown = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
@@ -26,7 +25,6 @@ pub fn grey(radiance: f64) -> [u8; 3] {
 }
 
 /// A difference from −1, blue, to 1, red.
-#[must_use]
 pub fn signed(difference: f64) -> [u8; 3] {
     let x = (difference.clamp(-1.0, 1.0) * STEPS).round() / STEPS;
     let place = (x + 1.0) * 0.5 * (DIVERGING.len() - 1) as f64;

@@ -54,7 +54,6 @@ fn given(exposure: &ExposureRecord) -> String {
 }
 
 /// Three digits, without an exponent where that is short.
-#[must_use]
 pub fn short(x: f64) -> String {
     let size = x.abs();
     if size == 0.0 {

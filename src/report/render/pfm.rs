@@ -7,7 +7,6 @@
 //! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
 
 /// The bytes of a grey image whose rows come from the top.
-#[must_use]
 pub fn encode([columns, rows]: [usize; 2], image: &[f64]) -> Vec<u8> {
     let mut bytes = format!("Pf\n{columns} {rows}\n-1.0\n").into_bytes();
     for row in image.chunks_exact(columns.max(1)).rev() {

@@ -18,7 +18,6 @@ use crate::stress::{Row, Stress};
 const FOLDER: &str = "stress";
 
 /// The tables for the screen.
-#[must_use]
 pub fn table(found: &Stress, pen: Pen) -> String {
     let mut text = String::new();
     let rows = &found.rows;

@@ -57,7 +57,6 @@ impl Along {
     pub const ALL: [Self; 3] = [Self::Steps, Self::Depth, Self::Origin];
 
     /// The word in tables.
-    #[must_use]
     pub fn word(self) -> &'static str {
         match self {
             Self::Steps => "steps",
@@ -67,7 +66,6 @@ impl Along {
     }
 
     /// The title of an axis.
-    #[must_use]
     pub fn title(self) -> &'static str {
         match self {
             Self::Steps => "collisions on the ray, ∫σ\u{302}",
@@ -198,13 +196,11 @@ pub struct Point {
 
 impl Point {
     /// Whether the bias is certainly larger than the noise.
-    #[must_use]
     pub fn exceeds(&self) -> bool {
         self.bias.abs() - 3.0 * self.error > self.noise
     }
 
     /// Whether the bias is certainly smaller than the noise; with neither, the walks were too few.
-    #[must_use]
     pub fn holds(&self) -> bool {
         self.error > 0.0 && self.bias.abs() + 3.0 * self.error <= self.noise
     }
@@ -226,13 +222,11 @@ pub struct Curve {
 impl Curve {
     /// The first value at which the bias exceeds the noise, there and up to the end of the curve or
     /// not; `None` where it nowhere does.
-    #[must_use]
     pub fn fails_from(&self) -> Option<f64> {
         self.points.iter().find(|point| point.exceeds()).map(|point| point.x)
     }
 
     /// The last value up to which the bias is certainly below the noise.
-    #[must_use]
     pub fn holds_to(&self) -> Option<f64> {
         self.points.iter().take_while(|point| point.holds()).last().map(|point| point.x)
     }
@@ -247,7 +241,6 @@ pub struct Narrow {
 
 impl Narrow {
     /// The comparison is sound where the doubles find the truth.
-    #[must_use]
     pub fn rows(&self) -> Vec<Row> {
         let estimators: usize = FAMILIES.iter().map(|family| family.entries.len()).sum();
         let range = format!("{estimators} estimators, all points of the plot");
@@ -267,7 +260,6 @@ impl Narrow {
 }
 
 /// Measures all curves.
-#[must_use]
 pub fn measure(effort: Effort, seed: u64) -> Narrow {
     let of = |values: &[&'static [f64]; 2]| effort.of(values[0], values[1]);
     let mut curves = Vec::new();
