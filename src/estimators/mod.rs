@@ -42,7 +42,7 @@ pub use trial::{DrawBuffer, Experiment, Kernel, Order};
 
 /// One realisation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Draw<V> {
+pub struct Draw<V = [f64; 1]> {
     /// The value, one number per channel.
     pub value: V,
     /// How many times σ_t was evaluated.
@@ -227,7 +227,7 @@ macro_rules! product_draws {
             setup: &$crate::estimators::Setup<Transmittance>,
             medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
-        ) -> $crate::estimators::Draw<[f64; 1]> {
+        ) -> $crate::estimators::Draw {
             $crate::estimators::walk::product(setup, &$rule, medium, rng)
         }
 
@@ -264,7 +264,7 @@ macro_rules! scored_draws {
             setup: &$crate::estimators::Setup<Transmittance>,
             medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
-        ) -> $crate::estimators::Draw<[f64; 1]> {
+        ) -> $crate::estimators::Draw {
             $crate::estimators::scoring::walk(setup, self, medium, rng)
         }
 

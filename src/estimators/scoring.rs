@@ -58,12 +58,7 @@ impl<L: Lane> Score<L> {
 
 /// Walks to the end of the support through a constant σ̂.
 #[inline(always)]
-pub fn walk<P, S: Share>(
-    setup: &Setup<P>,
-    share: &S,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+pub fn walk<P, S: Share>(setup: &Setup<P>, share: &S, medium: &Lookups, rng: &mut Stream) -> Draw {
     let end = setup.mesh.support().to;
     let mut cursor = setup.sampling.begin();
     let first = (end - cursor.t) * setup.sampling.value(cursor.t);

@@ -29,7 +29,7 @@ pub fn product<P, R: Collision>(
     rule: &R,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let mut cursor = setup.sampling.begin();
     let mut weight = setup.control_transmittance;
     let mut invariant = Invariant::open(weight);

@@ -29,6 +29,8 @@ pub struct Steps {
     pub diffuse: fn(&mut Stream) -> f64,
     /// The cosine of the scattering angle.
     pub deflection: fn(&Phase, &mut Stream) -> f64,
+    /// In space, the cosine with the normal of light from all sides.
+    pub first_cosine: fn(f64) -> f64,
     /// In space, the optical depth of a flight, and a number for later where one is wrongly kept.
     pub depth: fn(&mut Stream) -> (f64, Option<f64>),
     /// In space, a flight through an optical depth; σ̂ where it ends.
@@ -48,6 +50,7 @@ pub fn right(particle: Particle) -> Steps {
         descent: |length, cosine| length * cosine.abs(),
         diffuse: |rng| (1.0 - rng.uniform()).sqrt(),
         deflection: |phase, rng| phase.cosine(rng.uniform()),
+        first_cosine: |number| (1.0 - number).sqrt(),
         depth: |rng| (-rng.ln_uniform(), None),
         fly: Majorants::fly,
         turned: frame::turned,
@@ -129,6 +132,10 @@ impl slab::walk::Steps for Steps {
 impl space::Steps for Steps {
     fn odds_at(&self, ratio: f64, albedo: f64) -> Odds {
         self.odds_of(ratio, albedo)
+    }
+
+    fn first_cosine(&self, number: f64) -> f64 {
+        (self.first_cosine)(number)
     }
 
     fn splits(&self, depth: u32, total: u32) -> bool {

@@ -58,7 +58,7 @@ fn scored(
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let end = setup.mesh.support().to;
     let mut cursor = setup.sampling.begin();
     let (mut weight, mut lookups) = (1.0, 0);
@@ -75,11 +75,7 @@ fn scored(
 }
 
 /// `X = exp(−h Σⱼ σ_t((j + u) h))`.
-fn ray_marching(
-    setup: &Setup<Transmittance>,
-    medium: &Lookups,
-    rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+fn ray_marching(setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
     let support = setup.mesh.support();
     let step = support.length() / 3.0;
     let offset = unit(rng);
@@ -89,7 +85,7 @@ fn ray_marching(
 }
 
 /// `X = (X₁ + X₂)/2`, with the lookups of one.
-fn averaged(setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
+fn averaged(setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
     let one = draw_product(&RATIO, setup, medium, rng);
     let two = draw_product(&RATIO, setup, medium, rng);
     Draw { value: [0.5 * (one.value[0] + two.value[0])], ..one }

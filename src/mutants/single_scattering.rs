@@ -60,7 +60,7 @@ fn draw(
     setup: &Setup<SingleScattering>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let problem = &setup.problem;
     let mut beginning = *rng;
     let angles = problem.angles();

@@ -11,24 +11,33 @@
 use super::scattering::{Steps, albedo_twice, backward, number_twice, of, roulette};
 use super::target::{
     FURNACE_ANALOG, FURNACE_BELOW, FURNACE_NON_TERMINATING, FURNACE_ROULETTE, INFINITE_ANALOG,
-    INFINITE_WEIGHTED, LAMBERTIAN, LAMBERTIAN_CELLS,
+    INFINITE_WEIGHTED, LAMBERTIAN, LAMBERTIAN_CELLS, Target,
 };
 use super::{About, Mutant, with};
-use crate::estimators::lambertian::lambertian as law;
-use crate::estimators::{furnace, infinite_medium, lambertian};
+use crate::estimators::space::{By, Walked};
 use crate::geometry::{Point, frame};
 use crate::media::Majorants;
 use crate::media::majorants::Flight;
 use crate::problems::{Furnace, InfiniteMedium, Lambertian};
 use crate::theory::ParticleRule::{Analog, NonTerminating, Terminating, Weighted};
 
+/// A bug that the mean shows, on a target: its steps beside the right ones.
+fn mutant<P: Walked>(
+    name: &'static str,
+    bug: &'static str,
+    target: Target,
+    honest: Steps,
+    wrong: Steps,
+) -> Mutant<P> {
+    let walk = |steps: Steps| {
+        with(steps, |steps, setup, _, rng| P::draw(By::Steps(steps), &steps.particle, setup, rng))
+    };
+    Mutant::new(About { name, bug, target, check: "mean" }, walk(wrong), walk(honest))
+}
+
 /// In a furnace.
 #[rustfmt::skip] // one mutant, one entry
 pub fn in_furnace() -> Vec<Mutant<Furnace>> {
-    let walk = |steps: Steps| with(steps, |steps, setup, _, rng| furnace::draw_with(steps, setup, rng));
-    let mutant = |name, bug, target, honest: Steps, wrong: Steps| {
-        Mutant::new(About { name, bug, target, check: "mean" }, walk(wrong), walk(honest))
-    };
     let (non_terminating, analog, played) = (of(NonTerminating), of(Analog), roulette(NonTerminating, 0.8));
     vec![
         mutant("furnace-albedo-twice", "the albedo is a chance and a weight", FURNACE_NON_TERMINATING, non_terminating, Steps { odds: albedo_twice, ..non_terminating }),
@@ -41,10 +50,6 @@ pub fn in_furnace() -> Vec<Mutant<Furnace>> {
 /// In the infinite medium.
 #[rustfmt::skip] // one mutant, one entry
 pub fn in_infinite_medium() -> Vec<Mutant<InfiniteMedium>> {
-    let walk = |steps: Steps| with(steps, |steps, setup, _, rng| infinite_medium::draw_with(steps, setup, rng));
-    let mutant = |name, bug, target, honest: Steps, wrong: Steps| {
-        Mutant::new(About { name, bug, target, check: "mean" }, walk(wrong), walk(honest))
-    };
     let (analog, weighted) = (of(Analog), roulette(Weighted, 0.5));
     vec![
         mutant("infinite-cosine-sign", "the cosine of Henyey and Greenstein has the wrong sign: forward is backward", INFINITE_ANALOG, analog, Steps { deflection: backward, ..analog }),
@@ -57,18 +62,10 @@ pub fn in_infinite_medium() -> Vec<Mutant<InfiniteMedium>> {
 /// Under light from all sides.
 #[rustfmt::skip] // one mutant, one entry
 pub fn under_light() -> Vec<Mutant<Lambertian>> {
-    let walk = |steps: Steps, cosine: fn(f64) -> f64| {
-        with((steps, cosine), |(steps, cosine), setup, _, rng| {
-            lambertian::draw_with((steps, *cosine), &steps.particle, setup, rng)
-        })
-    };
-    let mutant = |name, bug, target, honest: Steps, wrong: Steps, cosine| {
-        Mutant::new(About { name, bug, target, check: "mean" }, walk(wrong, cosine), walk(honest, law))
-    };
     let (white, cells) = (of(NonTerminating), of(Analog));
     vec![
-        mutant("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, white, white, |u| 1.0 - u),
-        mutant("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, cells, Steps { fly: stale, ..cells }, law),
+        mutant("lambertian-even-light", "the cosine with the normal is even, without the law of Lambert", LAMBERTIAN, white, Steps { first_cosine: |u| 1.0 - u, ..white }),
+        mutant("lambertian-stale-majorant", "a flight goes on with the majorant of the cell it began in", LAMBERTIAN_CELLS, cells, Steps { fly: stale, ..cells }),
     ]
 }
 

@@ -43,7 +43,7 @@ fn decomposition(
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let support = setup.mesh.support();
     let control = setup.control.extinction(support.from);
     let (depth, _) = (-rng.ln_uniform(), rng.word());
@@ -73,7 +73,7 @@ fn local_majorant(
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let mut lookups = 0;
     let mut came_to = setup.mesh.support().from;
     for (ends, path) in setup.sampling.stretches() {

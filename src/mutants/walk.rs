@@ -25,7 +25,7 @@ pub fn draw_product<R: Collision>(
     setup: &Setup<Transmittance>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let mut cursor = setup.sampling.begin();
     let mut weight = setup.control_transmittance;
     let mut invariant = Invariant::open(weight);
@@ -67,7 +67,7 @@ fn draw_flight(
     setup: &Setup<FreeFlight>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let ray = setup.problem.medium().span();
     let mut cursor = setup.sampling.begin();
     let mut memory = Memory::new(setup.mesh.support(), 1.0, rng);

@@ -40,7 +40,7 @@ impl Estimator<FreeFlight> for Inversion {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<FreeFlight>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<FreeFlight>, _: &Lookups, rng: &mut Stream) -> Draw {
         let ray = setup.problem.medium().span();
         let end = setup.problem.inverse().free_flight(exponential(rng)).unwrap_or(ray.to);
         Draw::free([end - ray.from], 0)

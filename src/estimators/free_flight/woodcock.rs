@@ -47,12 +47,7 @@ impl Estimator<FreeFlight> for Woodcock {
     }
 
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<FreeFlight>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<FreeFlight>, medium: &Lookups, rng: &mut Stream) -> Draw {
         let ray = setup.problem.medium().span();
         let mut cursor = setup.sampling.begin();
         let mut lookups = 0;

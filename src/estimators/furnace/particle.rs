@@ -23,7 +23,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`; the bounds are derived in `theory/space.rs`.
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::Furnace;
-
-walker!(Furnace, Walker, Particle::read);
+pub use crate::estimators::space::Walker;

@@ -19,7 +19,4 @@
 //! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model); the bound on what is
 //! followed is that of any renderer that splits.
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::Furnace;
-
-walker!(Furnace, Splitter, Particle::read_splitting);
+pub use crate::estimators::space::Splitter;

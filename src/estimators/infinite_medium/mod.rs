@@ -7,7 +7,7 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 use crate::estimators::packet::Request;
 use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::{Collisions, Numbers, add_where, walks};
-use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
+use crate::estimators::space::{self, By, Collision, Particle, Sink, Start, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
 use crate::numeric::{Known, Lane};
@@ -54,85 +54,6 @@ fn ratio(setup: &Setup<InfiniteMedium>) -> Option<f64> {
     Some(setup.problem.extinction / setup.space.as_deref()?.single_value()?)
 }
 
-/// Whether a rule exists here, its walks end, and no weight grows.
-pub(super) fn domain(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Result<(), Refusal> {
-    use ParticleRule::{Analog, Terminating};
-    let albedo = setup.problem.albedo();
-    if albedo >= 1.0 {
-        return Err(Refusal::mismatch("an albedo below 1", "nothing is ever absorbed"));
-    }
-    let Some(ratio) = ratio(setup) else {
-        return Err(Refusal::mismatch("a constant σ̂", "none is given"));
-    };
-    if 1.0 / ((1.0 - albedo) * ratio) > MOST_COLLISIONS {
-        let needs = "at most 1e5 tentative collisions a walk";
-        return Err(Refusal::mismatch(needs, format!("a = {albedo} and r = {ratio}")));
-    }
-    let limit = particle.rule.limits(albedo)[1];
-    if ratio > limit * (1.0 + 1e-12) {
-        let found = format!("σ_t is {ratio:.6} times σ̂");
-        return Err(Refusal::mismatch(particle.rule.needs(), found));
-    }
-    let ends = matches!(particle.rule, Terminating | Analog);
-    if !ends && particle.roulette.is_none() {
-        let needs = "walks that end: `terminating`, `analog`, or `roulette`";
-        return Err(Refusal::mismatch(needs, format!("`{}` never does", particle.rule.name())));
-    }
-    if ends && end(setup, particle).is_some_and(|end| end * MOST_COLLISIONS < 1.0) {
-        return Err(Refusal::mismatch("r < 2/(a + 1)", "the walk hardly ever ends"));
-    }
-    let grows = ratio > 1.0 && particle.rule != Terminating;
-    if grows {
-        let needs = "σ̂ ≥ σ_t, where weights do not grow";
-        return Err(Refusal::mismatch(needs, format!("σ_t is {ratio:.6} times σ̂")));
-    }
-    Ok(())
-}
-
-/// What theory says, channel by channel.
-pub(super) fn predict(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Prediction {
-    let problem = &setup.problem;
-    let (sigma, albedo) = (problem.extinction, problem.albedo());
-    let unknown = |name: String, truth: Known| {
-        let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
-        Channel { name, moments: None, by_pilots: true, ..certain }
-    };
-    let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
-    let mut channels: Vec<Channel> = problem
-        .radii
-        .iter()
-        .map(|&radius| {
-            let truth = infinite::collisions_within(albedo, sigma * radius);
-            unknown(format!("collisions within {radius}"), truth)
-        })
-        .collect();
-    let cosine = problem.scene.phase.moment(1);
-    let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
-    channels.push(unknown("squared distance".to_owned(), rounded(square)));
-    let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
-    // Where every collision is real and nothing is scattered, there is one of them.
-    let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
-    let end = if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
-    let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
-    // A real collision counts r: then all walks of equal length count the same.
-    channels.push(match end.filter(|_| is_majorant) {
-        Some(end) => {
-            let truth = collisions.truth;
-            Channel { moments: Some(geometric(truth.value, end)), by_pilots: false, ..collisions }
-        }
-        None => collisions,
-    });
-    let prediction = Prediction::single(channels[0].clone(), CountLaw::always(0.0));
-    let lookups = end.map(|end| {
-        let moments = geometric(1.0 / end, end);
-        let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
-        let pmf = Vec::new();
-        CountLaw { mean: 1.0 / end, variance, error: 1e-14, kurtosis, poisson: false, pmf }
-    });
-    let lookups = lookups.map(|law| if law.variance > 0.0 { law } else { CountLaw::always(1.0) });
-    Prediction { channels, lookups, ..prediction }
-}
-
 /// Moments of a multiple of the number of collisions up to one that ends the walk, with chance p each:
 /// mean 1/p, variance (1 − p)/p², skewness (2 − p)/√(1 − p), kurtosis 9 + p²/(1 − p).
 fn geometric(mean: f64, end: f64) -> Moments {
@@ -141,17 +62,116 @@ fn geometric(mean: f64, end: f64) -> Moments {
     Moments { scale: mean, relative, error: 1e-14 }
 }
 
-/// Makes a draw by the honest walk.
-pub(super) fn draw(
-    particle: &Particle,
-    setup: &Setup<InfiniteMedium>,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let (mut wander, start) = begin(setup, rng);
-    let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
-    let scene = &setup.problem.scene;
-    let lookups = space::walk(particle, scene, majorants, start, &mut wander, rng);
-    Draw::free(wander.values, lookups)
+impl Walked for InfiniteMedium {
+    /// Walks must end, and no weight may grow.
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        use ParticleRule::{Analog, Terminating};
+        let albedo = setup.problem.albedo();
+        if albedo >= 1.0 {
+            return Err(Refusal::mismatch("an albedo below 1", "nothing is ever absorbed"));
+        }
+        let Some(ratio) = ratio(setup) else {
+            return Err(Refusal::mismatch("a constant σ̂", "none is given"));
+        };
+        if 1.0 / ((1.0 - albedo) * ratio) > MOST_COLLISIONS {
+            let needs = "at most 1e5 tentative collisions a walk";
+            return Err(Refusal::mismatch(needs, format!("a = {albedo} and r = {ratio}")));
+        }
+        let limit = particle.rule.limits(albedo)[1];
+        if ratio > limit * (1.0 + 1e-12) {
+            let found = format!("σ_t is {ratio:.6} times σ̂");
+            return Err(Refusal::mismatch(particle.rule.needs(), found));
+        }
+        let ends = matches!(particle.rule, Terminating | Analog);
+        if !ends && particle.roulette.is_none() {
+            let needs = "walks that end: `terminating`, `analog`, or `roulette`";
+            return Err(Refusal::mismatch(needs, format!("`{}` never does", particle.rule.name())));
+        }
+        if ends && end(setup, particle).is_some_and(|end| end * MOST_COLLISIONS < 1.0) {
+            return Err(Refusal::mismatch("r < 2/(a + 1)", "the walk hardly ever ends"));
+        }
+        let grows = ratio > 1.0 && particle.rule != Terminating;
+        if grows {
+            let needs = "σ̂ ≥ σ_t, where weights do not grow";
+            return Err(Refusal::mismatch(needs, format!("σ_t is {ratio:.6} times σ̂")));
+        }
+        Ok(())
+    }
+
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let problem = &setup.problem;
+        let (sigma, albedo) = (problem.extinction, problem.albedo());
+        let unknown = |name: String, truth: Known| {
+            let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
+            Channel { name, moments: None, by_pilots: true, ..certain }
+        };
+        let rounded = |value: f64| Known::new(value, infinite::ROUNDING * value.abs());
+        let mut channels: Vec<Channel> = problem
+            .radii
+            .iter()
+            .map(|&radius| {
+                let truth = infinite::collisions_within(albedo, sigma * radius);
+                unknown(format!("collisions within {radius}"), truth)
+            })
+            .collect();
+        let cosine = problem.scene.phase.moment(1);
+        let square = infinite::square_at_absorption(albedo, cosine) / (sigma * sigma);
+        channels.push(unknown("squared distance".to_owned(), rounded(square)));
+        let collisions = unknown("collisions".to_owned(), rounded(1.0 / (1.0 - albedo)));
+        // Where every collision is real and nothing is scattered, there is one of them.
+        let is_certain = albedo == 0.0 && ratio(setup) == Some(1.0);
+        let end =
+            if is_certain { Some(1.0) } else { end(setup, particle).filter(|&end| end > 0.0) };
+        let is_majorant = ratio(setup).is_some_and(|ratio| ratio <= 1.0);
+        // A real collision counts r: then all walks of equal length count the same.
+        channels.push(match end.filter(|_| is_majorant) {
+            Some(end) => {
+                let truth = collisions.truth;
+                Channel {
+                    moments: Some(geometric(truth.value, end)),
+                    by_pilots: false,
+                    ..collisions
+                }
+            }
+            None => collisions,
+        });
+        let prediction = Prediction::single(channels[0].clone(), CountLaw::always(0.0));
+        let lookups = end.map(|end| {
+            let moments = geometric(1.0 / end, end);
+            let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
+            let pmf = Vec::new();
+            CountLaw { mean: 1.0 / end, variance, error: 1e-14, kurtosis, poisson: false, pmf }
+        });
+        let lookups =
+            lookups.map(|law| if law.variance > 0.0 { law } else { CountLaw::always(1.0) });
+        Prediction { channels, lookups, ..prediction }
+    }
+
+    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
+        let radii = &setup.problem.radii;
+        let values = Values { at: [0.0; MOST], count: radii.len() + 2 };
+        let cosine = 2.0 * rng.uniform() - 1.0;
+        let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
+        let start = Start { place: Point([0.0; 3]), direction, weight: 1.0 };
+        let mut wander = Wander { radii, values };
+        let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
+        let scene = &setup.problem.scene;
+        let lookups = space::walk(by, scene, majorants, start, &mut wander, rng);
+        Draw::free(wander.values, lookups)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+        let problem = &*setup.problem;
+        let channels = (0..problem.radii.len() + 2).collect();
+        let spreading = Spreading { problem, channels };
+        walks(level, &spreading, particle, (&problem.scene, majorants), request)
+    }
 }
 
 /// Collisions within each radius, then the squared distance and the collisions.
@@ -191,42 +211,6 @@ impl Tally<SUMS> for Spreading<'_> {
     fn channels(&self) -> &[usize] {
         &self.channels
     }
-}
-
-/// Makes draws by packets.
-pub(super) fn draw_packets<'a>(
-    level: Level,
-    particle: &Particle,
-    setup: &Setup<InfiniteMedium>,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
-    let problem = &*setup.problem;
-    let channels = (0..problem.radii.len() + 2).collect();
-    let spreading = Spreading { problem, channels };
-    walks(level, &spreading, particle, (&problem.scene, majorants), request)
-}
-
-/// Makes a draw by any steps.
-pub fn draw_with(
-    steps: &dyn Steps,
-    setup: &Setup<InfiniteMedium>,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let (mut wander, start) = begin(setup, rng);
-    let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
-    let scene = &setup.problem.scene;
-    let lookups = space::walk_by(steps, scene, majorants, start, &mut wander, rng);
-    Draw::free(wander.values, lookups)
-}
-
-#[inline(always)]
-fn begin<'a>(setup: &'a Setup<InfiniteMedium>, rng: &mut Stream) -> (Wander<'a>, Start) {
-    let radii = &setup.problem.radii;
-    let values = Values { at: [0.0; MOST], count: radii.len() + 2 };
-    let cosine = 2.0 * rng.uniform() - 1.0;
-    let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
-    (Wander { radii, values }, Start { place: Point([0.0; 3]), direction, weight: 1.0 })
 }
 
 estimators! {

@@ -15,7 +15,4 @@
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 4.1, `SimulateParticle`.
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::InfiniteMedium;
-
-walker!(InfiniteMedium, Walker, Particle::read);
+pub use crate::estimators::space::Walker;

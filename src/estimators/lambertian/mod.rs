@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 use crate::estimators::packet::Request;
 use crate::estimators::space::exit::Points;
 use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, Collision, Particle, Sink, Start, Steps, Tally};
+use crate::estimators::space::{self, By, Collision, Particle, Sink, Start, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
 use crate::numeric::{Known, Lane};
@@ -24,13 +24,13 @@ const BLURRED: f64 = 1e-3;
 
 /// Which channels an experiment has, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Seen {
+struct Channels {
     energy: bool,
     white: bool,
     tentative: bool,
 }
 
-impl Seen {
+impl Channels {
     fn of(setup: &Setup<Lambertian>, particle: &Particle) -> Self {
         let Some(majorants) = setup.space.as_deref() else {
             return Self { energy: false, white: false, tentative: false };
@@ -79,18 +79,18 @@ impl Sink for Stay {
 }
 
 impl Stay {
-    fn values(&self, seen: Seen) -> Values {
+    fn values(&self, has: Channels) -> Values {
         let mut values = Values { at: [0.0; MOST], count: 0 };
-        let mut push = |is_seen: bool, value: f64| {
-            if is_seen {
+        let mut push = |is_there: bool, value: f64| {
+            if is_there {
                 values.at[values.count] = value;
                 values.count += 1;
             }
         };
-        push(seen.energy, self.energy);
-        push(seen.white, self.length);
-        push(seen.white, self.collisions);
-        push(seen.tentative, f64::from(self.tentative));
+        push(has.energy, self.energy);
+        push(has.white, self.length);
+        push(has.white, self.collisions);
+        push(has.tentative, f64::from(self.tentative));
         values
     }
 }
@@ -101,78 +101,95 @@ fn held(setup: &Setup<Lambertian>) -> Option<Known> {
     held.filter(|known| known.error <= BLURRED * known.value && known.value > 0.0)
 }
 
-/// Whether a rule exists here, and anything is known of it.
-pub(super) fn domain(setup: &Setup<Lambertian>, particle: &Particle) -> Result<(), Refusal> {
-    let scene = &setup.problem.scene;
-    space::realisable(setup, scene, particle)?;
-    let seen = Seen::of(setup, particle);
-    if seen.white && held(setup).is_none() {
-        let needs = "a volume whose ∫σ_t dV is known to 1e-3";
-        return Err(Refusal::mismatch(
-            needs,
-            "cubature over its chords does not settle, or it is empty",
-        ));
-    }
-    if seen.any() {
-        return Ok(());
-    }
-    space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
-}
-
-/// What theory says, channel by channel.
-pub(super) fn predict(setup: &Setup<Lambertian>, particle: &Particle) -> Prediction {
-    let (problem, seen) = (&setup.problem, Seen::of(setup, particle));
-    let mut channels = Vec::new();
-    if let Some(majorants) = setup.space.as_deref() {
-        let walks = space::walks(&problem.scene, majorants, particle);
-        let bound = walks.energy_variance().filter(|_| seen.energy);
-        let named = |bound| Channel {
-            name: "energy".to_owned(),
-            ..space::energy_channel(bound, walks.depth)
-        };
-        channels.extend(bound.map(named));
-        let over = problem.four_over_surface();
-        let times = |known: Known| {
-            Known::new(
-                over * known.value,
-                over * known.error + 4.0 * f64::EPSILON * over * known.value,
-            )
-        };
-        if seen.white {
-            let unknown = Known::new(f64::NAN, f64::NAN);
-            channels.push(piloted("path length", times(Known::exact(problem.bounds().content()))));
-            channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
-        }
-        if let Some(content) = majorants.content().filter(|_| seen.tentative) {
-            channels.push(piloted("tentative collisions", times(Known::exact(content))));
-        }
-    }
-    let empty = space::energy_channel(f64::INFINITY, 0.0);
-    let prediction = Prediction::single(empty.clone(), CountLaw::always(0.0));
-    if channels.is_empty() {
-        // Refused, or forced without an answer to be wrong about.
-        channels.push(empty);
-    }
-    Prediction { channels, lookups: None, ..prediction }
-}
-
 /// A channel whose spread theory does not know, with light tails.
 fn piloted(name: &str, truth: Known) -> Channel {
     let certain = Channel::unbiased(truth, Moments::certain(truth.value), Tails::LIGHT);
     Channel { name: name.to_owned(), moments: None, by_pilots: true, ..certain }
 }
 
-/// Makes a draw by the honest walk.
-pub(super) fn draw(
-    particle: &Particle,
-    setup: &Setup<Lambertian>,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let Some(majorants) = setup.space.as_deref() else { return NOTHING };
-    let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, lambertian));
-    let scene = &setup.problem.scene;
-    let lookups = space::walk(particle, scene, majorants, start, &mut stay, rng);
-    Draw::free(stay.values(Seen::of(setup, particle)), lookups)
+/// Without σ̂ there is nothing to draw; such an experiment is refused.
+const NOTHING: Draw<Values> =
+    Draw { value: Values { at: [0.0; MOST], count: 1 }, lookups: 0, defect: 0.0 };
+
+impl Walked for Lambertian {
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        let scene = &setup.problem.scene;
+        space::realisable(setup, scene, particle)?;
+        let has = Channels::of(setup, particle);
+        if has.white && held(setup).is_none() {
+            let needs = "a volume whose ∫σ_t dV is known to 1e-3";
+            return Err(Refusal::mismatch(
+                needs,
+                "cubature over its chords does not settle, or it is empty",
+            ));
+        }
+        if has.any() {
+            return Ok(());
+        }
+        space::energy(&space::walks(scene, space::majorants(setup)?, particle)).map(|_| ())
+    }
+
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let (problem, has) = (&setup.problem, Channels::of(setup, particle));
+        let mut channels = Vec::new();
+        if let Some(majorants) = setup.space.as_deref() {
+            let walks = space::walks(&problem.scene, majorants, particle);
+            let bound = walks.energy_variance().filter(|_| has.energy);
+            let named = |bound| Channel {
+                name: "energy".to_owned(),
+                ..space::energy_channel(bound, walks.depth)
+            };
+            channels.extend(bound.map(named));
+            let over = problem.four_over_surface();
+            let times = |known: Known| {
+                Known::new(
+                    over * known.value,
+                    over * known.error + 4.0 * f64::EPSILON * over * known.value,
+                )
+            };
+            if has.white {
+                let unknown = Known::new(f64::NAN, f64::NAN);
+                channels
+                    .push(piloted("path length", times(Known::exact(problem.bounds().content()))));
+                channels.push(piloted("collisions", times(held(setup).unwrap_or(unknown))));
+            }
+            if let Some(content) = majorants.content().filter(|_| has.tentative) {
+                channels.push(piloted("tentative collisions", times(Known::exact(content))));
+            }
+        }
+        let empty = space::energy_channel(f64::INFINITY, 0.0);
+        let prediction = Prediction::single(empty.clone(), CountLaw::always(0.0));
+        if channels.is_empty() {
+            // Refused, or forced without an answer to be wrong about.
+            channels.push(empty);
+        }
+        Prediction { channels, lookups: None, ..prediction }
+    }
+
+    fn draw(by: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
+        let Some(majorants) = setup.space.as_deref() else { return NOTHING };
+        let (u, v) = (rng.uniform(), rng.uniform());
+        let (place, inward) = setup.problem.on_boundary(u, v);
+        let cosine = by.steps().first_cosine(rng.uniform());
+        let direction = frame::turned(inward, cosine, rng.uniform());
+        let (mut stay, start) = (Stay::default(), Start { place, direction, weight: 1.0 });
+        let lookups = space::walk(by, &setup.problem.scene, majorants, start, &mut stay, rng);
+        Draw::free(stay.values(Channels::of(setup, particle)), lookups)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
+        let (problem, has) = (&*setup.problem, Channels::of(setup, particle));
+        let channels = [has.energy, has.white, has.white, has.tentative];
+        let channels = (0..).zip(channels).filter_map(|(sum, is_there)| is_there.then_some(sum));
+        let entering = Entering { problem, channels: channels.collect() };
+        walks(level, &entering, particle, (&problem.scene, majorants), request)
+    }
 }
 
 /// Where particles enter, and the sums over their collisions.
@@ -220,52 +237,6 @@ impl Tally<4> for Entering<'_> {
     fn channels(&self) -> &[usize] {
         &self.channels
     }
-}
-
-/// Makes draws by packets.
-pub(super) fn draw_packets<'a>(
-    level: Level,
-    particle: &Particle,
-    setup: &Setup<Lambertian>,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
-    let (problem, seen) = (&*setup.problem, Seen::of(setup, particle));
-    let channels = [seen.energy, seen.white, seen.white, seen.tentative];
-    let channels = (0..).zip(channels).filter_map(|(sum, is_seen)| is_seen.then_some(sum));
-    let entering = Entering { problem, channels: channels.collect() };
-    walks(level, &entering, particle, (&problem.scene, majorants), request)
-}
-
-/// Makes a draw of an honest particle's channels by any steps and law of the angle with the normal.
-pub fn draw_with(
-    (steps, cosine): (&dyn Steps, fn(f64) -> f64),
-    particle: &Particle,
-    setup: &Setup<Lambertian>,
-    rng: &mut Stream,
-) -> Draw<Values> {
-    let Some(majorants) = setup.space.as_deref() else { return NOTHING };
-    let (mut stay, start) = (Stay::default(), start(&setup.problem, rng, cosine));
-    let lookups = space::walk_by(steps, &setup.problem.scene, majorants, start, &mut stay, rng);
-    Draw::free(stay.values(Seen::of(setup, particle)), lookups)
-}
-
-/// Without σ̂ there is nothing to draw; such an experiment is refused.
-const NOTHING: Draw<Values> =
-    Draw { value: Values { at: [0.0; MOST], count: 1 }, lookups: 0, defect: 0.0 };
-
-/// The cosine with the normal of Lambertian light, `√u` of a uniform number.
-#[inline(always)]
-pub fn lambertian(u: f64) -> f64 {
-    (1.0 - u).sqrt()
-}
-
-#[inline(always)]
-fn start(problem: &Lambertian, rng: &mut Stream, cosine: fn(f64) -> f64) -> Start {
-    let (u, v) = (rng.uniform(), rng.uniform());
-    let (place, inward) = problem.on_boundary(u, v);
-    let cosine = cosine(rng.uniform());
-    Start { place, direction: frame::turned(inward, cosine, rng.uniform()), weight: 1.0 }
 }
 
 estimators! {

@@ -19,7 +19,4 @@
 //! Zoia, *Cauchy's formulas for random walks in bounded domains*, Journal of Mathematical Physics 55
 //! (2014).
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::Lambertian;
-
-walker!(Lambertian, Walker, Particle::read);
+pub use crate::estimators::space::Walker;

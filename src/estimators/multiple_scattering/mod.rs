@@ -8,7 +8,7 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 use crate::estimators::packet::Request;
 use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, Particle, Sink, Start, Tally};
+use crate::estimators::space::{self, By, Particle, Sink, Start, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;
 use crate::numeric::Known;
@@ -28,44 +28,51 @@ impl Sink for Gathered<'_> {
     }
 }
 
-/// Whether a rule exists here. Its draws may be spread without bound all the same, see `furnace`.
-pub(super) fn domain(
-    setup: &Setup<MultipleScattering>,
-    particle: &Particle,
-) -> Result<(), Refusal> {
-    space::realisable(setup, &setup.problem.scene, particle)
-}
-
-/// Theory knows what is seen beside the volume, and nothing else.
-pub(super) fn predict(setup: &Setup<MultipleScattering>, _: &Particle) -> Prediction {
-    let problem = &setup.problem;
-    if problem.entry().is_some() {
-        let unknown = Known::new(0.0, f64::INFINITY);
-        let certain = Channel::unbiased(unknown, Moments::certain(0.0), Tails::LIGHT);
-        let channel = Channel { moments: None, ..certain };
-        let prediction = Prediction::single(channel, CountLaw::always(0.0));
-        return Prediction { lookups: None, ..prediction };
+impl Walked for MultipleScattering {
+    /// Its draws may be spread without bound all the same, see `furnace`.
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        space::realisable(setup, &setup.problem.scene, particle)
     }
-    let seen = problem.background();
-    let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);
-    Prediction::single(channel, CountLaw::always(0.0))
-}
 
-/// Makes a draw.
-pub(super) fn draw(
-    particle: &Particle,
-    setup: &Setup<MultipleScattering>,
-    rng: &mut Stream,
-) -> Draw<[f64; 1]> {
-    let problem = &*setup.problem;
-    let (Some([place, direction]), Some(majorants)) = (problem.entry(), setup.space.as_deref())
-    else {
-        return Draw::free([problem.background()], 0);
-    };
-    let start = Start { place, direction, weight: 1.0 };
-    let mut gathered = Gathered { sky: &problem.sky, radiance: 0.0 };
-    let lookups = space::walk(particle, &problem.scene, majorants, start, &mut gathered, rng);
-    Draw::free([gathered.radiance], lookups)
+    /// What is seen beside the volume, and nothing else.
+    fn predict(setup: &Setup<Self>, _: &Particle) -> Prediction {
+        let problem = &setup.problem;
+        if problem.entry().is_some() {
+            let unknown = Known::new(0.0, f64::INFINITY);
+            let certain = Channel::unbiased(unknown, Moments::certain(0.0), Tails::LIGHT);
+            let channel = Channel { moments: None, ..certain };
+            let prediction = Prediction::single(channel, CountLaw::always(0.0));
+            return Prediction { lookups: None, ..prediction };
+        }
+        let seen = problem.background();
+        let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);
+        Prediction::single(channel, CountLaw::always(0.0))
+    }
+
+    fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
+        let problem = &*setup.problem;
+        let (Some([place, direction]), Some(majorants)) = (problem.entry(), setup.space.as_deref())
+        else {
+            return Draw::free([problem.background()], 0);
+        };
+        let start = Start { place, direction, weight: 1.0 };
+        let mut gathered = Gathered { sky: &problem.sky, radiance: 0.0 };
+        let lookups = space::walk(by, &problem.scene, majorants, start, &mut gathered, rng);
+        Draw::free([gathered.radiance], lookups)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let problem = &*setup.problem;
+        let (Some(_), Some(majorants)) = (problem.entry(), setup.space.as_deref()) else {
+            return Some(request);
+        };
+        walks(level, problem, particle, (&problem.scene, majorants), request)
+    }
 }
 
 impl Tally<1> for MultipleScattering {
@@ -83,20 +90,6 @@ impl Tally<1> for MultipleScattering {
     fn channels(&self) -> &[usize] {
         &[0]
     }
-}
-
-/// Makes draws by packets.
-pub(super) fn draw_packets<'a>(
-    level: Level,
-    particle: &Particle,
-    setup: &Setup<MultipleScattering>,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    let problem = &*setup.problem;
-    let (Some(_), Some(majorants)) = (problem.entry(), setup.space.as_deref()) else {
-        return Some(request);
-    };
-    walks(level, problem, particle, (&problem.scene, majorants), request)
 }
 
 estimators! {

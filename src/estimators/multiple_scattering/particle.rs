@@ -17,7 +17,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::MultipleScattering;
-
-walker!(MultipleScattering, Walker, Particle::read);
+pub use crate::estimators::space::Walker;

@@ -15,7 +15,4 @@
 //!
 //! Source: L. Szirmay-Kalos et al. 2017, section 3 (the double particle model).
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::MultipleScattering;
-
-walker!(MultipleScattering, Splitter, Particle::read_splitting);
+pub use crate::estimators::space::Splitter;

@@ -8,6 +8,7 @@ pub mod packet;
 pub mod particle;
 pub mod shadow;
 pub mod walk;
+mod walker;
 
 use std::sync::Arc;
 
@@ -21,7 +22,8 @@ use crate::theory::{Channel, Moments, Tails};
 
 pub use packet::Tally;
 pub use particle::{Particle, Splitting};
-pub use walk::{Collision, Scattering, Sink, Start, Steps, walk, walk_by};
+pub use walk::{By, Collision, Scattering, Sink, Start, Steps, walk};
+pub use walker::{Splitter, Walked, Walker};
 
 /// Rounding of a sum over the collisions of a walk.
 const ROUNDING: f64 = 1e-12;
@@ -103,61 +105,3 @@ pub fn energy_channel(bound: f64, depth: f64) -> Channel {
     }
     Channel { moments: None, most_variance: Some(bound), ..certain }
 }
-
-/// The page of an estimator in space: all that differs is how it is read, as in
-/// `walker!(Furnace, Particle, Particle::read)`.
-macro_rules! walker {
-    ($Problem:ident, $Page:ident, $read:path) => {
-        /// A particle that walks; σ̂ in space is its input.
-        #[derive(Debug, Clone)]
-        pub struct $Page($crate::estimators::space::Particle);
-
-        impl $crate::estimators::Estimator<$Problem> for $Page {
-            const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
-            const IN_PACKETS: bool = true;
-
-            fn read(settings: &$crate::catalogue::Settings) -> Option<Self> {
-                $read(settings).map(Self)
-            }
-
-            fn label(&self, _: bool) -> String {
-                self.0.label()
-            }
-
-            fn domain(
-                &self,
-                setup: &$crate::estimators::Setup<$Problem>,
-            ) -> Result<(), $crate::estimators::Refusal> {
-                super::domain(setup, &self.0)
-            }
-
-            fn predict(
-                &self,
-                setup: &$crate::estimators::Setup<$Problem>,
-            ) -> $crate::theory::Prediction {
-                super::predict(setup, &self.0)
-            }
-
-            #[inline]
-            fn draw(
-                &self,
-                setup: &$crate::estimators::Setup<$Problem>,
-                _: &$crate::media::Lookups,
-                rng: &mut $crate::rng::Stream,
-            ) -> $crate::estimators::Draw<<$Problem as $crate::problems::Problem>::Value> {
-                super::draw(&self.0, setup, rng)
-            }
-
-            fn draw_packets<'a>(
-                &self,
-                level: fearless_simd::Level,
-                setup: &$crate::estimators::Setup<$Problem>,
-                _: &$crate::media::Lookups,
-                request: $crate::estimators::packet::Request<'a>,
-            ) -> Option<$crate::estimators::packet::Request<'a>> {
-                super::draw_packets(level, &self.0, setup, request)
-            }
-        }
-    };
-}
-pub(super) use walker;

@@ -94,6 +94,12 @@ pub trait Steps {
     /// The odds at a collision with the given ratio `σ_t/σ̂` and albedo.
     fn odds_at(&self, ratio: f64, albedo: f64) -> Odds;
 
+    /// The cosine with the normal of light from all sides, of a uniform number: the law of Lambert.
+    #[inline(always)]
+    fn first_cosine(&self, number: f64) -> f64 {
+        (1.0 - number).sqrt()
+    }
+
     /// Whether both that goes straight on and that is scattered are followed, after so many such splits
     /// on the way from the start, and in the walk as a whole.
     #[inline(always)]
@@ -146,10 +152,29 @@ pub trait Steps {
     }
 }
 
+/// Who makes the steps of a walk.
+#[derive(Clone, Copy)]
+pub enum By<'a> {
+    /// A particle, by its rule.
+    Rule(&'a Particle),
+    /// Any steps, looked up as they come.
+    Steps(&'a dyn Steps),
+}
+
+impl<'a> By<'a> {
+    /// The steps, whosever they are.
+    pub fn steps(self) -> &'a dyn Steps {
+        match self {
+            Self::Rule(particle) => particle,
+            Self::Steps(steps) => steps,
+        }
+    }
+}
+
 /// Walks from a start and answers how many lookups that took.
 #[inline(never)]
 pub fn walk(
-    particle: &Particle,
+    by: By,
     scene: &Scene,
     majorants: &Majorants,
     start: Start,
@@ -159,24 +184,10 @@ pub fn walk(
     let field = scene.volume.points();
     in_fused_code(
         #[inline(always)]
-        || Walk { steps: particle, scene, field, majorants, start, sink, rng }.follow(),
-    )
-}
-
-/// The same by any steps.
-#[inline(never)]
-pub fn walk_by(
-    steps: &dyn Steps,
-    scene: &Scene,
-    majorants: &Majorants,
-    start: Start,
-    sink: &mut dyn Sink,
-    rng: &mut Stream,
-) -> u32 {
-    let field = scene.volume.points();
-    in_fused_code(
-        #[inline(always)]
-        || Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
+        || match by {
+            By::Rule(steps) => Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
+            By::Steps(steps) => Walk { steps, scene, field, majorants, start, sink, rng }.follow(),
+        },
     )
 }
 

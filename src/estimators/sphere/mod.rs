@@ -9,7 +9,7 @@ use fearless_simd::Level;
 
 use crate::catalogue::rounded;
 use crate::estimators::packet::Request;
-use crate::estimators::space::{self, Particle, Start, Steps};
+use crate::estimators::space::{self, By, Particle, Start, Steps, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
 use crate::media::Majorants;
@@ -103,19 +103,6 @@ fn realisable(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal>
     Ok(())
 }
 
-/// Whether a walk finds the light by itself.
-///
-/// # Errors
-///
-/// The violated inequality, or that the light cannot be met.
-fn domain(setup: &Setup<Sphere>, particle: &Particle) -> Result<(), Refusal> {
-    if matches!(setup.problem.light, Light::Distant(_)) {
-        let needs = "a light that a walk can meet";
-        return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
-    }
-    realisable(setup, particle)
-}
-
 /// G, a bound on `E[T̂²]/T` of tracked shadow rays through σ_t up to a majorant and a length:
 /// `E[T̂²] = T exp ∫((σ_t − σ_c)²/σ̂ − σ_t)`.
 fn gain(majorant: f64, length: f64, shadow: Tracking) -> f64 {
@@ -171,23 +158,6 @@ fn prediction(value: Known, square: f64) -> Prediction {
     let channel = Channel::unbiased(value, Moments::certain(value.value), Tails::LIGHT);
     let channel = Channel { moments: None, most_variance: Some(most), ..channel };
     Prediction { lookups: None, ..Prediction::single(channel, CountLaw::always(0.0)) }
-}
-
-/// A walk that finds the light by itself: draws from 0 to 1, `E[X²] ≤ E[X]`; nothing but 0 and 1 where no
-/// weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
-fn predict(setup: &Setup<Sphere>, particle: &Particle) -> Prediction {
-    let sphere = &setup.problem;
-    if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
-        let prediction = Prediction::single(space::energy_channel(0.0, 0.0), CountLaw::always(0.0));
-        return Prediction { lookups: None, ..prediction };
-    }
-    let value = truth(sphere).unwrap_or(UNKNOWN).value;
-    let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);
-    if is_chance && particle.roulette.is_none() {
-        all_or_nothing(value)
-    } else {
-        prediction(value, value.value)
-    }
 }
 
 /// A draw is 1 with the chance that is sought, else 0.
@@ -256,7 +226,7 @@ pub fn draw_by(
     connect: Option<(&dyn Connect, Tracking)>,
     setup: &Setup<Sphere>,
     rng: &mut Stream,
-) -> Draw<[f64; 1]> {
+) -> Draw {
     let sphere = &*setup.problem;
     let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
     let mut seeker = Seeker::new(sphere, connect);
@@ -270,22 +240,51 @@ pub fn draw_by(
     };
     let steps = Stopped { particle, core: core(sphere) };
     let start = Start { place, direction, weight: 1.0 };
-    lookups += space::walk_by(&steps, &sphere.scene, majorants, start, &mut seeker, rng);
+    lookups += space::walk(By::Steps(&steps), &sphere.scene, majorants, start, &mut seeker, rng);
     Draw::free([seeker.found()], lookups)
 }
 
-fn draw(particle: &Particle, setup: &Setup<Sphere>, rng: &mut Stream) -> Draw<[f64; 1]> {
-    draw_by(particle, None, setup, rng)
-}
+impl Walked for Sphere {
+    /// A walk must be able to find the light by itself.
+    fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
+        if matches!(setup.problem.light, Light::Distant(_)) {
+            let needs = "a light that a walk can meet";
+            return Err(Refusal::mismatch(needs, "a distant light is met with chance 0"));
+        }
+        realisable(setup, particle)
+    }
 
-/// Makes draws by packets.
-fn draw_packets<'a>(
-    level: Level,
-    particle: &Particle,
-    setup: &Setup<Sphere>,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    packet::draw_by_packets(level, particle, None, setup, request)
+    /// A walk that finds the light by itself: draws from 0 to 1, `E[X²] ≤ E[X]`; nothing but 0 and 1 where
+    /// no weight is left to it. Where nothing is absorbed and light is everywhere, every draw is 1.
+    fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
+        let sphere = &setup.problem;
+        if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
+            let prediction =
+                Prediction::single(space::energy_channel(0.0, 0.0), CountLaw::always(0.0));
+            return Prediction { lookups: None, ..prediction };
+        }
+        let value = truth(sphere).unwrap_or(UNKNOWN).value;
+        let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);
+        if is_chance && particle.roulette.is_none() {
+            all_or_nothing(value)
+        } else {
+            prediction(value, value.value)
+        }
+    }
+
+    /// By the particle, whose walks a black sphere may stop.
+    fn draw(_: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {
+        draw_by(particle, None, setup, rng)
+    }
+
+    fn draw_packets<'a>(
+        level: Level,
+        particle: &Particle,
+        setup: &Setup<Self>,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::draw_by_packets(level, particle, None, setup, request)
+    }
 }
 
 estimators! {

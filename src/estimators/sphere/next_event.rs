@@ -67,7 +67,7 @@ impl Estimator<Sphere> for NextEvent {
     }
 
     #[inline]
-    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Sphere>, _: &Lookups, rng: &mut Stream) -> Draw {
         super::draw_by(&self.particle, Some((&Honest, self.shadow)), setup, rng)
     }
 

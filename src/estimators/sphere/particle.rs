@@ -19,7 +19,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
-use crate::estimators::space::{Particle, walker};
-use crate::problems::Sphere;
-
-walker!(Sphere, Walker, Particle::read);
+pub use crate::estimators::space::Walker;

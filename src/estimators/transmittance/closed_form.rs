@@ -53,7 +53,7 @@ impl Estimator<Transmittance> for ClosedForm {
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<Transmittance>, _: &Lookups, _: &mut Stream) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, _: &Lookups, _: &mut Stream) -> Draw {
         Draw::free([setup.transmittance], 0)
     }
 }

@@ -74,12 +74,7 @@ impl Estimator<Transmittance> for Decomposition {
     }
 
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
         let support = setup.mesh.support();
         let control = setup.control.extinction(support.from);
         // A control of 0 stops no flight: it is infinite, or no number for a depth of 0. It takes

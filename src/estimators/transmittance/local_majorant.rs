@@ -57,12 +57,7 @@ impl Estimator<Transmittance> for LocalMajorant {
     }
 
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
         let mut lookups = 0;
         // A segment without extinction is left out: there is nothing to collide with.
         for (ends, path) in setup.sampling.stretches() {

@@ -117,12 +117,7 @@ impl Estimator<Transmittance> for RayMarching {
     }
 
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
         let u = if self.jitter { rng.uniform() } else { 0.5 };
         Draw::free([self.value(setup, medium, u)], self.steps)
     }

@@ -51,12 +51,7 @@ impl Estimator<Transmittance> for Regular {
     }
 
     #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<Transmittance>,
-        medium: &Lookups,
-        _: &mut Stream,
-    ) -> Draw<[f64; 1]> {
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, _: &mut Stream) -> Draw {
         let mut weight = 1.0;
         let mut left = setup.log_unit;
         let mut lookups = 0;
