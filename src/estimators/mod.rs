@@ -252,34 +252,55 @@ macro_rules! product_draws {
 }
 use product_draws;
 
-/// The draws of a next-flight estimator, by all kernels: all that differs is the share that it scores, as
-/// in `scored_draws!()`, where the page is the [`scoring::Share`].
-macro_rules! scored_draws {
-    () => {
-        const IN_PACKETS: bool = true;
+/// The page of a next-flight estimator: all that differs is the [`scoring::Share`] that it scores, and what
+/// that makes of the moments, as in `scored!(NextFlight)`.
+macro_rules! scored {
+    ($Page:ident) => {
+        impl $crate::estimators::Estimator<Transmittance> for $Page {
+            const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+            const IN_PACKETS: bool = true;
 
-        #[inline(always)]
-        fn draw(
-            &self,
-            setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &$crate::media::Lookups,
-            rng: &mut $crate::rng::Stream,
-        ) -> $crate::estimators::Draw {
-            $crate::estimators::scoring::walk(setup, self, medium, rng)
-        }
+            fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
+                Some(Self)
+            }
 
-        fn draw_packets<'a>(
-            &self,
-            level: fearless_simd::Level,
-            setup: &$crate::estimators::Setup<Transmittance>,
-            medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
-            $crate::estimators::packet::score(level, setup, self, medium, request)
+            fn domain(
+                &self,
+                setup: &Setup<Transmittance>,
+            ) -> Result<(), $crate::estimators::Refusal> {
+                setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
+                setup.require_constant_sampling()?;
+                setup.require_finite_weights(&$crate::estimators::rules::Weight)
+            }
+
+            fn predict(&self, setup: &Setup<Transmittance>) -> $crate::theory::Prediction {
+                let sampling = setup.sampling.single_value().unwrap_or(0.0);
+                $crate::theory::volterra::predict(&setup.mesh, sampling, self)
+            }
+
+            #[inline(always)]
+            fn draw(
+                &self,
+                setup: &Setup<Transmittance>,
+                medium: &$crate::media::Lookups,
+                rng: &mut $crate::rng::Stream,
+            ) -> $crate::estimators::Draw {
+                $crate::estimators::scoring::walk(setup, self, medium, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &Setup<Transmittance>,
+                medium: &$crate::media::Lookups,
+                request: $crate::estimators::packet::Request<'a>,
+            ) -> Option<$crate::estimators::packet::Request<'a>> {
+                $crate::estimators::packet::score(level, setup, self, medium, request)
+            }
         }
     };
 }
-use scored_draws;
+use scored;
 
 /// Lists recipes that prepare a sampling extinction or a control from its settings.
 macro_rules! recipes {

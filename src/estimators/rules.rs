@@ -38,6 +38,9 @@ pub trait Collision: Rule + Copy + 'static {
     /// Whether a survivor's weight changes.
     const WEIGHS: bool = true;
 
+    /// See [`Rule::kinks`].
+    fn jumps(&self) -> Vec<f64>;
+
     /// What happens at a collision with ratio r.
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L>;
 
@@ -61,12 +64,27 @@ pub trait Collision: Rule + Copy + 'static {
     }
 }
 
+impl<C: Collision> Rule for C {
+    #[inline(always)]
+    fn outcome(&self, ratio: f64) -> Outcome {
+        self.at(ratio)
+    }
+
+    fn kinks(&self) -> Vec<f64> {
+        self.jumps()
+    }
+}
+
 /// Always go on, with weight `1 − r`: the double particle model (Eq. 8), ratio tracking.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weight;
 
 impl Collision for Weight {
     const DECIDES: bool = false;
+
+    fn jumps(&self) -> Vec<f64> {
+        Vec::new()
+    }
 
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
@@ -86,17 +104,6 @@ impl Collision for Weight {
     }
 }
 
-impl Rule for Weight {
-    #[inline(always)]
-    fn outcome(&self, ratio: f64) -> Outcome {
-        self.at(ratio)
-    }
-
-    fn kinks(&self) -> Vec<f64> {
-        Vec::new()
-    }
-}
-
 /// Go on with probability `1 − r` and weight 1: Woodcock tracking, for `0 ≤ r ≤ 1`.
 ///
 /// Beyond that range (a forced, biased run) the chance is cut to `[0, 1]`, as a comparison with a
@@ -107,6 +114,10 @@ pub struct Null;
 impl Collision for Null {
     const DECIDES: bool = true;
     const WEIGHS: bool = false;
+
+    fn jumps(&self) -> Vec<f64> {
+        vec![0.0, 1.0]
+    }
 
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
@@ -129,17 +140,6 @@ impl Collision for Null {
     fn due<L: Lane>(&self, ratio: L, survival: L) -> L {
         let one = ratio.each(1.0);
         one + ((one - ratio) - survival)
-    }
-}
-
-impl Rule for Null {
-    #[inline(always)]
-    fn outcome(&self, ratio: f64) -> Outcome {
-        self.at(ratio)
-    }
-
-    fn kinks(&self) -> Vec<f64> {
-        vec![0.0, 1.0]
     }
 }
 
@@ -208,6 +208,14 @@ impl Single {
 impl Collision for Single {
     const DECIDES: bool = true;
 
+    fn jumps(&self) -> Vec<f64> {
+        match self {
+            Self::Terminating | Self::Clamped => vec![0.0, 1.0, 2.0],
+            Self::NonTerminating { .. } => vec![0.0, 1.0],
+            Self::Adaptive { albedo } => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
+        }
+    }
+
     #[inline(always)]
     fn at<L: Lane>(&self, ratio: L) -> Outcome<L> {
         let one = ratio.each(1.0);
@@ -223,21 +231,6 @@ impl Collision for Single {
                 let terminates = one.at_most(ratio) & sum.at_most(one);
                 select(terminates, Self::terminating(ratio), Self::non_terminating(ratio, albedo))
             }
-        }
-    }
-}
-
-impl Rule for Single {
-    #[inline(always)]
-    fn outcome(&self, ratio: f64) -> Outcome {
-        self.at(ratio)
-    }
-
-    fn kinks(&self) -> Vec<f64> {
-        match self {
-            Self::Terminating | Self::Clamped => vec![0.0, 1.0, 2.0],
-            Self::NonTerminating { .. } => vec![0.0, 1.0],
-            Self::Adaptive { albedo } => vec![0.0, 1.0, 2.0 / (1.0 + albedo)],
         }
     }
 }

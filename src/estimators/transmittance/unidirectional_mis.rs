@@ -15,14 +15,11 @@
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
-use crate::catalogue::Settings;
-use crate::estimators::rules::Weight;
 use crate::estimators::scoring::Share;
-use crate::estimators::{Estimator, Inputs, Refusal, Setup, scored_draws};
+use crate::estimators::{Setup, scored};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
-use crate::theory::Prediction;
-use crate::theory::volterra::{self, ORDERS, Source, binomial, power};
+use crate::theory::volterra::{ORDERS, Source, binomial, power};
 
 /// The unidirectional-MIS estimator; a constant σ̂ is its only input.
 #[derive(Debug, Clone)]
@@ -46,22 +43,4 @@ impl Share for UnidirectionalMis {
     }
 }
 
-impl Estimator<Transmittance> for UnidirectionalMis {
-    const INPUTS: Inputs = Inputs::SAMPLING;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
-
-    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
-        setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
-        setup.require_constant_sampling()?;
-        setup.require_finite_weights(&Weight)
-    }
-
-    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
-        volterra::predict(&setup.mesh, setup.sampling.single_value().unwrap_or(0.0), self)
-    }
-
-    scored_draws!();
-}
+scored!(UnidirectionalMis);
