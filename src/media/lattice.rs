@@ -79,10 +79,10 @@ fn corner_hashes<L: Lane>(index: [L; 3], seed: u32) -> [L::Words; 4] {
     let [a, b, c] = STRIDES;
     let (x, y) = (index[0].words().times(a), index[1].words().times(b));
     let z = index[2].words().times(c);
-    let z = z.plus(z.each([0, c])).xor(z.each([seed, seed]));
-    let (near, far) = (y.xor(z), y.plus(y.each([b, b])).xor(z));
+    let z = z.plus(z.each([0, c])) ^ z.each([seed, seed]);
+    let (near, far) = (y ^ z, y.plus(y.each([b, b])) ^ z);
     let beyond = x.plus(x.each([a, a]));
-    [mix(x.xor(near)), mix(beyond.xor(near)), mix(x.xor(far)), mix(beyond.xor(far))]
+    [mix(x ^ near), mix(beyond ^ near), mix(x ^ far), mix(beyond ^ far)]
 }
 
 /// `g·d` at the lower (0) or upper (1) end of an edge: of the twelve sums `±x ± y`, `±x ± z` and

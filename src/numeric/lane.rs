@@ -179,16 +179,46 @@ pub trait Lane:
 /// Whether this machine's packs multiply and add in one rounding.
 static FUSED: LazyLock<bool> = LazyLock::new(|| fuses(Level::new()));
 
-/// Calls an elementary function in the machine's own rounding.
+/// Elementary functions in the machine's own rounding.
 macro_rules! rounded {
-    ($function:ident, $x:expr) => {
-        if *FUSED { elementary::$function(Fused($x)).0 } else { elementary::$function(Plain($x)).0 }
+    ($($function:ident)*) => {
+        $(
+            #[inline(always)]
+            fn $function(self) -> Self {
+                if *FUSED {
+                    elementary::$function(Fused(self)).0
+                } else {
+                    elementary::$function(Plain(self)).0
+                }
+            }
+        )*
+    };
+}
+
+/// What no rounding touches, as [`Plain`] does it.
+macro_rules! as_plain {
+    ($($of:ident($($other:ident)?);)*) => {
+        $(
+            #[inline(always)]
+            fn $of(self $(, $other: Self)?) -> Self {
+                Plain(self).$of($(Plain($other))?).0
+            }
+        )*
     };
 }
 
 impl Lane for f64 {
     type Mask = bool;
     type Words = u64;
+
+    as_plain! {
+        root();
+        size();
+        nearest();
+        power_of_two();
+        alternate(k);
+    }
+    rounded!(ln exp cos sin cos_pi_size);
 
     #[inline(always)]
     fn each(self, value: f64) -> Self {
@@ -208,16 +238,6 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
-        self.sqrt()
-    }
-
-    #[inline(always)]
-    fn size(self) -> Self {
-        self.abs()
-    }
-
-    #[inline(always)]
     fn below(self, other: Self) -> bool {
         self < other
     }
@@ -233,24 +253,9 @@ impl Lane for f64 {
     }
 
     #[inline(always)]
-    fn nearest(self) -> Self {
-        Plain(self).nearest().0
-    }
-
-    #[inline(always)]
     fn split(self) -> (Self, Self) {
         let (m, k) = Plain(self).split();
         (m.0, k.0)
-    }
-
-    #[inline(always)]
-    fn power_of_two(self) -> Self {
-        Plain(self).power_of_two().0
-    }
-
-    #[inline(always)]
-    fn alternate(self, k: Self) -> Self {
-        Plain(self).alternate(Plain(k)).0
     }
 
     #[inline(always)]
@@ -277,30 +282,5 @@ impl Lane for f64 {
     fn columns(self, table: &[Row]) -> [Self; 5] {
         let [a, b, c, d, e, ..] = table[single::place(self, table.len())].0;
         [a, b, c, d, e]
-    }
-
-    #[inline(always)]
-    fn ln(self) -> Self {
-        rounded!(ln, self)
-    }
-
-    #[inline(always)]
-    fn exp(self) -> Self {
-        rounded!(exp, self)
-    }
-
-    #[inline(always)]
-    fn cos(self) -> Self {
-        rounded!(cos, self)
-    }
-
-    #[inline(always)]
-    fn sin(self) -> Self {
-        rounded!(sin, self)
-    }
-
-    #[inline(always)]
-    fn cos_pi_size(self) -> Self {
-        rounded!(cos_pi_size, self)
     }
 }

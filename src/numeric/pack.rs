@@ -292,7 +292,7 @@ mod tests {
         let words = numbers.words();
         let words = words.plus(words.each([7, 0xffff_fff0])).times(0x85eb_ca6b).folded(13);
         let chosen = L::where_bits(words, 5 << 32, 4 << 32, a, b);
-        let negated = c.negated_where(words.xor(words.folded(3)), 40);
+        let negated = c.negated_where(words ^ words.folded(3), 40);
         [numbers.entry(list), a, b, c, d, e, chosen, negated]
     }
 

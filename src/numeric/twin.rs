@@ -4,7 +4,7 @@
 //! looks only so far ahead for work. So polynomials go by Horner's rule here, the longest chain with the
 //! fewest operations; all else has the bits that each lane has by itself.
 
-use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+use std::ops::{Add, BitAnd, BitOr, BitXor, Div, Mul, Neg, Not, Sub};
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
@@ -12,13 +12,9 @@ use super::pack::WIDTH;
 use super::words::Words32;
 use super::{Lane, Row, elementary};
 
-/// Two lanes.
+/// Two lanes, or what belongs to them: their masks, their words.
 #[derive(Debug, Clone, Copy)]
 pub struct Twin<L>(pub L, pub L);
-
-/// The masks of two lanes, or their words.
-#[derive(Debug, Clone, Copy)]
-pub struct Both<T>(pub T, pub T);
 
 /// The elements of two packs.
 pub const PAIR: usize = 2 * WIDTH;
@@ -44,7 +40,7 @@ impl<S: Simd> Twin<f64x8<S>> {
     }
 }
 
-impl<S: Simd> Both<mask64x8<S>> {
+impl<S: Simd> Twin<mask64x8<S>> {
     /// As bits.
     #[inline(always)]
     pub fn to_bitmask(self) -> u64 {
@@ -52,95 +48,67 @@ impl<S: Simd> Both<mask64x8<S>> {
     }
 }
 
-macro_rules! operators {
-    ($($Operator:ident::$of:ident),*) => {
-        $(impl<L: Lane> $Operator for Twin<L> {
-            type Output = Self;
+/// Operations on one and then on the other, with other lanes and, after a semicolon, with what both share.
+macro_rules! both {
+    ($($of:ident($($lane:ident),* $(; $shared:ident: $Type:ty)?);)*) => {
+        $(
             #[inline(always)]
-            fn $of(self, other: Self) -> Self {
-                Self(self.0.$of(other.0), self.1.$of(other.1))
+            fn $of(self $(, $lane: Self)* $(, $shared: $Type)?) -> Self {
+                Self(self.0.$of($($lane.0,)* $($shared)?), self.1.$of($($lane.1,)* $($shared)?))
             }
+        )*
+    };
+}
+
+macro_rules! operators {
+    ($($Operator:ident::$of:ident($($other:ident)?);)*) => {
+        $(impl<T: $Operator<Output = T>> $Operator for Twin<T> {
+            type Output = Self;
+            both! { $of($($other)?); }
         })*
     };
     (by a number: $($Operator:ident::$of:ident),*) => {
-        $(impl<L: Lane> $Operator<f64> for Twin<L> {
+        $(impl<T: $Operator<f64, Output = T>> $Operator<f64> for Twin<T> {
             type Output = Self;
-            #[inline(always)]
-            fn $of(self, number: f64) -> Self {
-                Self(self.0.$of(number), self.1.$of(number))
-            }
+            both! { $of(; number: f64); }
         })*
     };
 }
-operators!(Add::add, Sub::sub, Mul::mul, Div::div);
+operators! {
+    Add::add(other);
+    Sub::sub(other);
+    Mul::mul(other);
+    Div::div(other);
+    Neg::neg();
+    BitAnd::bitand(other);
+    BitOr::bitor(other);
+    BitXor::bitxor(other);
+    Not::not();
+}
 operators!(by a number: Add::add, Sub::sub, Mul::mul);
 
-impl<L: Lane> Neg for Twin<L> {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self(-self.0, -self.1)
-    }
-}
-
-impl<T: BitAnd<Output = T>> BitAnd for Both<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitand(self, other: Self) -> Self {
-        Self(self.0 & other.0, self.1 & other.1)
-    }
-}
-
-impl<T: BitOr<Output = T>> BitOr for Both<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn bitor(self, other: Self) -> Self {
-        Self(self.0 | other.0, self.1 | other.1)
-    }
-}
-
-impl<T: Not<Output = T>> Not for Both<T> {
-    type Output = Self;
-    #[inline(always)]
-    fn not(self) -> Self {
-        Self(!self.0, !self.1)
-    }
-}
-
-impl<W: Words32> Words32 for Both<W> {
-    #[inline(always)]
-    fn each(self, words: [u32; 2]) -> Self {
-        Self(self.0.each(words), self.1.each(words))
-    }
-
-    #[inline(always)]
-    fn plus(self, other: Self) -> Self {
-        Self(self.0.plus(other.0), self.1.plus(other.1))
-    }
-
-    #[inline(always)]
-    fn times(self, factor: u32) -> Self {
-        Self(self.0.times(factor), self.1.times(factor))
-    }
-
-    #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        Self(self.0.xor(other.0), self.1.xor(other.1))
-    }
-
-    #[inline(always)]
-    fn folded(self, bits: u32) -> Self {
-        Self(self.0.folded(bits), self.1.folded(bits))
+impl<W: Words32> Words32 for Twin<W> {
+    both! {
+        each(; words: [u32; 2]);
+        plus(other);
+        times(; factor: u32);
+        folded(; bits: u32);
     }
 }
 
 impl<L: Lane> Lane for Twin<L> {
-    type Mask = Both<L::Mask>;
-    type Words = Both<L::Words>;
+    type Mask = Twin<L::Mask>;
+    type Words = Twin<L::Words>;
 
-    #[inline(always)]
-    fn each(self, value: f64) -> Self {
-        Self(self.0.each(value), self.1.each(value))
+    both! {
+        each(; value: f64);
+        times_plus(factor, term);
+        root();
+        size();
+        nearest();
+        power_of_two();
+        alternate(k);
+        entry(; list: &[f64]);
     }
 
     #[inline(always)]
@@ -149,43 +117,23 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
-    fn times_plus(self, factor: Self, term: Self) -> Self {
-        Self(self.0.times_plus(factor.0, term.0), self.1.times_plus(factor.1, term.1))
-    }
-
-    #[inline(always)]
     fn polynomial<const N: usize>(self, c: &[f64; N]) -> Self {
         elementary::horner(self, c)
     }
 
     #[inline(always)]
-    fn root(self) -> Self {
-        Self(self.0.root(), self.1.root())
+    fn below(self, other: Self) -> Twin<L::Mask> {
+        Twin(self.0.below(other.0), self.1.below(other.1))
     }
 
     #[inline(always)]
-    fn size(self) -> Self {
-        Self(self.0.size(), self.1.size())
+    fn at_most(self, other: Self) -> Twin<L::Mask> {
+        Twin(self.0.at_most(other.0), self.1.at_most(other.1))
     }
 
     #[inline(always)]
-    fn below(self, other: Self) -> Both<L::Mask> {
-        Both(self.0.below(other.0), self.1.below(other.1))
-    }
-
-    #[inline(always)]
-    fn at_most(self, other: Self) -> Both<L::Mask> {
-        Both(self.0.at_most(other.0), self.1.at_most(other.1))
-    }
-
-    #[inline(always)]
-    fn select(mask: Both<L::Mask>, yes: Self, no: Self) -> Self {
+    fn select(mask: Twin<L::Mask>, yes: Self, no: Self) -> Self {
         Self(L::select(mask.0, yes.0, no.0), L::select(mask.1, yes.1, no.1))
-    }
-
-    #[inline(always)]
-    fn nearest(self) -> Self {
-        Self(self.0.nearest(), self.1.nearest())
     }
 
     #[inline(always)]
@@ -195,34 +143,19 @@ impl<L: Lane> Lane for Twin<L> {
     }
 
     #[inline(always)]
-    fn power_of_two(self) -> Self {
-        Self(self.0.power_of_two(), self.1.power_of_two())
+    fn words(self) -> Twin<L::Words> {
+        Twin(self.0.words(), self.1.words())
     }
 
     #[inline(always)]
-    fn alternate(self, k: Self) -> Self {
-        Self(self.0.alternate(k.0), self.1.alternate(k.1))
-    }
-
-    #[inline(always)]
-    fn words(self) -> Both<L::Words> {
-        Both(self.0.words(), self.1.words())
-    }
-
-    #[inline(always)]
-    fn where_bits(words: Both<L::Words>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
+    fn where_bits(words: Twin<L::Words>, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
         let first = L::where_bits(words.0, bits, wanted, yes.0, no.0);
         Self(first, L::where_bits(words.1, bits, wanted, yes.1, no.1))
     }
 
     #[inline(always)]
-    fn negated_where(self, words: Both<L::Words>, bit: u32) -> Self {
+    fn negated_where(self, words: Twin<L::Words>, bit: u32) -> Self {
         Self(self.0.negated_where(words.0, bit), self.1.negated_where(words.1, bit))
-    }
-
-    #[inline(always)]
-    fn entry(self, list: &[f64]) -> Self {
-        Self(self.0.entry(list), self.1.entry(list))
     }
 
     #[inline(always)]

@@ -3,10 +3,12 @@
 //! A register of eight doubles holds sixteen such words, so that the hashes of two lattice points
 //! are made at the cost of one. All arithmetic is modulo `2^32` in each word.
 
+use std::ops::BitXor;
+
 use fearless_simd::{Bytes, ExtractToken, Simd, SimdBase, u32x16, u64x8};
 
 /// Two 32-bit words, or a pack of such pairs that is treated element by element.
-pub trait Words32: Copy {
+pub trait Words32: Copy + BitXor<Output = Self> {
     /// The same two words, the lower one first, in every element of another such lane.
     #[must_use]
     fn each(self, words: [u32; 2]) -> Self;
@@ -16,9 +18,6 @@ pub trait Words32: Copy {
     /// The products with one factor.
     #[must_use]
     fn times(self, factor: u32) -> Self;
-    /// Exclusive or.
-    #[must_use]
-    fn xor(self, other: Self) -> Self;
     /// Each word, exclusive or itself shifted right.
     #[must_use]
     fn folded(self, bits: u32) -> Self;
@@ -56,11 +55,6 @@ impl Words32 for u64 {
     }
 
     #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        self ^ other
-    }
-
-    #[inline(always)]
     fn folded(self, bits: u32) -> Self {
         let [a, b] = apart(self);
         joined([a ^ a >> bits, b ^ b >> bits])
@@ -86,11 +80,6 @@ impl<S: Simd> Words32 for u64x8<S> {
     #[inline(always)]
     fn times(self, factor: u32) -> Self {
         (words(self) * factor).bitcast()
-    }
-
-    #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        self ^ other
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@
 //! Transactions on Mathematical Software 47(4) (2021).
 
 use std::convert::Infallible;
+use std::ops::{BitOr, BitXor, Shl, Shr};
 
 use fearless_simd::{
     Bytes, ExtractToken, Level, Select, Simd, SimdBase, SimdInt, f64x8, mask64x8, u64x8,
@@ -27,22 +28,19 @@ use crate::numeric::pack::{self, Task, WIDTH};
 pub const SCALE: f64 = 1.0 / (1_u64 << 53) as f64;
 
 /// A 64-bit word, or a pack of words that is treated element by element.
-pub trait Words: Copy {
+pub trait Words:
+    Copy
+    + BitXor<Output = Self>
+    + BitOr<Output = Self>
+    + Shl<u32, Output = Self>
+    + Shr<u32, Output = Self>
+{
     /// The numbers made of such words.
     type Numbers: Lane;
 
     /// The sum modulo `2^64`.
     #[must_use]
     fn plus(self, other: Self) -> Self;
-    /// Exclusive or.
-    #[must_use]
-    fn xor(self, other: Self) -> Self;
-    /// Shifted left.
-    #[must_use]
-    fn left(self, bits: u32) -> Self;
-    /// Rotated left.
-    #[must_use]
-    fn rotated(self, bits: u32) -> Self;
     /// The upper 53 bits as an integer.
     fn upper(self) -> Self::Numbers;
 }
@@ -53,21 +51,6 @@ impl Words for u64 {
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         self.wrapping_add(other)
-    }
-
-    #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        self ^ other
-    }
-
-    #[inline(always)]
-    fn left(self, bits: u32) -> Self {
-        self << bits
-    }
-
-    #[inline(always)]
-    fn rotated(self, bits: u32) -> Self {
-        self.rotate_left(bits)
     }
 
     #[inline(always)]
@@ -82,21 +65,6 @@ impl<S: Simd> Words for u64x8<S> {
     #[inline(always)]
     fn plus(self, other: Self) -> Self {
         self + other
-    }
-
-    #[inline(always)]
-    fn xor(self, other: Self) -> Self {
-        self ^ other
-    }
-
-    #[inline(always)]
-    fn left(self, bits: u32) -> Self {
-        self << bits
-    }
-
-    #[inline(always)]
-    fn rotated(self, bits: u32) -> Self {
-        (self << bits) | (self >> (64 - bits))
     }
 
     #[inline(always)]
@@ -131,8 +99,8 @@ impl<W: Words> Xoshiro<W> {
     pub fn word(&mut self) -> W {
         let [s0, s1, s2, s3] = self.state;
         let word = s0.plus(s3);
-        let (s2, s3) = (s2.xor(s0), s3.xor(s1));
-        self.state = [s0.xor(s3), s1.xor(s2), s2.xor(s1.left(17)), s3.rotated(45)];
+        let (s2, s3) = (s2 ^ s0, s3 ^ s1);
+        self.state = [s0 ^ s3, s1 ^ s2, s2 ^ (s1 << 17), (s3 << 45) | (s3 >> 19)];
         word
     }
 
