@@ -159,16 +159,6 @@ impl<P: Problem> Setup<P> {
         })
     }
 
-    /// `0 ≤ σ_t − σ_c ≤ σ̂` everywhere: σ̂ is a majorant.
-    ///
-    /// # Errors
-    ///
-    /// Where it is violated most.
-    pub fn require_majorant(&self) -> Result<(), Refusal> {
-        self.require_not_negative("σ_t − σ_c ≥ 0")?;
-        self.require_ratio_at_most(1.0, "σ̂ ≥ σ_t − σ_c")
-    }
-
     /// `σ_t − σ_c ≥ 0` everywhere.
     ///
     /// # Errors

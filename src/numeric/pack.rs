@@ -42,18 +42,6 @@ pub fn converts<S: Simd>(simd: S) -> bool {
     }
 }
 
-/// Whether a register holds a pack, and there are enough of them for two.
-#[inline(always)]
-pub fn is_widest<S: Simd>(simd: S) -> bool {
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    return simd.level().as_avx512().is_some();
-    #[cfg(not(any(target_arch = "x86", target_arch = "x86_64")))]
-    {
-        let _ = simd;
-        false
-    }
-}
-
 /// A level in a word, as in `avx512`.
 pub fn word(level: Level) -> String {
     let name = format!("{level:?}");

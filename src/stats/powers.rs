@@ -79,16 +79,6 @@ impl Powers {
         self.draws as f64 / self.kurtosis()
     }
 
-    /// The relative standard error of the mean of y²; infinite where all y are 0.
-    pub fn square_error(&self) -> f64 {
-        let (square, fourth) = (self.raw(2), self.raw(4));
-        if square > 0.0 {
-            ((fourth / (square * square) - 1.0).max(0.0) / self.draws as f64).sqrt()
-        } else {
-            f64::INFINITY
-        }
-    }
-
     /// An upper estimate of `E[y²]`: the mean of y² and three of its standard errors.
     pub fn upper_square(&self) -> f64 {
         let (square, fourth) = (self.raw(2), self.raw(4));
@@ -130,7 +120,6 @@ mod tests {
         let mut powers = Powers::default();
         powers.absorb(&[0.1; 1000]);
         assert!(powers.kurtosis().is_infinite());
-        assert!(powers.square_error() < 1e-8);
         assert!((powers.upper_square() / 0.01 - 1.0).abs() < 1e-8);
     }
 }

@@ -200,6 +200,11 @@ impl Prediction {
         Self { channels: vec![channel], lookups: Some(lookups), ..Self::default() }
     }
 
+    /// The same, of which the number of lookups is not known.
+    pub fn uncounted(channel: Channel) -> Self {
+        Self { channels: vec![channel], ..Self::default() }
+    }
+
     /// `1/(V · E[M])`, the efficiency per lookup, of a channel; `None` where either is unknown or
     /// zero.
     pub fn figure_of_merit(&self, channel: usize) -> Option<f64> {

@@ -14,7 +14,7 @@ use crate::geometry::Point;
 use crate::numeric::Lane;
 use crate::problems::Furnace;
 use crate::rng::Stream;
-use crate::theory::{CountLaw, Prediction};
+use crate::theory::Prediction;
 
 /// What a particle has brought.
 #[derive(Debug, Clone, Copy, Default)]
@@ -44,9 +44,7 @@ impl Walked for Furnace {
         let bound = walks.and_then(|walks| walks.energy_variance());
         // Without a bound the walk is refused, or forced: then only the truth is kept.
         let depth = walks.map_or(0.0, |walks| walks.depth);
-        let channel = space::energy_channel(bound.unwrap_or(f64::INFINITY), depth);
-        let prediction = Prediction::single(channel, CountLaw::always(0.0));
-        Prediction { lookups: None, ..prediction }
+        Prediction::uncounted(space::energy_channel(bound.unwrap_or(f64::INFINITY), depth))
     }
 
     fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw {

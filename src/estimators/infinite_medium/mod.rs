@@ -135,7 +135,6 @@ impl Walked for InfiniteMedium {
             }
             None => collisions,
         });
-        let prediction = Prediction::single(channels[0].clone(), CountLaw::always(0.0));
         let lookups = end.map(|end| {
             let moments = geometric(1.0 / end, end);
             let (variance, kurtosis) = (moments.variance(), moments.kurtosis().unwrap_or(1.0));
@@ -144,7 +143,7 @@ impl Walked for InfiniteMedium {
         });
         let lookups =
             lookups.map(|law| if law.variance > 0.0 { law } else { CountLaw::always(1.0) });
-        Prediction { channels, lookups, ..prediction }
+        Prediction { channels, lookups, ..Prediction::default() }
     }
 
     fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {

@@ -17,7 +17,7 @@ use crate::problems::lambertian::Values;
 use crate::problems::rod::MOST;
 use crate::rng::Stream;
 use crate::theory::space::content;
-use crate::theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
+use crate::theory::{Channel, Moments, ParticleRule, Prediction, Tails};
 
 /// The largest relative error of `∫σ_t dV` that is worth drawing against.
 const BLURRED: f64 = 1e-3;
@@ -157,13 +157,11 @@ impl Walked for Lambertian {
                 channels.push(piloted("tentative collisions", times(Known::exact(content))));
             }
         }
-        let empty = space::energy_channel(f64::INFINITY, 0.0);
-        let prediction = Prediction::single(empty.clone(), CountLaw::always(0.0));
         if channels.is_empty() {
             // Refused, or forced without an answer to be wrong about.
-            channels.push(empty);
+            channels.push(space::energy_channel(f64::INFINITY, 0.0));
         }
-        Prediction { channels, lookups: None, ..prediction }
+        Prediction { channels, ..Prediction::default() }
     }
 
     fn draw(by: By, particle: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {

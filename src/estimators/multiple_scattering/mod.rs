@@ -41,8 +41,7 @@ impl Walked for MultipleScattering {
             let unknown = Known::new(0.0, f64::INFINITY);
             let certain = Channel::unbiased(unknown, Moments::certain(0.0), Tails::LIGHT);
             let channel = Channel { moments: None, ..certain };
-            let prediction = Prediction::single(channel, CountLaw::always(0.0));
-            return Prediction { lookups: None, ..prediction };
+            return Prediction::uncounted(channel);
         }
         let seen = problem.background();
         let channel = Channel::unbiased(Known::exact(seen), Moments::certain(seen), Tails::LIGHT);

@@ -92,6 +92,20 @@ pub fn foot_and_offset<L: Lane>(centre: Point, origin: [L; 3], direction: [L; 3]
     [foot, dot(aside, aside).root()]
 }
 
+/// Which rays do not meet a ball that they begin outside, and how far it is for the others.
+#[inline(always)]
+pub fn meets<L: Lane>(
+    centre: Point,
+    radius: f64,
+    origin: [L; 3],
+    direction: [L; 3],
+) -> (L::Mask, L) {
+    let [foot, offset] = foot_and_offset(centre, origin, direction);
+    let (size, zero) = (foot.each(radius), foot.each(0.0));
+    let near = (foot - ((size - offset) * (size + offset)).root()).or_more(zero);
+    (foot.at_most(zero) | size.at_most(offset), near)
+}
+
 /// By doubles, and whether these keep the digits: see [`Bounds::clip`].
 #[inline(always)]
 fn of_ball<S: Simd>(

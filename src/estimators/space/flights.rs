@@ -5,7 +5,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::exit::{Points, exits, foot_and_offset};
+use super::exit::{Points, exits, meets};
 use crate::geometry::Point;
 use crate::media::Majorants;
 use crate::numeric::Lane;
@@ -96,10 +96,7 @@ impl<S: Simd> Flights<S> {
         self.end = Lane::select(which, end, self.end);
         self.t = Lane::select(which, zero, self.t);
         if let Some((centre, radius)) = ground.core {
-            let [foot, offset] = foot_and_offset(centre, self.origin, self.direction);
-            let size = zero.each(radius);
-            let passes = foot.at_most(zero) | size.at_most(offset);
-            let at = (foot - ((size - offset) * (size + offset)).root()).or_more(zero);
+            let (passes, at) = meets(centre, radius, self.origin, self.direction);
             let stop = Lane::select(passes, zero.each(f64::INFINITY), at);
             self.stop = Lane::select(which, stop, self.stop);
         }

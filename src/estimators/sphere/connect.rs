@@ -12,7 +12,7 @@
 //! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
 
 use crate::estimators::single_scattering::connection;
-use crate::estimators::space::{Scattering, Sink};
+use crate::estimators::space::{Scattering, Sink, exit};
 use crate::geometry::{Point, Ray, frame};
 use crate::numeric::{Lane, Span};
 use crate::problems::Sphere;
@@ -52,21 +52,17 @@ impl Connect for Honest {}
 
 /// `1 − √(1 − ρ²/r²)`, without cancellation.
 #[inline(always)]
-fn cone(core: f64, distance: f64) -> f64 {
-    let square = core * core / (distance * distance);
-    square / (1.0 + Lane::or_more(1.0 - square, 0.0).sqrt())
+pub fn cone<L: Lane>(core: f64, distance: L) -> L {
+    let (zero, one) = (distance.each(0.0), distance.each(1.0));
+    let square = distance.each(core * core) / (distance * distance);
+    square / (one + (one - square).or_more(zero).root())
 }
 
 /// How far it is to a sphere, for what comes from outside and meets it.
 #[inline(always)]
 pub fn meets(origin: Point, direction: Point, centre: Point, radius: f64) -> Option<f64> {
-    let to_centre = centre - origin;
-    let foot = to_centre.dot(direction);
-    let offset = (to_centre - direction * foot).norm();
-    if foot <= 0.0 || offset >= radius {
-        return None;
-    }
-    Some(Lane::or_more(foot - ((radius - offset) * (radius + offset)).sqrt(), 0.0))
+    let (misses, near) = exit::meets(centre, radius, origin.0, direction.0);
+    (!misses).then_some(near)
 }
 
 /// A walk that looks for light.

@@ -20,7 +20,7 @@ use crate::problems::sphere::{Light, Sought};
 use crate::rng::Stream;
 use crate::theory::single::Tracking;
 use crate::theory::sphere::{Answer, Asked, Lights, Scene, Spread, cached};
-use crate::theory::{Channel, CountLaw, Law, Moments, Odds, ParticleRule, Prediction, Tails};
+use crate::theory::{Channel, Law, Moments, Odds, ParticleRule, Prediction, Tails};
 
 pub use connect::{Connect, Honest, Seeker};
 
@@ -156,8 +156,7 @@ const UNKNOWN: Answer = Answer {
 fn prediction(value: Known, square: f64) -> Prediction {
     let most = (square - value.value * value.value).max(0.0);
     let channel = Channel::unbiased(value, Moments::certain(value.value), Tails::LIGHT);
-    let channel = Channel { moments: None, most_variance: Some(most), ..channel };
-    Prediction { lookups: None, ..Prediction::single(channel, CountLaw::always(0.0)) }
+    Prediction::uncounted(Channel { moments: None, most_variance: Some(most), ..channel })
 }
 
 /// A draw is 1 with the chance that is sought, else 0.
@@ -168,11 +167,8 @@ fn all_or_nothing(value: Known) -> Prediction {
     let moments = Moments::of_product(chance, [-chance.ln(); 4], error);
     let tails = Tails { rare_event_size: 1.0 / chance, eighth_moment_ratio: 1.0 / chance };
     let channel = Channel::unbiased(value, moments, tails);
-    Prediction {
-        lookups: None,
-        law: Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)])),
-        ..Prediction::single(channel, CountLaw::always(0.0))
-    }
+    let law = Some(Law::Atoms(vec![(0.0, 1.0 - chance), (1.0, chance)]));
+    Prediction { law, ..Prediction::uncounted(channel) }
 }
 
 /// Next-event estimation.
@@ -259,9 +255,7 @@ impl Walked for Sphere {
     fn predict(setup: &Setup<Self>, particle: &Particle) -> Prediction {
         let sphere = &setup.problem;
         if sphere.light == Light::Environment && sphere.scene.albedo.even() == Some(1.0) {
-            let prediction =
-                Prediction::single(space::energy_channel(0.0, 0.0), CountLaw::always(0.0));
-            return Prediction { lookups: None, ..prediction };
+            return Prediction::uncounted(space::energy_channel(0.0, 0.0));
         }
         let value = truth(sphere).unwrap_or(UNKNOWN).value;
         let is_chance = matches!(particle.rule, ParticleRule::Analog | ParticleRule::Terminating);

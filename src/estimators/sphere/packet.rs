@@ -4,9 +4,10 @@
 
 use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
+use super::connect::cone;
 use crate::estimators::Setup;
 use crate::estimators::packet::Request;
-use crate::estimators::space::exit::{Points, dot, foot_and_offset, splat};
+use crate::estimators::space::exit::{Points, dot, meets, splat};
 use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
 use crate::estimators::space::shadow::{self, Found, ShadowRays};
 use crate::estimators::space::{Particle, Tally};
@@ -26,16 +27,6 @@ fn anywhere<S: Simd>(numbers: &mut Numbers<S>, which: mask64x8<S>, up: Points<S>
     frame::turned_lanes(up, cosine, numbers.uniform_where(which))
 }
 
-/// Where walks begin, and in which direction; where that is any, they turn from here.
-#[inline(always)]
-fn begin<S: Simd>(simd: S, sphere: &Sphere) -> [Points<S>; 2] {
-    let direction = match sphere.sought {
-        Sought::Radiance => sphere.direction(),
-        Sought::MeanIntensity => UP,
-    };
-    [splat(simd, sphere.entry()), splat(simd, direction)]
-}
-
 /// Whether particles that have left have met the light.
 #[inline(always)]
 fn meets_light<S: Simd>(sphere: &Sphere, at: &Departures<S>) -> mask64x8<S> {
@@ -50,49 +41,37 @@ fn meets_light<S: Simd>(sphere: &Sphere, at: &Departures<S>) -> mask64x8<S> {
     }
 }
 
-/// Walks without shadow rays.
-impl Tally<1> for Sphere {
-    #[inline(always)]
-    fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        begin(simd, self)
-    }
-
-    fn begins_turned(&self) -> bool {
-        self.sought == Sought::MeanIntensity
-    }
-
-    #[inline(always)]
-    fn escaped<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], at: &Departures<S>) {
-        add_where(found, meets_light(self, at), at.weight);
-    }
-
-    fn core(&self) -> Option<(Point, f64)> {
-        super::core(self)
-    }
-
-    fn channels(&self) -> &[usize] {
-        &[0]
-    }
-}
-
-/// Walks with shadow rays.
-struct Connected<'a> {
+/// Walks that look for light, with shadow rays or without.
+struct Seekers<'a, const CASTS: bool> {
     sphere: &'a Sphere,
     shadow: Tracking,
 }
 
-impl Tally<1> for Connected<'_> {
-    const CASTS: bool = true;
+impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
+    const CASTS: bool = CASTS;
 
+    /// Where the direction may be any, they turn from here.
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
-        begin(simd, self.sphere)
+        let direction = match self.sphere.sought {
+            Sought::Radiance => self.sphere.direction(),
+            Sought::MeanIntensity => UP,
+        };
+        [splat(simd, self.sphere.entry()), splat(simd, direction)]
     }
 
+    fn begins_turned(&self) -> bool {
+        self.sphere.sought == Sought::MeanIntensity
+    }
+
+    /// Beside shadow rays only what was never scattered counts, and that of rays only.
     #[inline(always)]
     fn escaped<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], at: &Departures<S>) {
-        if self.sphere.sought == Sought::Radiance {
-            add_where(found, meets_light(self.sphere, at) & at.unscattered, at.weight);
+        let met = meets_light(self.sphere, at);
+        if !CASTS {
+            add_where(found, met, at.weight);
+        } else if self.sphere.sought == Sought::Radiance {
+            add_where(found, met & at.unscattered, at.weight);
         }
     }
 
@@ -103,11 +82,7 @@ impl Tally<1> for Connected<'_> {
     fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
         let Sphere { centre, radius, .. } = *self.sphere;
         let volume = &*self.sphere.scene.volume;
-        Some(ShadowRays { volume, centre, radius, tracking: self.shadow })
-    }
-
-    fn begins_turned(&self) -> bool {
-        self.sphere.begins_turned()
+        CASTS.then_some(ShadowRays { volume, centre, radius, tracking: self.shadow })
     }
 
     #[inline(always)]
@@ -136,18 +111,14 @@ impl Tally<1> for Connected<'_> {
                 let [x, y, z] = place;
                 let to_centre = [one.each(a) - x, one.each(b) - y, one.each(c) - z];
                 let distance = dot(to_centre, to_centre).root();
-                let square = one.each(core * core) / (distance * distance);
-                let cone = square / (one + (one - square).or_more(zero).root());
+                let cone = cone(core, distance);
                 let cosine = one - numbers.uniform_where(which) * cone;
                 let scale = one / distance;
                 let [x, y, z] = to_centre;
                 let axis = [x * scale, y * scale, z * scale];
                 let direction = frame::turned_lanes(axis, cosine, numbers.uniform_where(which));
-                let [foot, offset] = foot_and_offset(centre, place, direction);
-                let size = one.each(core);
-                let near = (foot - ((size - offset) * (size + offset)).root()).or_more(zero);
+                let (misses, near) = meets(centre, core, place, direction);
                 // A direction at the edge may miss by rounding: it ends at the point of the edge.
-                let misses = foot.at_most(zero) | size.at_most(offset);
                 let light = Lane::select(misses, distance * cosine, near);
                 shadow::Light { direction, share: cone * 0.5, distance: light }
             }
@@ -176,7 +147,10 @@ pub(super) fn draw_by_packets<'a>(
     let sphere = &*setup.problem;
     let world = (&sphere.scene, majorants);
     match shadow {
-        None => walks(level, sphere, particle, world, request),
-        Some(shadow) => walks(level, &Connected { sphere, shadow }, particle, world, request),
+        None => {
+            let seekers = Seekers::<false> { sphere, shadow: Tracking::Exact };
+            walks(level, &seekers, particle, world, request)
+        }
+        Some(shadow) => walks(level, &Seekers::<true> { sphere, shadow }, particle, world, request),
     }
 }

@@ -4,8 +4,8 @@
 //! `T_c (1 − r)^N` of a constant ratio, the single value of deterministic estimators. A draw that
 //! is none of them is strange: a single one fails the check where the list is complete.
 
-use super::batch::Batch;
-use super::question::{Kind, Law, Question, Subject};
+use super::batch::{Batch, each_value};
+use super::question::{Law, Question, Subject};
 use crate::stats::chi_square;
 use crate::theory;
 
@@ -50,13 +50,8 @@ impl Law for Values {
 
     fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let strange = self.value.len();
-        let mut count = |x: f64, times| sums[self.find(x).unwrap_or(strange)] += times;
-        match &draws.values[0] {
-            Some(census) => {
-                census.values.iter().zip(&census.times).for_each(|(&x, &n)| count(x, n));
-            }
-            None => draws.draws.values[0].iter().for_each(|&x| count(x, 1.0)),
-        }
+        let count = |x: f64, times| sums[self.find(x).unwrap_or(strange)] += times;
+        each_value(draws.values[0].as_ref(), &draws.draws.values[0], count);
     }
 
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
@@ -77,10 +72,8 @@ impl Law for Values {
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
     let values = Values::of(atoms.clone());
-    if chi_square::testable_bins(&values.probability, subject.fixed as f64) < 2 {
-        return Vec::new();
-    }
-    vec![Question::whole("the shares of the values", Kind::Law(Box::new(values)))]
+    let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
+    Question::law("the shares of the values", (bins >= 2).then_some(values))
 }
 
 #[cfg(test)]

@@ -84,6 +84,14 @@ impl<'a> Batch<'a> {
     }
 }
 
+/// Hands over each value with how often it comes, or each draw as coming once.
+pub fn each_value<T: Copy>(census: Option<&Census<T>>, draws: &[T], mut count: impl FnMut(T, f64)) {
+    match census {
+        Some(census) => census.values.iter().zip(&census.times).for_each(|(&x, &n)| count(x, n)),
+        None => draws.iter().for_each(|&x| count(x, 1.0)),
+    }
+}
+
 fn in_parts<T>(
     draws: &[T],
     census: Option<&Census<T>>,

@@ -7,8 +7,8 @@
 //!
 //! It applies where theory knows the law and at least two classes expect enough draws.
 
-use super::batch::Batch;
-use super::question::{Kind, Law, Question, Subject};
+use super::batch::{Batch, each_value};
+use super::question::{Law, Question, Subject};
 use crate::stats::chi_square;
 
 struct Classes {
@@ -22,13 +22,8 @@ impl Law for Classes {
 
     fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
         let beyond = self.probability.len();
-        let mut count = |lookups: u32, times| sums[(lookups as usize).min(beyond)] += times;
-        match &draws.lookups {
-            Some(census) => {
-                census.values.iter().zip(&census.times).for_each(|(&m, &n)| count(m, n));
-            }
-            None => draws.draws.lookups.iter().for_each(|&m| count(m, 1.0)),
-        }
+        let count = |lookups: u32, times| sums[(lookups as usize).min(beyond)] += times;
+        each_value(draws.lookups.as_ref(), &draws.draws.lookups, count);
     }
 
     fn p_value(&self, sums: &[f64], _: f64) -> Option<f64> {
@@ -38,12 +33,8 @@ impl Law for Classes {
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(law) = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0) else {
-        return Vec::new();
-    };
-    let probability = law.pmf.clone();
-    if chi_square::testable_bins(&probability, subject.fixed as f64) < 2 || probability.is_empty() {
-        return Vec::new();
-    }
-    vec![Question::whole("the law of the lookups", Kind::Law(Box::new(Classes { probability })))]
+    let law = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0);
+    let classes = law.map(|law| Classes { probability: law.pmf.clone() });
+    let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
+    Question::law("the law of the lookups", classes.filter(|law| bins(law) >= 2))
 }

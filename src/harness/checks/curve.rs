@@ -100,11 +100,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
     let is_long = subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare);
     if is_long && increments.iter().all(|step| step.error <= SHARP) {
-        let law = Increments::of(subject, &scale).map(|law| Kind::Law(Box::new(law)));
-        return law
-            .map(|law| Question::whole("the curve along one walk", law))
-            .into_iter()
-            .collect();
+        return Question::law("the curve along one walk", Increments::of(subject, &scale));
     }
     let has_spread = |increment: &Increment| {
         increment.variance > 0.0 && (increment.variance * (1.0 + increment.error)).is_finite()

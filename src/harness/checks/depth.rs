@@ -13,7 +13,7 @@
 
 use super::batch::Batch;
 use super::distances::Classes;
-use super::question::{Kind, Law, Question, Subject};
+use super::question::{Law, Question, Subject};
 use crate::stats::anderson_darling;
 
 struct Empirical(Classes);
@@ -34,7 +34,5 @@ impl Law for Empirical {
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let classes = Classes::of(subject);
-    let kind = classes.map(|classes| Kind::Law(Box::new(Empirical(classes))));
-    kind.map(|kind| Question::whole("the tails of the distances", kind)).into_iter().collect()
+    Question::law("the tails of the distances", Classes::of(subject).map(Empirical))
 }

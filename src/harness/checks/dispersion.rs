@@ -9,8 +9,7 @@
 //! the run. The χ² law needs blocks of at least 100 κ draws and ten times the rare-event size.
 
 use super::batch::Batch;
-use super::mean::is_faint;
-use super::question::{BLURRED, Kind, Law, Question, Subject};
+use super::question::{Law, Question, Subject, last_channel};
 use crate::harness::addresses::BLOCK;
 use crate::harness::normality;
 use crate::numeric::sum::sum_in_lanes;
@@ -56,16 +55,11 @@ impl Law for BlockMeans {
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
-    let Some(moments) = channel.moments else { return Vec::new() };
+    let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let needed = normality::needed(kurtosis, channel.tails.rare_event_size);
     let enough = BLOCK as f64 >= needed && subject.fixed / BLOCK >= FEWEST;
-    let is_blurred = moments.error > BLURRED;
-    if is_faint(subject, channel) || is_blurred || !enough {
-        return Vec::new();
-    }
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let law = BlockMeans { mean, scale, least: needed };
-    vec![Question::whole("the spread of the blocks' means", Kind::Law(Box::new(law)))]
+    Question::law("the spread of the blocks' means", enough.then_some(law))
 }

@@ -8,7 +8,7 @@
 //! Distances are counted once, in the thousand classes that [`super::depth`] looks at; bins are made of those.
 
 use super::batch::Batch;
-use super::question::{Kind, Law, Question, Subject};
+use super::question::{Law, Question, Subject};
 use crate::estimators::DrawBuffer;
 use crate::numeric::pack::in_fused_code;
 use crate::stats::chi_square;
@@ -166,8 +166,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
         let size = (classes.len() / BINS).max(1);
         Bins { classes, size }
     });
-    let kind = bins.map(|bins| Kind::Law(Box::new(bins)));
-    kind.map(|kind| Question::whole("the law of the distances", kind)).into_iter().collect()
+    Question::law("the law of the distances", bins)
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 //! is what it began with.
 //!
 //! ```text
-//! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c   to rounding, 16 ε (1 + M) relative to the turnover
+//! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c   to rounding, 16 ε (1 + M) relative to the sizes of all terms
 //! ```
 //!
 //! For the double particle (q = 1) without a control it reads Σ rᵢ X(tᵢ⁻) + X(S) = 1: absorbed and

@@ -6,7 +6,7 @@ use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::options::Tolerance;
 use crate::rng::Streams;
 use crate::stats::gate::{self, Design};
-use crate::theory::Prediction;
+use crate::theory::{Channel, Moments, Prediction};
 
 /// What a check knows before the first draw.
 #[derive(Clone, Copy)]
@@ -71,6 +71,11 @@ impl Question {
     pub fn whole(what: &str, kind: Kind) -> Self {
         let (check, what) = (String::new(), what.to_owned());
         Self { check, channel: None, what, kind, expects_bias: false }
+    }
+
+    /// The same about a law, where there is one to test.
+    pub fn law(what: &str, law: Option<impl Law + 'static>) -> Vec<Self> {
+        law.into_iter().map(|law| Self::whole(what, Kind::Law(Box::new(law)))).collect()
     }
 
     /// The same about one channel.
@@ -205,6 +210,14 @@ pub struct Always {
     pub largest: Box<dyn Fn(&DrawBuffer) -> f64 + Send + Sync>,
     /// What it may not exceed.
     pub bound: f64,
+}
+
+/// The last channel of an experiment and its moments, where draws can be told from them: where these are
+/// known, and rounding does not spoil what draws say of them.
+pub fn last_channel<'a>(subject: &Subject<'a>) -> Option<(&'a Channel, Moments)> {
+    let channel = subject.prediction.channels.last()?;
+    let moments = channel.moments.filter(|moments| moments.error <= BLURRED)?;
+    (!super::mean::is_faint(subject, channel)).then_some((channel, moments))
 }
 
 /// Rounding of a product of `lookups` factors, relative to the result.

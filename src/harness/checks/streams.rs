@@ -11,8 +11,7 @@
 //! first L = 1024 draws of each block.
 
 use super::batch::Batch;
-use super::mean::is_faint;
-use super::question::{BLURRED, Kind, Law, Question, Subject};
+use super::question::{Law, Question, Subject, last_channel};
 use crate::harness::addresses::BLOCK;
 use crate::stats::correlation;
 
@@ -62,20 +61,14 @@ impl Law for IndexSums {
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(channel) = subject.prediction.channels.last() else { return Vec::new() };
-    let Some(moments) = channel.moments else { return Vec::new() };
+    let Some((channel, moments)) = last_channel(subject) else { return Vec::new() };
     let kurtosis = moments.kurtosis().unwrap_or(f64::INFINITY);
     let blocks = subject.fixed / BLOCK;
     let enough = blocks >= FEWEST && (kurtosis - 3.0) <= MOST_EXCESS * blocks as f64;
     let eighth = channel.tails.eighth_moment_ratio * kurtosis * kurtosis;
     let by_one = eighth / (6.0 * FIRST as f64 * (blocks as f64).powi(3));
-    let enough = enough && by_one <= MOST_BY_ONE;
-    let enough = enough && subject.is_in_turn;
-    let is_blurred = moments.error > BLURRED;
-    if is_faint(subject, channel) || is_blurred || !enough {
-        return Vec::new();
-    }
+    let enough = enough && by_one <= MOST_BY_ONE && subject.is_in_turn;
     let (mean, scale) = (channel.mean.value, 1.0 / moments.variance().sqrt());
     let law = IndexSums { mean, scale, kurtosis };
-    vec![Question::whole("the sums across streams", Kind::Law(Box::new(law)))]
+    Question::law("the sums across streams", enough.then_some(law))
 }
