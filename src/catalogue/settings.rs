@@ -47,6 +47,16 @@ impl<'a> Settings<'a> {
         self.entry(key).is_some()
     }
 
+    /// What is read where the file has the key, and `None` inside where it has not.
+    #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+    pub fn optional<T>(
+        &self,
+        key: &'static str,
+        read: impl FnOnce(&'static str) -> Option<T>,
+    ) -> Option<Option<T>> {
+        if self.has(key) { read(key).map(Some) } else { Some(None) }
+    }
+
     /// Whether the table has no keys at all.
     pub fn is_empty(&self) -> bool {
         self.table.is_empty()

@@ -91,9 +91,15 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
     /// Whether its draws may be made in any order of their collisions, by [`Estimator::order_free`].
     const ORDER_FREE: bool = false;
 
+    /// The estimator itself, where it has no settings.
+    const PLAIN: Option<Self> = None;
+
     /// Reads its own settings from `NAME = { … }`; `sampling`, `control` and `expect` are read for
     /// it.
-    fn read(settings: &Settings) -> Option<Self>;
+    fn read(settings: &Settings) -> Option<Self> {
+        let _ = settings;
+        Self::PLAIN
+    }
 
     /// Its own settings in words, as in `non-terminating, a=0.7`; empty if it has none. Without
     /// `albedo` the albedo is left out: it is swept.
@@ -258,11 +264,8 @@ macro_rules! scored {
     ($Page:ident) => {
         impl $crate::estimators::Estimator<Transmittance> for $Page {
             const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+            const PLAIN: Option<Self> = Some(Self);
             const IN_PACKETS: bool = true;
-
-            fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
-                Some(Self)
-            }
 
             fn domain(
                 &self,

@@ -67,8 +67,8 @@ impl Bounds {
         let inside = self.clip(ray);
         let roundings = match self {
             Self::Sphere { centre, radius } => {
-                let [_, offset] = foot_and_offset(*centre, ray);
-                if is_plain(*centre, *radius, ray, offset) { 64.0 * radius } else { 0.0 }
+                let (_, offset) = ray.nearest_to(*centre);
+                if is_plain(*centre, *radius, ray, offset.norm()) { 64.0 * radius } else { 0.0 }
             }
             _ => 0.0,
         };
@@ -121,13 +121,6 @@ impl Bounds {
     }
 }
 
-/// Where the ray's line is nearest to a point, from the ray's origin, and how near that is.
-fn foot_and_offset(centre: Point, ray: &Ray) -> [f64; 2] {
-    let to_centre = centre - ray.origin;
-    let foot = to_centre.dot(ray.direction);
-    [foot, (to_centre - ray.direction * foot).norm()]
-}
-
 /// Whether plain doubles find the ends of a chord to 64 roundings of the radius: the origin is near
 /// and the ray does not graze.
 fn is_plain(centre: Point, radius: f64, ray: &Ray, offset: f64) -> bool {
@@ -137,7 +130,8 @@ fn is_plain(centre: Point, radius: f64, ray: &Ray, offset: f64) -> bool {
 /// `|o + td − c| ≤ R`. The squared distance of the ray's line from the centre is taken from the
 /// residual vector, not from `|o−c|² − ((o−c)·d)²`, which cancels for far origins.
 fn clip_sphere(centre: Point, radius: f64, ray: &Ray) -> Span {
-    let [foot, offset] = foot_and_offset(centre, ray);
+    let (foot, offset) = ray.nearest_to(centre);
+    let offset = offset.norm();
     if !is_plain(centre, radius, ray, offset) {
         return clip_sphere_exactly(centre, radius, ray);
     }

@@ -27,6 +27,13 @@ impl Ray {
         self.origin + self.direction * t
     }
 
+    /// Where the ray's line is nearest to a point, from the ray's origin, and the way from there to the point.
+    pub fn nearest_to(&self, point: Point) -> (f64, Point) {
+        let to_point = point - self.origin;
+        let foot = to_point.dot(self.direction);
+        (foot, to_point - self.direction * foot)
+    }
+
     /// `[0, length]`.
     pub fn span(&self) -> Span {
         Span::new(0.0, self.length)

@@ -119,9 +119,8 @@ impl Field for Gaussian {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Bump {
-        let to_centre = self.centre - ray.origin;
-        let foot = to_centre.dot(ray.direction);
-        let offset = (to_centre - ray.direction * foot) * (1.0 / self.width);
+        let (foot, offset) = ray.nearest_to(self.centre);
+        let offset = offset * (1.0 / self.width);
         let peak = self.peak * (-0.5 * offset.dot(offset)).exp();
         Bump { peak, foot, width: self.width }
     }

@@ -67,8 +67,7 @@ pub fn hash3(x: u32, y: u32, z: u32, seed: u32) -> u32 {
 /// The integer below `x`, and how far `x` is beyond it, in `[0, 1]`.
 #[inline(always)]
 fn floor<L: Lane>(x: L) -> (L, L) {
-    let nearest = x.nearest();
-    let below = L::select(x.below(nearest), nearest - 1.0, nearest);
+    let below = Lane::floor(x);
     (below, x - below)
 }
 

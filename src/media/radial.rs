@@ -153,10 +153,9 @@ impl Field for Radial {
     }
 
     fn along(&self, ray: &Ray, _: Span) -> Chord {
-        let to_centre = self.centre - ray.origin;
-        let foot = to_centre.dot(ray.direction);
+        let (foot, offset) = ray.nearest_to(self.centre);
         let scale = 1.0 / self.radius;
-        let offset = (to_centre - ray.direction * foot) * scale;
+        let offset = offset * scale;
         Chord { foot, scale, offset: offset.dot(offset), coefficients: self.coefficients }
     }
 

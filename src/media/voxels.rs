@@ -130,9 +130,7 @@ impl Voxels {
     fn place_along<L: Lane>(&self, axis: usize, u: L) -> (L, L) {
         let last = self.last[axis] as f64;
         let inside = u.or_more(u.each(0.0)).or_less(u.each(last + 1.0));
-        let nearest = inside.nearest();
-        let below = L::select(inside.below(nearest), nearest - 1.0, nearest);
-        let cell = below.or_less(u.each(last));
+        let cell = Lane::floor(inside).or_less(u.each(last));
         (cell, inside - cell)
     }
 

@@ -97,6 +97,14 @@ pub trait Lane:
     #[must_use]
     fn nearest(self) -> Self;
 
+    /// The integer below, for `|self| < 2^51`.
+    #[must_use]
+    #[inline(always)]
+    fn floor(self) -> Self {
+        let nearest = self.nearest();
+        Self::select(self.below(nearest), nearest - 1.0, nearest)
+    }
+
     /// `(m, k)` with `self = m·2^k` and `√½ ≤ m < √2`, for positive normal numbers.
     fn split(self) -> (Self, Self);
 

@@ -60,12 +60,8 @@ impl Problem for InfiniteMedium {
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let scene = Scene::read(body, settings);
-        let radii = if settings.has("radii") {
-            settings.numbers("radii", Domain::Positive, 1)
-        } else {
-            Some(Vec::new())
-        };
-        let (scene, radii) = (scene?, radii?);
+        let radii = settings.optional("radii", |key| settings.numbers(key, Domain::Positive, 1));
+        let (scene, radii) = (scene?, radii?.unwrap_or_default());
         let is_homogeneous =
             scene.volume.single_value().is_some() && scene.volume.bounds() == Bounds::Everywhere;
         let extinction = scene.volume.extinction_at(Point([0.0; 3]));

@@ -151,14 +151,11 @@ impl Problem for Rod {
         let forward = share(settings, "forward", Some(0.5));
         let absorbed = settings.flag_or("absorbed", false);
         let parts = settings.count_or("flux", 0..=MOST_PARTS as u64, 0);
-        let orders = if settings.has("orders") {
-            settings.count("orders", 0..=HIGHEST_ORDER).map(|highest| Some(highest as usize))
-        } else {
-            Some(None)
-        };
+        let orders = settings.optional("orders", |key| settings.count(key, 0..=HIGHEST_ORDER));
         let medium = body?.medium();
         let (albedo, forward) = (albedo?, forward?);
-        let channels = channels(parts? as usize, absorbed?, orders?);
+        let channels =
+            channels(parts? as usize, absorbed?, orders?.map(|highest| highest as usize));
         Some(Self::new(medium, &albedo, &forward, channels))
     }
 

@@ -262,9 +262,8 @@ impl Lamp {
     ///
     /// The distance of a light that lies on the line.
     pub fn seen_from(&self, ray: &Ray) -> Result<[f64; 2], OnTheLine> {
-        let to_light = self.position - ray.origin;
-        let foot = to_light.dot(ray.direction);
-        let distance = (to_light - ray.direction * foot).norm();
+        let (foot, offset) = ray.nearest_to(self.position);
+        let distance = offset.norm();
         let is_on_line = distance <= ON_LINE * ray.length.max(foot.abs());
         if is_on_line { Err(OnTheLine(distance)) } else { Ok([foot, distance]) }
     }

@@ -92,8 +92,7 @@ impl Sphere {
 
     /// How far the line of the ray is from the centre.
     pub fn offset(&self) -> f64 {
-        let to_centre = self.centre - self.ray.origin;
-        (to_centre - self.ray.direction * to_centre.dot(self.ray.direction)).norm()
+        self.ray.nearest_to(self.centre).1.norm()
     }
 
     /// Where the ray begins, from where it is nearest to the centre.

@@ -13,7 +13,6 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, Eq. 4.
 
-use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem};
@@ -26,10 +25,7 @@ pub struct Inversion;
 
 impl Estimator<FreeFlight> for Inversion {
     const INPUTS: Inputs = Inputs::NONE;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
         super::resolved(setup)

@@ -12,7 +12,6 @@
 
 use fearless_simd::Level;
 
-use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -27,12 +26,9 @@ pub struct Woodcock;
 
 impl Estimator<FreeFlight> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
     const IN_PACKETS: bool = true;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
 
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;

@@ -35,11 +35,7 @@ impl Pilot {
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
         let rays = settings.count_or("rays", 1..=10_000, 8);
         let safety = settings.number_or("safety", Domain::Positive, 1.2);
-        let start = if settings.has("start") {
-            settings.number("start", Domain::Positive).map(Some)
-        } else {
-            Some(None)
-        };
+        let start = settings.optional("start", |key| settings.number(key, Domain::Positive));
         Some(Self { rays: rays?, safety: safety?, start: start? })
     }
 }

@@ -103,7 +103,7 @@ impl<S: Simd> Flights<S> {
         if ground.constant.is_none() {
             for axis in 0..3 {
                 let place = (self.origin[axis] - ground.low[axis]) / zero.each(ground.width[axis]);
-                let cell = floor(place.or_more(zero).or_less(zero.each(ground.last[axis])));
+                let cell = Lane::floor(place.or_more(zero).or_less(zero.each(ground.last[axis])));
                 self.cell[axis] = Lane::select(which, cell, self.cell[axis]);
                 let slope = self.direction[axis];
                 let is_up = zero.below(slope);
@@ -205,11 +205,4 @@ impl<S: Simd> Flights<S> {
             }
         }
     }
-}
-
-/// The integers below numbers from 0 to `2^51`.
-#[inline(always)]
-fn floor<L: Lane>(x: L) -> L {
-    let nearest = x.nearest();
-    L::select(x.below(nearest), nearest - 1.0, nearest)
 }

@@ -37,17 +37,14 @@ impl Particle {
     pub fn read(settings: &Settings) -> Option<Self> {
         let names = ParticleRule::ALL.map(ParticleRule::name);
         let word = settings.word("rule", &names);
-        let roulette = if settings.has("roulette") {
-            let below = settings.number("roulette", Domain::Positive);
-            if below.is_some_and(|below| below > 1.0) {
-                let help = "a particle begins with weight 1";
-                settings.fault("roulette", "`roulette` is above 1", help);
+        let roulette = settings.optional("roulette", |key| {
+            let below = settings.number(key, Domain::Positive)?;
+            if below > 1.0 {
+                settings.fault(key, "`roulette` is above 1", "a particle begins with weight 1");
                 return None;
             }
-            Some(below?)
-        } else {
-            None
-        };
+            Some(below)
+        })?;
         let rule = ParticleRule::ALL.into_iter().find(|rule| Some(rule.name()) == word)?;
         Some(Self { roulette, ..Self::of(rule) })
     }

@@ -10,7 +10,6 @@
 //! Source: J. Novák, I. Georgiev, J. Hanika, W. Jarosz, *Monte Carlo Methods for Volumetric Light
 //! Transport Simulation*, Computer Graphics Forum 37 (2018), section 4.1.
 
-use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::Transmittance;
@@ -39,10 +38,7 @@ pub fn exact(setup: &Setup<Transmittance>, lookups: usize) -> Prediction {
 
 impl Estimator<Transmittance> for ClosedForm {
     const INPUTS: Inputs = Inputs::NONE;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
         Ok(())

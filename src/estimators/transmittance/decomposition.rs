@@ -19,7 +19,6 @@
 use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
@@ -43,11 +42,8 @@ fn constant_control(setup: &Setup<Transmittance>) -> Option<f64> {
 
 impl Estimator<Transmittance> for Decomposition {
     const INPUTS: Inputs = Inputs::BOTH;
+    const PLAIN: Option<Self> = Some(Self);
     const IN_PACKETS: bool = true;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
 
     fn default_control() -> Option<Box<dyn controls::Recipe>> {
         Some(Box::new(controls::minimum::Minimum))

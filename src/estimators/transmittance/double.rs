@@ -17,7 +17,6 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
-use crate::catalogue::Settings;
 use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
@@ -67,10 +66,7 @@ fn powers(scale: f64, factor: f64, mean: f64) -> Vec<(f64, f64)> {
 
 impl Estimator<Transmittance> for DoubleParticle {
     const INPUTS: Inputs = Inputs::BOTH;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn without_control() -> Option<&'static str> {
         Some("ratio")

@@ -19,7 +19,6 @@
 use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::catalogue::Settings;
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -35,12 +34,9 @@ pub struct LocalMajorant;
 
 impl Estimator<Transmittance> for LocalMajorant {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
     const IN_PACKETS: bool = true;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit(ZERO_OR_ONE)?;

@@ -16,7 +16,6 @@
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
 
 use super::double::{predict_weighted, unbiased_where_covered};
-use crate::catalogue::Settings;
 use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
@@ -28,10 +27,7 @@ pub struct Ratio;
 
 impl Estimator<Transmittance> for Ratio {
     const INPUTS: Inputs = Inputs::SAMPLING;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         unbiased_where_covered(setup)

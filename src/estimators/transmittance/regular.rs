@@ -12,7 +12,6 @@
 //! 1987; the name after Novák et al. 2018, section 4.2.
 
 use super::closed_form::exact;
-use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
@@ -26,10 +25,7 @@ pub struct Regular;
 
 impl Estimator<Transmittance> for Regular {
     const INPUTS: Inputs = Inputs::NONE;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         let varying = setup.mesh.panels().find(|panel| {

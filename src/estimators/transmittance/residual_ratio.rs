@@ -17,7 +17,6 @@
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
 
 use super::double::{predict_weighted, unbiased_where_covered};
-use crate::catalogue::Settings;
 use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, controls, product_draws};
 use crate::media::Control;
@@ -30,10 +29,7 @@ pub struct ResidualRatio;
 
 impl Estimator<Transmittance> for ResidualRatio {
     const INPUTS: Inputs = Inputs::BOTH;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn without_control() -> Option<&'static str> {
         Some("ratio")

@@ -14,7 +14,6 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
-use crate::catalogue::Settings;
 use crate::estimators::rules::Single;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
@@ -28,10 +27,7 @@ pub struct WeightedDelta;
 
 impl Estimator<Transmittance> for WeightedDelta {
     const INPUTS: Inputs = Inputs::SAMPLING;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_coverage()?;

@@ -16,7 +16,6 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
-use crate::catalogue::Settings;
 use crate::estimators::rules::Null;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
@@ -38,10 +37,7 @@ pub fn zero_or_one(prediction: Prediction) -> Prediction {
 
 impl Estimator<Transmittance> for Woodcock {
     const INPUTS: Inputs = Inputs::SAMPLING;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
+    const PLAIN: Option<Self> = Some(Self);
 
     fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
         setup.require_plain_unit(ZERO_OR_ONE)?;

@@ -21,7 +21,6 @@ use fearless_simd::Level;
 
 use super::packet;
 use super::ray_view::{self, RayView};
-use crate::catalogue::Settings;
 use crate::estimators::packet::Request;
 use crate::estimators::rules::Weight;
 use crate::estimators::walk::Invariant;
@@ -51,13 +50,10 @@ pub fn walk(setup: &Setup<TransmittanceCurve>, medium: &Medium, rng: &mut Stream
 
 impl Estimator<TransmittanceCurve> for DoubleCurve {
     const INPUTS: Inputs = Inputs::BOTH;
+    const PLAIN: Option<Self> = Some(Self);
     const SKIPS: bool = true;
     const HAS_INVARIANT: bool = true;
     const IN_PACKETS: bool = true;
-
-    fn read(_: &Settings) -> Option<Self> {
-        Some(Self)
-    }
 
     fn domain(&self, setup: &Setup<TransmittanceCurve>) -> Result<(), Refusal> {
         setup.require_coverage()?;
