@@ -19,7 +19,7 @@ use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Span, Wide};
 use crate::theory::sphere::ball::Ball;
 use crate::theory::sphere::shells::{Centre, Resolution};
-use crate::theory::sphere::{Asked, Lights, answers, point};
+use crate::theory::sphere::{Lights, Observable, answers, point};
 
 /// Directions of the ordinates.
 const ORDINATES: usize = 64;
@@ -128,9 +128,10 @@ fn place(dice: &mut Dice, core: f64) -> f64 {
 /// Homogeneous balls under the sky.
 fn even(t: &mut Trial) {
     let (depth, albedo) = (t.dice.sized(-2.0, 1.3), share(t.dice).max(1e-9));
-    let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(t.dice, 0.0))).collect();
+    let mut asked: Vec<Observable> =
+        (0..ASKED).map(|_| Observable::Mean(place(t.dice, 0.0))).collect();
     for _ in 0..4 {
-        asked.push(Asked::Radiance { offset: place(t.dice, 0.0), from: f64::NEG_INFINITY });
+        asked.push(Observable::Radiance { offset: place(t.dice, 0.0), from: f64::NEG_INFINITY });
     }
     let extinction = move |_: f64| depth;
     let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &extinction };
@@ -146,8 +147,8 @@ fn even(t: &mut Trial) {
             continue;
         };
         let exact = match *asked {
-            Asked::Mean(r) => exact.mean(r * depth),
-            Asked::Radiance { offset, .. } => exact.radiance(offset * depth),
+            Observable::Mean(r) => exact.mean(r * depth),
+            Observable::Radiance { offset, .. } => exact.radiance(offset * depth),
         };
         t.stated(row, found[i], exact);
     }
@@ -175,15 +176,16 @@ fn centre(dice: &mut Dice) -> (Centre, f64) {
     (Centre::Black(core), core)
 }
 
-fn questions(dice: &mut Dice, core: f64) -> Vec<Asked> {
-    let mut asked: Vec<Asked> = (0..ASKED).map(|_| Asked::Mean(place(dice, core))).collect();
+fn questions(dice: &mut Dice, core: f64) -> Vec<Observable> {
+    let mut asked: Vec<Observable> =
+        (0..ASKED).map(|_| Observable::Mean(place(dice, core))).collect();
     for _ in 0..2 * ASKED {
         let offset = place(dice, 0.0);
         let half = ((1.0 - offset) * (1.0 + offset)).sqrt();
         let blocked = if offset < core { (core * core - offset * offset).sqrt() } else { -half };
         let inside = dice.between(blocked, half);
         let from = if dice.below(2) == 0 { f64::NEG_INFINITY } else { inside };
-        asked.push(Asked::Radiance { offset, from });
+        asked.push(Observable::Radiance { offset, from });
     }
     asked
 }
@@ -274,7 +276,8 @@ mod tests {
         let centre = Centre::Black(0.152_548_266_190_216_4);
         let ball = Ball { radius: 1.0, centre, extinction: &extinction };
         let lights = Lights { environment: 0.0, core: 1.0 };
-        let asked = [Asked::Radiance { offset: 0.624_808_847_846_952, from: f64::NEG_INFINITY }];
+        let asked =
+            [Observable::Radiance { offset: 0.624_808_847_846_952, from: f64::NEG_INFINITY }];
         let of = |resolution| {
             let found = answers(&ball, 0.392_282_540_822_851_2, lights, resolution, &asked);
             found.expect("a medium")[0]

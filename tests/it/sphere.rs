@@ -8,7 +8,7 @@ use trueflight::harness::Plan;
 use trueflight::harness::record::Verdict;
 use trueflight::theory::sphere::ball::Ball;
 use trueflight::theory::sphere::shells::{Centre, Resolution};
-use trueflight::theory::sphere::{Asked, Lights, answers, point};
+use trueflight::theory::sphere::{Lights, Observable, answers, point};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -42,11 +42,11 @@ fn extinction(reference: &Reference) -> Profile {
     }
 }
 
-fn compare(light: &str, centre: Centre, lights: Lights, asked: fn(f64) -> Asked) {
+fn compare(light: &str, centre: Centre, lights: Lights, asked: fn(f64) -> Observable) {
     for reference in references(light) {
         let extinction = extinction(&reference);
         let ball = Ball { radius: RADIUS, centre, extinction: &extinction };
-        let asked: Vec<Asked> = reference.at.iter().map(|&at| asked(at)).collect();
+        let asked: Vec<Observable> = reference.at.iter().map(|&at| asked(at)).collect();
         let precise = |resolution, allowed: f64| {
             let found = answers(&ball, reference.a, lights, resolution, &asked).expect("a medium");
             for (known, exact) in found.iter().zip(&reference.value) {
@@ -67,13 +67,13 @@ fn compare(light: &str, centre: Centre, lights: Lights, asked: fn(f64) -> Asked)
 
 const SKY: Lights = Lights { environment: 1.0, core: 0.0 };
 
-fn from_afar(offset: f64) -> Asked {
-    Asked::Radiance { offset, from: f64::NEG_INFINITY }
+fn from_afar(offset: f64) -> Observable {
+    Observable::Radiance { offset, from: f64::NEG_INFINITY }
 }
 
 #[test]
 fn escape_probabilities_are_those_of_the_references() {
-    compare("escape", Centre::Medium, SKY, Asked::Mean);
+    compare("escape", Centre::Medium, SKY, Observable::Mean);
 }
 
 #[test]
@@ -342,7 +342,8 @@ fn coarse_answers(is_wanted: impl Fn(&str) -> bool) {
             [(Centre::Medium, SKY), (Centre::Black(0.4), Lights { environment: 0.0, core: 1.0 })]
         {
             let ball = Ball { radius: 1.0, centre, extinction: &extinction };
-            let asked = [Asked::Mean(0.5), Asked::Mean(0.99), from_afar(0.45), from_afar(0.97)];
+            let asked =
+                [Observable::Mean(0.5), Observable::Mean(0.99), from_afar(0.45), from_afar(0.97)];
             let solve = |resolution| answers(&ball, 0.95, lights, resolution, &asked);
             let coarse = solve(Resolution::COARSE).expect("a medium");
             // No finer than needed: these are whole matrices.
@@ -367,8 +368,8 @@ fn every_ray_past_a_lamp_is_answered() {
     let lamp = Lights { environment: 0.0, core: 1.0 };
     let offsets =
         (0..40).map(|i| 0.31 + 0.029 * f64::from(i)).chain([0.9, 0.95, 0.99, 1.0, 1.01, 1.1]);
-    let asked: Vec<Asked> =
-        offsets.map(|offset| Asked::Radiance { offset, from: f64::NEG_INFINITY }).collect();
+    let asked: Vec<Observable> =
+        offsets.map(|offset| Observable::Radiance { offset, from: f64::NEG_INFINITY }).collect();
     let of = |resolution| answers(&ball, 0.95, lamp, resolution, &asked).expect("a medium");
     let finer = Resolution { nodes: 9, directions: 9, surface: 11, core: 14, ..Resolution::FINE };
     let (found, fine) = (of(Resolution::COARSE), of(finer));

@@ -19,7 +19,7 @@ use crate::problems::Sphere;
 use crate::problems::sphere::{Light, Sought};
 use crate::rng::Stream;
 use crate::theory::single::Tracking;
-use crate::theory::sphere::{Answer, Asked, Lights, Scene, Spread, cached};
+use crate::theory::sphere::{Answer, Lights, Observable, Scene, Spread, cached};
 use crate::theory::{Channel, Law, Moments, Odds, ParticleRule, Prediction, Tails};
 
 pub use connect::{Connect, Honest, Seeker};
@@ -54,9 +54,9 @@ fn answer(sphere: &Sphere) -> Option<Answer> {
         Light::BlackSphere(radius) => (Some(radius), Lights { environment: 0.0, core: 1.0 }),
         Light::Environment | Light::Distant(_) => (None, Lights { environment: 1.0, core: 0.0 }),
     };
-    let asked = match sphere.sought {
-        Sought::Radiance => Asked::Radiance { offset: sphere.offset(), from: sphere.begins() },
-        Sought::MeanIntensity => Asked::Mean(sphere.distance()),
+    let observable = match sphere.sought {
+        Sought::Radiance => Observable::Radiance { offset: sphere.offset(), from: sphere.begins() },
+        Sought::MeanIntensity => Observable::Mean(sphere.distance()),
     };
     let scene = Scene {
         radius: sphere.radius,
@@ -64,7 +64,7 @@ fn answer(sphere: &Sphere) -> Option<Answer> {
         albedo: sphere.scene.albedo.even()?,
         lights,
         is_distant: matches!(sphere.light, Light::Distant(_)),
-        asked,
+        observable,
     };
     cached(&scene, &|r2| sphere.extinction(r2))
 }

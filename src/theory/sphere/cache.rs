@@ -2,7 +2,7 @@
 
 use super::ball::Ball;
 use super::shells::Resolution;
-use super::{Asked, Lights, Spread, centre_of, solved};
+use super::{Lights, Observable, Spread, centre_of, solved};
 use crate::numeric::Known;
 use crate::theory::memo::Memo;
 
@@ -19,8 +19,8 @@ pub struct Scene {
     pub lights: Lights,
     /// Whether the environment stands for a distant light, looked at from the centre.
     pub is_distant: bool,
-    /// What is asked about.
-    pub asked: Asked,
+    /// What is sought.
+    pub observable: Observable,
 }
 
 /// What there is to know.
@@ -37,16 +37,16 @@ static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
 impl Scene {
     /// The bits of all numbers, and of σ_t at so many places that no other field shares them.
     fn key(&self, extinction: &dyn Fn(f64) -> f64) -> Vec<u64> {
-        let (kind, asked) = match self.asked {
-            Asked::Mean(r) => (0.0, [r, 0.0]),
-            Asked::Radiance { offset, from } => (1.0, [offset, from]),
+        let (kind, observable) = match self.observable {
+            Observable::Mean(r) => (0.0, [r, 0.0]),
+            Observable::Radiance { offset, from } => (1.0, [offset, from]),
         };
         let lights = [self.lights.environment, self.lights.core];
         let core = self.core.unwrap_or(-1.0);
         let distant = f64::from(u8::from(self.is_distant));
         let mut numbers = vec![self.radius, core, self.albedo, kind, distant];
         numbers.extend(lights);
-        numbers.extend(asked);
+        numbers.extend(observable);
         let outer = self.radius * self.radius;
         numbers.extend((0..=32).map(|i| extinction(outer * f64::from(i) / 32.0)));
         numbers.into_iter().map(f64::to_bits).collect()
@@ -57,8 +57,8 @@ impl Scene {
         let ball = Ball { radius: self.radius, centre, extinction };
         let resolution = Resolution::COARSE.about(centre, self.radius);
         let solved = solved(&ball, self.albedo, self.lights, resolution)?;
-        let value = resolution.known(solved.each_ref().map(|s| s.answer(self.asked)));
-        Some(Answer { value, spread: solved[0].spread(self.asked, self.is_distant)? })
+        let value = resolution.known(solved.each_ref().map(|s| s.answer(self.observable)));
+        Some(Answer { value, spread: solved[0].spread(self.observable, self.is_distant)? })
     }
 }
 
@@ -80,7 +80,7 @@ mod tests {
             albedo: 0.5,
             lights: sky,
             is_distant: false,
-            asked: Asked::Mean(0.5),
+            observable: Observable::Mean(0.5),
         };
         let of = |scene: &Scene, sigma: f64| {
             let found = cached(scene, &|_| sigma).expect("a medium");
@@ -93,8 +93,11 @@ mod tests {
             of(&scene, 1.1),
             of(&Scene { albedo: 0.6, ..scene }, 1.0),
             of(&Scene { core: Some(0.2), ..scene }, 1.0),
-            of(&Scene { asked: Asked::Mean(0.6), ..scene }, 1.0),
-            of(&Scene { asked: Asked::Radiance { offset: 0.5, from: 0.0 }, ..scene }, 1.0),
+            of(&Scene { observable: Observable::Mean(0.6), ..scene }, 1.0),
+            of(
+                &Scene { observable: Observable::Radiance { offset: 0.5, from: 0.0 }, ..scene },
+                1.0,
+            ),
         ];
         for (i, x) in values.iter().enumerate() {
             assert!(values[..i].iter().all(|y| x != y));

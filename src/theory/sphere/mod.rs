@@ -43,9 +43,9 @@ pub struct Lights {
     pub core: f64,
 }
 
-/// What is asked about.
+/// What may be seen of the light.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Asked {
+pub enum Observable {
     /// The mean intensity at a distance from the centre.
     Mean(f64),
     /// The radiance that arrives along a line of sight.
@@ -134,10 +134,10 @@ impl<'a> Solved<'a> {
         (direct, row.weights(&self.shells, &self.rules))
     }
 
-    fn arriving(&self, asked: Asked) -> Arriving {
-        match asked {
-            Asked::Mean(r) => self.mean_row(r),
-            Asked::Radiance { offset, from } => {
+    fn arriving(&self, observable: Observable) -> Arriving {
+        match observable {
+            Observable::Mean(r) => self.mean_row(r),
+            Observable::Radiance { offset, from } => {
                 let mut row = Row::new(self.shells.count);
                 let direct = self.view(offset * offset, from, 1.0, &mut row);
                 (direct, row.weights(&self.shells, &self.rules))
@@ -146,13 +146,13 @@ impl<'a> Solved<'a> {
     }
 
     /// The answer to a question.
-    pub fn answer(&self, asked: Asked) -> f64 {
-        let (direct, weights) = self.arriving(asked);
+    pub fn answer(&self, observable: Observable) -> f64 {
+        let (direct, weights) = self.arriving(observable);
         direct + product(&weights, &self.source)
     }
 
     /// What bounds the square of what next-event estimation says, see [`Spread`].
-    fn spread(&self, asked: Asked, is_distant: bool) -> Option<Spread> {
+    fn spread(&self, observable: Observable, is_distant: bool) -> Option<Spread> {
         let brightest = |r2: f64| match self.ball.centre {
             Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
             _ => 1.0,
@@ -168,13 +168,13 @@ impl<'a> Solved<'a> {
             let all = if self.albedo > 0.0 { direct + more / self.albedo } else { direct };
             crossed_scores.push(crossed(brightest(r2), direct, all));
         }
-        let (direct, weights) = self.arriving(asked);
+        let (direct, weights) = self.arriving(observable);
         let lit = product(&weights, &self.gathered(&lit_scores)?);
         let more = product(&weights, &self.gathered(&crossed_scores)?);
         let found = Spread { unscattered: 0.0, lit, crossed: more };
-        Some(match asked {
-            Asked::Radiance { .. } => Spread { unscattered: direct, ..found },
-            Asked::Mean(r) => {
+        Some(match observable {
+            Observable::Radiance { .. } => Spread { unscattered: direct, ..found },
+            Observable::Mean(r) => {
                 let (most, all) = (brightest(r * r), direct + product(&weights, &self.source));
                 let lit = lit + most * direct;
                 Spread { lit, crossed: more + crossed(most, direct, all), ..found }
@@ -231,12 +231,14 @@ pub fn answers(
     albedo: f64,
     lights: Lights,
     resolution: Resolution,
-    asked: &[Asked],
+    observable: &[Observable],
 ) -> Option<Vec<Known>> {
     let resolution = resolution.about(ball.centre, ball.radius);
     let solved = solved(ball, albedo, lights, resolution)?;
-    let known = |&asked: &Asked| resolution.known(solved.each_ref().map(|s| s.answer(asked)));
-    Some(asked.iter().map(known).collect())
+    let known = |&observable: &Observable| {
+        resolution.known(solved.each_ref().map(|s| s.answer(observable)))
+    };
+    Some(observable.iter().map(known).collect())
 }
 
 /// Whether there is a black sphere that light may end on.
@@ -255,14 +257,14 @@ mod tests {
         let extinction = |r2: f64| 3.0 - r2;
         let ball = Ball { radius: 1.3, centre: Centre::Medium, extinction: &extinction };
         let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
-        for asked in [
-            Asked::Mean(0.0),
-            Asked::Mean(0.9),
-            Asked::Mean(1.3),
-            Asked::Radiance { offset: 0.4, from: f64::NEG_INFINITY },
-            Asked::Radiance { offset: 0.4, from: 0.2 },
+        for observable in [
+            Observable::Mean(0.0),
+            Observable::Mean(0.9),
+            Observable::Mean(1.3),
+            Observable::Radiance { offset: 0.4, from: f64::NEG_INFINITY },
+            Observable::Radiance { offset: 0.4, from: 0.2 },
         ] {
-            assert!((solved.answer(asked) - 1.0).abs() < 1e-9, "{asked:?}");
+            assert!((solved.answer(observable) - 1.0).abs() < 1e-9, "{observable:?}");
         }
     }
 
@@ -271,12 +273,12 @@ mod tests {
         let ball = Ball { radius: 1.5, centre: Centre::Black(0.3), extinction: &|_| 1.0 };
         let lights = Lights { environment: 1.0, core: 1.0 };
         let solved = Solved::new(&ball, 1.0, lights, Resolution::COARSE).expect("a medium");
-        for asked in [
-            Asked::Mean(0.31),
-            Asked::Mean(1.2),
-            Asked::Radiance { offset: 0.1, from: f64::NEG_INFINITY },
+        for observable in [
+            Observable::Mean(0.31),
+            Observable::Mean(1.2),
+            Observable::Radiance { offset: 0.1, from: f64::NEG_INFINITY },
         ] {
-            assert!((solved.answer(asked) - 1.0).abs() < 1e-9, "{asked:?}");
+            assert!((solved.answer(observable) - 1.0).abs() < 1e-9, "{observable:?}");
         }
     }
 
@@ -285,8 +287,8 @@ mod tests {
         // From the centre all ways out are one radius long.
         let ball = Ball { radius: 2.0, centre: Centre::Medium, extinction: &|_| 0.7 };
         let solved = Solved::new(&ball, 0.0, SKY, Resolution::COARSE).expect("a medium");
-        assert!((solved.answer(Asked::Mean(0.0)) - (-1.4f64).exp()).abs() < 1e-13);
-        let across = Asked::Radiance { offset: 1.2, from: f64::NEG_INFINITY };
+        assert!((solved.answer(Observable::Mean(0.0)) - (-1.4f64).exp()).abs() < 1e-13);
+        let across = Observable::Radiance { offset: 1.2, from: f64::NEG_INFINITY };
         assert!((solved.answer(across) - (-0.7f64 * 3.2).exp()).abs() < 1e-13);
     }
 
@@ -305,7 +307,7 @@ mod tests {
         let out = rules.of(40);
         let flux = |solved: &Solved, from: f64, to: f64, begin: fn(f64, f64) -> f64| {
             out.integrate(from, to, |p| {
-                p * solved.answer(Asked::Radiance { offset: p, from: begin(p, 0.4) })
+                p * solved.answer(Observable::Radiance { offset: p, from: begin(p, 0.4) })
             })
         };
         let far: fn(f64, f64) -> f64 = |_, _| f64::NEG_INFINITY;
@@ -320,7 +322,7 @@ mod tests {
         // One scattering at most, h = 1 almost surely: X = 1 unscattered or scattered, never both.
         let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-6 };
         let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
-        let through = Asked::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
+        let through = Observable::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
         let spread = solved.spread(through, false).expect("finite");
         assert!((spread.square(1.0) - 1.0).abs() < 1e-10, "{spread:?}");
         assert!((spread.lit - 2e-6).abs() < 1e-11 && spread.crossed < 1e-11);
