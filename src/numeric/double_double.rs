@@ -16,35 +16,57 @@
 
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// A number of about 32 digits.
+use super::Lane;
+
+/// A number of about 32 digits, or a pack of them.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Wide {
+pub struct Wide<L = f64> {
     /// The number, rounded to a double.
-    pub high: f64,
+    pub high: L,
     /// What that rounding took away.
-    pub low: f64,
+    pub low: L,
 }
 
 /// The sum of two doubles and its rounding error, exactly.
-#[inline]
-pub fn two_sum(a: f64, b: f64) -> Wide {
+#[inline(always)]
+pub fn two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
     let high = a + b;
     let moved = high - a;
     Wide { high, low: (a - (high - moved)) + (b - moved) }
 }
 
 /// The same for `|a| ≥ |b|` or `a = 0`.
-#[inline]
-fn quick_two_sum(a: f64, b: f64) -> Wide {
+#[inline(always)]
+fn quick_two_sum<L: Lane>(a: L, b: L) -> Wide<L> {
     let high = a + b;
     Wide { high, low: b - (high - a) }
 }
 
 /// The product of two doubles and its rounding error, exactly but for underflow.
-#[inline]
-pub fn two_prod(a: f64, b: f64) -> Wide {
+#[inline(always)]
+pub fn two_prod<L: Lane>(a: L, b: L) -> Wide<L> {
     let high = a * b;
-    Wide { high, low: a.mul_add(b, -high) }
+    Wide { high, low: a.fused(b, -high) }
+}
+
+impl<L: Lane> Wide<L> {
+    /// `self · factor`.
+    #[must_use]
+    #[inline(always)]
+    pub fn times(self, factor: L) -> Self {
+        let product = two_prod(self.high, factor);
+        quick_two_sum(product.high, product.low + self.low * factor)
+    }
+
+    /// `√self` of a positive number: Karp's trick, one Newton step on 1/√x.
+    #[must_use]
+    #[inline(always)]
+    pub fn root(self) -> Self {
+        let inverse = self.high.each(1.0) / self.high.root();
+        let root = self.high * inverse;
+        let left = (self - two_prod(root, root)).high;
+        two_sum(root, left * (inverse * 0.5))
+    }
 }
 
 impl Wide {
@@ -94,14 +116,7 @@ impl Wide {
     /// `√self`; 0 for numbers that are not positive.
     #[must_use]
     pub fn sqrt(self) -> Self {
-        if self.high <= 0.0 {
-            return Self::default();
-        }
-        // Karp's trick: one Newton step on 1/√x.
-        let inverse = 1.0 / self.high.sqrt();
-        let root = self.high * inverse;
-        let left = (self - two_prod(root, root)).high;
-        two_sum(root, left * (inverse * 0.5))
+        if self.high <= 0.0 { Self::default() } else { self.root() }
     }
 
     /// `e^self`.
@@ -213,9 +228,9 @@ impl From<f64> for Wide {
     }
 }
 
-impl Add for Wide {
+impl<L: Lane> Add for Wide<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         let (high, low) = (two_sum(self.high, other.high), two_sum(self.low, other.low));
         let sum = quick_two_sum(high.high, high.low + low.high);
@@ -223,42 +238,42 @@ impl Add for Wide {
     }
 }
 
-impl Sub for Wide {
+impl<L: Lane> Sub for Wide<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         self + -other
     }
 }
 
-impl Neg for Wide {
+impl<L: Lane> Neg for Wide<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         Self { high: -self.high, low: -self.low }
     }
 }
 
-impl Mul for Wide {
+impl<L: Lane> Mul for Wide<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
         let product = two_prod(self.high, other.high);
-        let cross = self.high.mul_add(other.low, self.low * other.high);
+        let cross = self.high.fused(other.low, self.low * other.high);
         quick_two_sum(product.high, product.low + cross)
     }
 }
 
-impl Div for Wide {
+impl<L: Lane> Div for Wide<L> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
-        let left = self - other * Self::from(first);
+        let left = self - other.times(first);
         let second = left.high / other.high;
-        let left = left - other * Self::from(second);
+        let left = left - other.times(second);
         let third = left.high / other.high;
-        quick_two_sum(first, second) + Self::from(third)
+        quick_two_sum(first, second) + Self { high: third, low: third.each(0.0) }
     }
 }
 

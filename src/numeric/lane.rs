@@ -69,6 +69,13 @@ pub trait Lane:
     #[must_use]
     fn times_plus(self, factor: Self, term: Self) -> Self;
 
+    /// The same, rounded once on every machine by doubles, and by packs where the machine can.
+    #[must_use]
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        self.times_plus(factor, term)
+    }
+
     /// `Σ cₙ selfⁿ`.
     #[must_use]
     #[inline(always)]
@@ -243,6 +250,11 @@ impl Lane for f64 {
     #[inline(always)]
     fn times_plus(self, factor: Self, term: Self) -> Self {
         if *FUSED { self.mul_add(factor, term) } else { self * factor + term }
+    }
+
+    #[inline(always)]
+    fn fused(self, factor: Self, term: Self) -> Self {
+        self.mul_add(factor, term)
     }
 
     #[inline(always)]
