@@ -28,32 +28,11 @@ pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
         .par_iter()
         .map(|(case, drawn)| {
             let both = case.experiments.par_iter().zip(drawn.par_iter());
-            both.map(|(planned, drawn)| of_experiment(plan, case, planned, drawn)).collect()
+            both.map(|(planned, drawn)| Experiment { plan, case, planned, drawn }.findings())
+                .collect()
         })
         .collect();
     judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
-    findings
-}
-
-/// What is found of one experiment; laws still have to be judged together.
-fn of_experiment(
-    plan: &Plan,
-    case: &PlannedCase,
-    planned: &Planned,
-    drawn: &Drawn,
-) -> Vec<Finding> {
-    if drawn.draws == 0 {
-        let reason = "the limit of time or draws came before the first draw".to_owned();
-        return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
-    }
-    let both = planned.questions.iter().zip(&drawn.totals);
-    let mut findings: Vec<Finding> = both
-        .filter_map(|(question, total)| of_question(plan, case, planned, drawn, question, total))
-        .collect();
-    qualify_means(plan, planned, &mut findings);
-    if planned.expect_biased {
-        show_anywhere(&mut findings);
-    }
     findings
 }
 
@@ -73,67 +52,175 @@ fn blank(check: &str, what: &str, channel: String) -> Finding {
     }
 }
 
-fn of_question(
-    plan: &Plan,
-    case: &PlannedCase,
-    planned: &Planned,
-    drawn: &Drawn,
-    question: &Question,
-    total: &Total,
-) -> Option<Finding> {
-    let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
-    let channel = question.channel.map_or(String::new(), |index| channels[index].name.clone());
-    let expects_bias = question.expects_bias;
-    let finding = Finding { expects_bias, ..blank(&question.check, &question.what, channel) };
-    Some(match (&question.kind, total) {
-        (Kind::Scalar(scalar), Total::Gate(state)) => {
-            let (verdict, reason) = if question.expects_bias {
-                biased(plan, planned, drawn, state)
-            } else {
-                decided(plan, case, question, scalar, state)
-            };
-            let gate = Some(gate_finding(plan, question, scalar, state));
-            let block = Some(state.draws.saturating_sub(1) / BLOCK);
-            Finding { gate, block, verdict, reason, ..finding }
+/// An experiment and what it drew.
+struct Experiment<'a> {
+    plan: &'a Plan<'a>,
+    case: &'a PlannedCase<'a>,
+    planned: &'a Planned,
+    drawn: &'a Drawn,
+}
+
+impl Experiment<'_> {
+    /// What is found; laws still have to be judged together.
+    fn findings(&self) -> Vec<Finding> {
+        if self.drawn.draws == 0 {
+            let reason = "the limit of time or draws came before the first draw".to_owned();
+            return vec![Finding { reason, ..blank("mean", "the mean", String::new()) }];
         }
-        (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
-            let (what, fixed, drawn) = (&question.what, planned.fixed, drawn.draws);
-            let reason = format!("{what}: cut after {drawn} of {fixed} draws");
-            Finding { reason, ..finding }
+        let both = self.planned.questions.iter().zip(&self.drawn.totals);
+        let mut findings: Vec<Finding> =
+            both.filter_map(|(question, total)| self.finding(question, total)).collect();
+        qualify_means(self.plan, self.planned, &mut findings);
+        if self.planned.expect_biased {
+            show_anywhere(&mut findings);
         }
-        (Kind::Law(law), Total::Law(sums)) => {
-            let sums: Vec<f64> = sums.iter().map(Sum::value).collect();
-            let p = law.p_value(&sums, planned.fixed as f64);
-            let (verdict, reason) = if p.is_some() {
-                (Verdict::Pass, String::new())
-            } else {
-                let reason = format!("{} has too few draws for a test", question.what);
-                (Verdict::Underpowered, reason)
-            };
-            Finding { p, verdict, reason, ..finding }
+        findings
+    }
+
+    fn finding(&self, question: &Question, total: &Total) -> Option<Finding> {
+        let Self { planned, drawn, .. } = *self;
+        let channels = planned.outcome.as_ref().map_or(&[][..], |ready| &ready.prediction.channels);
+        let channel = question.channel.map_or(String::new(), |index| channels[index].name.clone());
+        let expects_bias = question.expects_bias;
+        let finding = Finding { expects_bias, ..blank(&question.check, &question.what, channel) };
+        Some(match (&question.kind, total) {
+            (Kind::Scalar(scalar), Total::Gate(state)) => {
+                let (verdict, reason) = if question.expects_bias {
+                    self.biased(state)
+                } else {
+                    self.decided(question, scalar, state)
+                };
+                let gate = Some(self.gate_finding(question, scalar, state));
+                let block = Some(state.draws.saturating_sub(1) / BLOCK);
+                Finding { gate, block, verdict, reason, ..finding }
+            }
+            (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
+                let (what, fixed, drawn) = (&question.what, planned.fixed, drawn.draws);
+                let reason = format!("{what}: cut after {drawn} of {fixed} draws");
+                Finding { reason, ..finding }
+            }
+            (Kind::Law(law), Total::Law(sums)) => {
+                let sums: Vec<f64> = sums.iter().map(Sum::value).collect();
+                let p = law.p_value(&sums, planned.fixed as f64);
+                let (verdict, reason) = if p.is_some() {
+                    (Verdict::Pass, String::new())
+                } else {
+                    let reason = format!("{} has too few draws for a test", question.what);
+                    (Verdict::Underpowered, reason)
+                };
+                Finding { p, verdict, reason, ..finding }
+            }
+            (Kind::Inspection(look), _) => {
+                let ready = planned.outcome.as_ref().ok()?;
+                let inspected = Inspected {
+                    experiment: ready.experiment.as_ref(),
+                    channels: channels.len(),
+                    streams: &|block| planned.streams(block),
+                    blocks: planned.fixed.div_ceil(BLOCK),
+                };
+                Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
+            }
+            (Kind::Always(always), &Total::Largest(largest, block)) => {
+                let (verdict, reason) = kept(question, always, largest);
+                let block = (verdict == Verdict::Fail).then_some(block);
+                Finding { block, verdict, reason, ..finding }
+            }
+            (Kind::Untestable(why), _) => {
+                let reason = format!("{} cannot be tested: {why}", question.what);
+                let verdict = self.too_weak(question);
+                Finding { verdict, reason, ..finding }
+            }
+            _ => return None,
+        })
+    }
+
+    fn gate_finding(&self, question: &Question, scalar: &Scalar, state: &GateState) -> GateFinding {
+        let levels = &self.plan.levels;
+        GateFinding {
+            tolerance: scalar.design.tolerance,
+            variance: scalar.design.variance,
+            mean: state.mean,
+            planned: scalar.draws,
+            draws: state.draws,
+            ln_e: state.evidence.ln_e,
+            ln_e_limit: if question.expects_bias { levels.ln_biased } else { levels.ln_fail },
+            ln_p: state.evidence.ln_pass,
+            ln_p_limit: levels.ln_pass,
+            needed: scalar.underpowered,
+            is_decided: state.decision != Decision::Open,
         }
-        (Kind::Inspection(look), _) => {
-            let ready = planned.outcome.as_ref().ok()?;
-            let inspected = Inspected {
-                experiment: ready.experiment.as_ref(),
-                channels: channels.len(),
-                streams: &|block| planned.streams(block),
-                blocks: planned.fixed.div_ceil(BLOCK),
-            };
-            Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
+    }
+
+    fn decided(
+        &self,
+        question: &Question,
+        scalar: &Scalar,
+        state: &GateState,
+    ) -> (Verdict, String) {
+        let what = &question.what;
+        let evidence = &state.evidence;
+        match state.decision {
+            Decision::Passed => (Verdict::Pass, String::new()),
+            Decision::Failed => {
+                let error = (scalar.design.variance / state.draws as f64).sqrt();
+                let (off, z) = (state.mean, state.mean / error);
+                let reason = format!(
+                    "{what} is off by {off:+.2e}, {z:+.1} standard errors (ln E = {:.1} ≥ {:.1} after \
+                     {} draws)",
+                    evidence.ln_e, self.plan.levels.ln_fail, state.draws
+                );
+                (Verdict::Fail, reason)
+            }
+            Decision::Open => {
+                if let Some(needed) = scalar.underpowered {
+                    let reason = if needed.is_finite() {
+                        format!("{what} needs {needed:.1e} draws")
+                    } else {
+                        format!(
+                            "the prediction of {what} is known to {:.0e} only",
+                            scalar.design.floor
+                        )
+                    };
+                    return (self.too_weak(question), reason);
+                }
+                let [above, below] = evidence.ln_pass;
+                let reason = format!(
+                    "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
+                    state.draws, self.plan.levels.ln_pass
+                );
+                (Verdict::Inconclusive, reason)
+            }
         }
-        (Kind::Always(always), &Total::Largest(largest, block)) => {
-            let (verdict, reason) = kept(question, always, largest);
-            let block = (verdict == Verdict::Fail).then_some(block);
-            Finding { block, verdict, reason, ..finding }
+    }
+
+    /// The verdict on a question that was never promised to pass.
+    fn too_weak(&self, question: &Question) -> Verdict {
+        let counts = question.check == "mean" && !self.case.case.allow_underpowered;
+        if counts || self.plan.options.strict {
+            Verdict::Inconclusive
+        } else {
+            Verdict::Underpowered
         }
-        (Kind::Untestable(why), _) => {
-            let reason = format!("{} cannot be tested: {why}", question.what);
-            let verdict = too_weak(plan, case, question);
-            Finding { verdict, reason, ..finding }
+    }
+
+    /// The verdict on a bias that the case declares.
+    fn biased(&self, state: &GateState) -> (Verdict, String) {
+        let bias = percent(state.mean);
+        let was_cut = self.drawn.draws < self.planned.draws;
+        match state.decision {
+            Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
+            Decision::Open if was_cut => {
+                let reason = format!("the bias is not shown after {} draws", state.draws);
+                (Verdict::Inconclusive, reason)
+            }
+            _ => {
+                let (found, limit) = (state.evidence.ln_e, self.plan.levels.ln_biased);
+                let reason =
+                    format!("expected a bias, found {bias} (ln E = {found:.1} of {limit:.1})");
+                (Verdict::Fail, reason)
+            }
         }
-        _ => return None,
-    })
+    }
 }
 
 /// Why what a channel's draws would say cannot be tested, whatever they say: known before the first
@@ -145,92 +232,6 @@ pub fn untestable(planned: &Planned, channel: usize) -> String {
         Some(format!("{} cannot be tested: {why}", question.what))
     });
     reasons.collect::<Vec<_>>().join("; ")
-}
-
-fn gate_finding(
-    plan: &Plan,
-    question: &Question,
-    scalar: &Scalar,
-    state: &GateState,
-) -> GateFinding {
-    let levels = &plan.levels;
-    GateFinding {
-        tolerance: scalar.design.tolerance,
-        variance: scalar.design.variance,
-        mean: state.mean,
-        planned: scalar.draws,
-        draws: state.draws,
-        ln_e: state.evidence.ln_e,
-        ln_e_limit: if question.expects_bias { levels.ln_biased } else { levels.ln_fail },
-        ln_p: state.evidence.ln_pass,
-        ln_p_limit: levels.ln_pass,
-        needed: scalar.underpowered,
-        is_decided: state.decision != Decision::Open,
-    }
-}
-
-fn decided(
-    plan: &Plan,
-    case: &PlannedCase,
-    question: &Question,
-    scalar: &Scalar,
-    state: &GateState,
-) -> (Verdict, String) {
-    let what = &question.what;
-    let evidence = &state.evidence;
-    match state.decision {
-        Decision::Passed => (Verdict::Pass, String::new()),
-        Decision::Failed => {
-            let error = (scalar.design.variance / state.draws as f64).sqrt();
-            let (off, z) = (state.mean, state.mean / error);
-            let reason = format!(
-                "{what} is off by {off:+.2e}, {z:+.1} standard errors (ln E = {:.1} ≥ {:.1} after \
-                 {} draws)",
-                evidence.ln_e, plan.levels.ln_fail, state.draws
-            );
-            (Verdict::Fail, reason)
-        }
-        Decision::Open => {
-            if let Some(needed) = scalar.underpowered {
-                let reason = if needed.is_finite() {
-                    format!("{what} needs {needed:.1e} draws")
-                } else {
-                    format!("the prediction of {what} is known to {:.0e} only", scalar.design.floor)
-                };
-                return (too_weak(plan, case, question), reason);
-            }
-            let [above, below] = evidence.ln_pass;
-            let reason = format!(
-                "{what} is undecided after {} draws (ln P = {above:.1} and {below:.1} of {:.1})",
-                state.draws, plan.levels.ln_pass
-            );
-            (Verdict::Inconclusive, reason)
-        }
-    }
-}
-
-/// The verdict on a question that was never promised to pass.
-fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict {
-    let counts = question.check == "mean" && !case.case.allow_underpowered;
-    if counts || plan.options.strict { Verdict::Inconclusive } else { Verdict::Underpowered }
-}
-
-/// The verdict on a bias that the case declares.
-fn biased(plan: &Plan, planned: &Planned, drawn: &Drawn, state: &GateState) -> (Verdict, String) {
-    let bias = percent(state.mean);
-    let was_cut = drawn.draws < planned.draws;
-    match state.decision {
-        Decision::Failed => (Verdict::Pass, format!("biased-as-expected: {bias}")),
-        Decision::Open if was_cut => {
-            let reason = format!("the bias is not shown after {} draws", state.draws);
-            (Verdict::Inconclusive, reason)
-        }
-        _ => {
-            let (found, limit) = (state.evidence.ln_e, plan.levels.ln_biased);
-            let reason = format!("expected a bias, found {bias} (ln E = {found:.1} of {limit:.1})");
-            (Verdict::Fail, reason)
-        }
-    }
 }
 
 /// A relative difference in percent.
