@@ -3,32 +3,19 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, mask64x8};
 
 use crate::estimators::packet::Request;
+use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, splat};
-use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, By, Collision, Particle, Sink, Start, Tally, Walked};
+use crate::estimators::space::packet::walks;
+use crate::estimators::space::tally::{Collision, Departure, add_where};
+use crate::estimators::space::{self, By, Particle, Start, Sums, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
-use crate::geometry::Point;
 use crate::numeric::Lane;
 use crate::problems::Furnace;
 use crate::rng::Stream;
 use crate::theory::Prediction;
-
-/// What a particle has brought.
-#[derive(Debug, Clone, Copy, Default)]
-struct Energy(f64);
-
-impl Sink for Energy {
-    fn collided(&mut self, at: &Collision) {
-        self.0 += at.weight * at.ratio * (1.0 - at.albedo);
-    }
-
-    fn escaped(&mut self, _: Point, _: Point, weight: f64, _: u32) {
-        self.0 += weight;
-    }
-}
 
 impl Walked for Furnace {
     fn domain(setup: &Setup<Self>, particle: &Particle) -> Result<(), Refusal> {
@@ -54,9 +41,9 @@ impl Walked for Furnace {
             return Draw::free([f64::NAN], 0);
         };
         let start = Start { place: furnace.entry, direction: furnace.direction, weight: 1.0 };
-        let mut energy = Energy::default();
-        let lookups = space::walk(by, &furnace.scene, majorants, start, &mut energy, rng);
-        Draw::free([energy.0], lookups)
+        let mut sums = Sums::new(furnace);
+        let lookups = space::walk(by, &furnace.scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.at, lookups)
     }
 
     fn draw_packets<'a>(
@@ -71,6 +58,7 @@ impl Walked for Furnace {
     }
 }
 
+/// The energy that a particle brings.
 impl Tally<1> for Furnace {
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
@@ -78,13 +66,13 @@ impl Tally<1> for Furnace {
     }
 
     #[inline(always)]
-    fn collided<S: Simd>(&self, [energy]: &mut [f64x8<S>; 1], at: &Collisions<S>) {
+    fn collided<L: Lane>(&self, [energy]: &mut [L; 1], at: &Collision<L>) {
         let rest = at.albedo.each(1.0) - at.albedo;
         add_where(energy, at.inside, at.weight * at.ratio * rest);
     }
 
     #[inline(always)]
-    fn escaped<S: Simd>(&self, [energy]: &mut [f64x8<S>; 1], at: &Departures<S>) {
+    fn escaped<L: Lane>(&self, [energy]: &mut [L; 1], at: &Departure<L>) {
         add_where(energy, at.left, at.weight);
     }
 

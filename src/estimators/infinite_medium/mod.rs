@@ -2,45 +2,25 @@
 
 pub mod particle;
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, mask64x8};
 
 use crate::estimators::packet::Request;
+use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, splat};
-use crate::estimators::space::packet::{Collisions, Numbers, add_where, walks};
-use crate::estimators::space::{self, By, Collision, Particle, Sink, Start, Tally, Walked};
+use crate::estimators::space::packet::walks;
+use crate::estimators::space::tally::{Collision, add_where};
+use crate::estimators::space::{self, By, Particle, Start, Sums, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
 use crate::numeric::{Known, Lane};
 use crate::problems::InfiniteMedium;
 use crate::problems::infinite_medium::{MOST_RADII, Values};
-use crate::problems::rod::MOST;
 use crate::rng::Stream;
 use crate::theory::space::infinite;
 use crate::theory::{Channel, CountLaw, Moments, ParticleRule, Prediction, Tails};
 
 /// More collisions than this in a walk are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e5;
-
-/// What a particle does on its way.
-struct Wander<'a> {
-    radii: &'a [f64],
-    values: Values,
-}
-
-impl Sink for Wander<'_> {
-    fn collided(&mut self, at: &Collision) {
-        let real = at.weight * at.ratio;
-        let square = at.place.dot(at.place);
-        let (within, rest) = self.values.at.split_at_mut(self.radii.len());
-        for (sum, radius) in within.iter_mut().zip(self.radii) {
-            if square < radius * radius {
-                *sum += real;
-            }
-        }
-        rest[0] += real * (1.0 - at.albedo) * square;
-        rest[1] += real;
-    }
-}
 
 /// The chance that a tentative collision ends the walk, where that is the same for all of them.
 fn end(setup: &Setup<InfiniteMedium>, particle: &Particle) -> Option<f64> {
@@ -147,16 +127,14 @@ impl Walked for InfiniteMedium {
     }
 
     fn draw(by: By, _: &Particle, setup: &Setup<Self>, rng: &mut Stream) -> Draw<Values> {
-        let radii = &setup.problem.radii;
-        let values = Values { at: [0.0; MOST], count: radii.len() + 2 };
+        let mut sums = Sums::new(&*setup.problem);
         let cosine = 2.0 * rng.uniform() - 1.0;
         let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
         let start = Start { place: Point([0.0; 3]), direction, weight: 1.0 };
-        let mut wander = Wander { radii, values };
-        let Some(majorants) = setup.space.as_deref() else { return Draw::free(wander.values, 0) };
+        let Some(majorants) = setup.space.as_deref() else { return Draw::free(sums.values(), 0) };
         let scene = &setup.problem.scene;
-        let lookups = space::walk(by, scene, majorants, start, &mut wander, rng);
-        Draw::free(wander.values, lookups)
+        let lookups = space::walk(by, scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.values(), lookups)
     }
 
     fn draw_packets<'a>(
@@ -167,22 +145,15 @@ impl Walked for InfiniteMedium {
     ) -> Option<Request<'a>> {
         let Some(majorants) = setup.space.as_deref() else { return Some(request) };
         let problem = &*setup.problem;
-        let channels = (0..problem.radii.len() + 2).collect();
-        let spreading = Spreading { problem, channels };
-        walks(level, &spreading, particle, (&problem.scene, majorants), request)
+        walks(level, problem, particle, (&problem.scene, majorants), request)
     }
-}
-
-/// Collisions within each radius, then the squared distance and the collisions.
-struct Spreading<'a> {
-    problem: &'a InfiniteMedium,
-    channels: Vec<usize>,
 }
 
 /// The sums of a draw at most.
 const SUMS: usize = MOST_RADII + 2;
 
-impl Tally<SUMS> for Spreading<'_> {
+/// Collisions within each radius, then the squared distance and the collisions.
+impl Tally<SUMS> for InfiniteMedium {
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
         [splat(simd, Point([0.0; 3])), splat(simd, Point([0.0, 0.0, 1.0]))]
@@ -193,11 +164,11 @@ impl Tally<SUMS> for Spreading<'_> {
     }
 
     #[inline(always)]
-    fn collided<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], at: &Collisions<S>) {
+    fn collided<L: Lane>(&self, sums: &mut [L; SUMS], at: &Collision<L>) {
         let real = at.weight * at.ratio;
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;
-        let radii = &self.problem.radii;
+        let radii = &self.radii;
         for (sum, radius) in sums.iter_mut().zip(radii) {
             let within = square.below(square.each(radius * radius));
             add_where(sum, at.inside & within, real);
@@ -208,7 +179,7 @@ impl Tally<SUMS> for Spreading<'_> {
     }
 
     fn channels(&self) -> &[usize] {
-        &self.channels
+        &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9][..self.radii.len() + 2]
     }
 }
 

@@ -3,14 +3,16 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, mask64x8};
 
 use crate::estimators::packet::Request;
+use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::Points;
-use crate::estimators::space::packet::{Collisions, Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, By, Collision, Particle, Sink, Start, Tally, Walked};
+use crate::estimators::space::packet::walks;
+use crate::estimators::space::tally::{Collision, Departure, add_where};
+use crate::estimators::space::{self, By, Particle, Start, Sums, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
-use crate::geometry::{Point, frame};
+use crate::geometry::frame;
 use crate::numeric::{Known, Lane};
 use crate::problems::Lambertian;
 use crate::problems::lambertian::Values;
@@ -49,49 +51,6 @@ impl Channels {
 
     fn any(self) -> bool {
         self.energy || self.white || self.tentative
-    }
-}
-
-/// What a particle does on its way.
-#[derive(Debug, Clone, Copy, Default)]
-struct Stay {
-    energy: f64,
-    length: f64,
-    collisions: f64,
-    tentative: u32,
-}
-
-impl Sink for Stay {
-    fn flown(&mut self, length: f64, weight: f64) {
-        self.length += weight * length;
-    }
-
-    fn collided(&mut self, at: &Collision) {
-        self.tentative += 1;
-        let real = at.weight * at.ratio;
-        self.collisions += real;
-        self.energy += real * (1.0 - at.albedo);
-    }
-
-    fn escaped(&mut self, _: Point, _: Point, weight: f64, _: u32) {
-        self.energy += weight;
-    }
-}
-
-impl Stay {
-    fn values(&self, has: Channels) -> Values {
-        let mut values = Values { at: [0.0; MOST], count: 0 };
-        let mut push = |is_there: bool, value: f64| {
-            if is_there {
-                values.at[values.count] = value;
-                values.count += 1;
-            }
-        };
-        push(has.energy, self.energy);
-        push(has.white, self.length);
-        push(has.white, self.collisions);
-        push(has.tentative, f64::from(self.tentative));
-        values
     }
 }
 
@@ -170,9 +129,10 @@ impl Walked for Lambertian {
         let (place, inward) = setup.problem.on_boundary(u, v);
         let cosine = by.steps().first_cosine(rng.uniform());
         let direction = frame::turned(inward, cosine, rng.uniform());
-        let (mut stay, start) = (Stay::default(), Start { place, direction, weight: 1.0 });
-        let lookups = space::walk(by, &setup.problem.scene, majorants, start, &mut stay, rng);
-        Draw::free(stay.values(Channels::of(setup, particle)), lookups)
+        let entering = Entering::new(&setup.problem, Channels::of(setup, particle));
+        let (mut sums, start) = (Sums::new(&entering), Start { place, direction, weight: 1.0 });
+        let lookups = space::walk(by, &setup.problem.scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.values(), lookups)
     }
 
     fn draw_packets<'a>(
@@ -182,10 +142,8 @@ impl Walked for Lambertian {
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let Some(majorants) = setup.space.as_deref() else { return Some(request) };
-        let (problem, has) = (&*setup.problem, Channels::of(setup, particle));
-        let channels = [has.energy, has.white, has.white, has.tentative];
-        let channels = (0..).zip(channels).filter_map(|(sum, is_there)| is_there.then_some(sum));
-        let entering = Entering { problem, channels: channels.collect() };
+        let problem = &*setup.problem;
+        let entering = Entering::new(problem, Channels::of(setup, particle));
         walks(level, &entering, particle, (&problem.scene, majorants), request)
     }
 }
@@ -193,7 +151,20 @@ impl Walked for Lambertian {
 /// Where particles enter, and the sums over their collisions.
 struct Entering<'a> {
     problem: &'a Lambertian,
-    channels: Vec<usize>,
+    channels: [usize; 4],
+    count: usize,
+}
+
+impl<'a> Entering<'a> {
+    fn new(problem: &'a Lambertian, has: Channels) -> Self {
+        let mut entering = Self { problem, channels: [0; 4], count: 0 };
+        let has = [has.energy, has.white, has.white, has.tentative];
+        for (sum, _) in has.into_iter().enumerate().filter(|(_, has)| *has) {
+            entering.channels[entering.count] = sum;
+            entering.count += 1;
+        }
+        entering
+    }
 }
 
 /// Energy, path length, collisions, tentative collisions.
@@ -214,12 +185,12 @@ impl Tally<4> for Entering<'_> {
     }
 
     #[inline(always)]
-    fn flown<S: Simd>(&self, sums: &mut [f64x8<S>; 4], length: f64x8<S>, weight: f64x8<S>) {
-        sums[1] += weight * length;
+    fn flown<L: Lane>(&self, sums: &mut [L; 4], length: L, weight: L) {
+        sums[1] = sums[1] + weight * length;
     }
 
     #[inline(always)]
-    fn collided<S: Simd>(&self, sums: &mut [f64x8<S>; 4], at: &Collisions<S>) {
+    fn collided<L: Lane>(&self, sums: &mut [L; 4], at: &Collision<L>) {
         let [energy, _, collisions, tentative] = sums;
         let (one, real) = (at.albedo.each(1.0), at.weight * at.ratio);
         add_where(tentative, at.inside, one);
@@ -228,12 +199,12 @@ impl Tally<4> for Entering<'_> {
     }
 
     #[inline(always)]
-    fn escaped<S: Simd>(&self, [energy, ..]: &mut [f64x8<S>; 4], at: &Departures<S>) {
+    fn escaped<L: Lane>(&self, [energy, ..]: &mut [L; 4], at: &Departure<L>) {
         add_where(energy, at.left, at.weight);
     }
 
     fn channels(&self) -> &[usize] {
-        &self.channels
+        &self.channels[..self.count]
     }
 }
 

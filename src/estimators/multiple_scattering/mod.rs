@@ -3,30 +3,20 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, mask64x8};
 
 use crate::estimators::packet::Request;
+use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, splat};
-use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
-use crate::estimators::space::{self, By, Particle, Sink, Start, Tally, Walked};
+use crate::estimators::space::packet::walks;
+use crate::estimators::space::tally::{Departure, add_where};
+use crate::estimators::space::{self, By, Particle, Start, Sums, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;
-use crate::numeric::Known;
-use crate::problems::{MultipleScattering, Sky};
+use crate::numeric::{Known, Lane};
+use crate::problems::MultipleScattering;
 use crate::rng::Stream;
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
-
-/// What a walk has found.
-struct Gathered<'a> {
-    sky: &'a Sky,
-    radiance: f64,
-}
-
-impl Sink for Gathered<'_> {
-    fn escaped(&mut self, _: Point, direction: Point, weight: f64, _: u32) {
-        self.radiance += weight * self.sky.radiance(direction);
-    }
-}
 
 impl Walked for MultipleScattering {
     /// Its draws may be spread without bound all the same, see `furnace`.
@@ -55,9 +45,9 @@ impl Walked for MultipleScattering {
             return Draw::free([problem.background()], 0);
         };
         let start = Start { place, direction, weight: 1.0 };
-        let mut gathered = Gathered { sky: &problem.sky, radiance: 0.0 };
-        let lookups = space::walk(by, &problem.scene, majorants, start, &mut gathered, rng);
-        Draw::free([gathered.radiance], lookups)
+        let mut sums = Sums::new(problem);
+        let lookups = space::walk(by, &problem.scene, majorants, start, &mut sums, rng);
+        Draw::free(sums.at, lookups)
     }
 
     fn draw_packets<'a>(
@@ -74,6 +64,7 @@ impl Walked for MultipleScattering {
     }
 }
 
+/// The light of the sky that a walk gathers.
 impl Tally<1> for MultipleScattering {
     #[inline(always)]
     fn begin<S: Simd>(&self, simd: S, _: &mut Numbers<S>, _: mask64x8<S>) -> [Points<S>; 2] {
@@ -82,7 +73,7 @@ impl Tally<1> for MultipleScattering {
     }
 
     #[inline(always)]
-    fn escaped<S: Simd>(&self, [radiance]: &mut [f64x8<S>; 1], at: &Departures<S>) {
+    fn escaped<L: Lane>(&self, [radiance]: &mut [L; 1], at: &Departure<L>) {
         add_where(radiance, at.left, at.weight * self.sky.radiance_lanes(at.direction));
     }
 

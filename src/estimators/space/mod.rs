@@ -7,6 +7,7 @@ mod pack;
 pub mod packet;
 pub mod particle;
 pub mod shadow;
+pub mod tally;
 pub mod walk;
 mod walker;
 
@@ -20,9 +21,9 @@ use crate::problems::{Problem, Scene};
 use crate::theory::space::Walks;
 use crate::theory::{Channel, Moments, Tails};
 
-pub use packet::Tally;
 pub use particle::{Particle, Splitting};
-pub use walk::{By, Collision, Scattering, Sink, Start, Steps, walk};
+pub use tally::{Sums, Tally};
+pub use walk::{By, Scattering, Sink, Start, Steps, walk};
 pub use walker::{Splitter, Walked, Walker};
 
 /// Rounding of a sum over the collisions of a walk.

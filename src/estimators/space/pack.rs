@@ -3,10 +3,11 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::flights::{Flights, Flown};
-use super::packet::{Collisions, Departures, Numbers, Tally, World, add_where, collect};
+use super::packet::{World, collect};
 use super::shadow::Shadows;
+use super::tally::{Collision, Departure, Tally, add_where};
 use crate::estimators::DrawBuffer;
-use crate::estimators::packet::bank::Slots;
+use crate::estimators::packet::bank::{Numbers, Slots};
 use crate::geometry::frame;
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
@@ -127,11 +128,11 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         let (inside, left) =
             if T::CASTS { (inside & !casts, !inside & !casts) } else { (inside, !inside) };
         let (weight, ratio) = (self.weight, extinction / sampling);
-        let at = Collisions { inside, place, weight, ratio, albedo };
+        let at = Collision { inside, place, weight, ratio, albedo };
         world.tally.collided(&mut self.sums, &at);
         let direction = self.flights.direction;
         let unscattered = self.unscattered;
-        let at = Departures { left, place, direction, weight, unscattered };
+        let at = Departure { left, place, direction, weight, unscattered };
         world.tally.escaped(&mut self.sums, &at);
         let odds = world.particle.rule.odds(ratio, albedo);
         // A number is taken where chance is left, as `Steps::decide` does.

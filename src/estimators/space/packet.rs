@@ -14,134 +14,22 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
-use super::exit::Points;
 use super::flights::Ground;
 use super::pack::Pack;
 use super::particle::{Particle, Splitting};
-use super::shadow::{Found, Light, ShadowRays};
+use super::shadow::ShadowRays;
+use super::tally::Tally;
 use crate::estimators::DrawBuffer;
 use crate::estimators::packet::Request;
-pub use crate::estimators::packet::bank::Numbers;
 use crate::estimators::packet::bank::{self, Slot, Slots};
-use crate::geometry::Point;
 use crate::media::{Batches, Majorants};
+use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::twin::PAIR;
-use crate::numeric::{Lane, Twin};
 use crate::problems::{Albedo, Scene};
 use crate::rng::{LANES, PACKS};
-
-/// Eight tentative collisions.
-pub struct Collisions<S: Simd> {
-    /// Which of them there are.
-    pub inside: mask64x8<S>,
-    /// Where.
-    pub place: Points<S>,
-    /// The weights before them.
-    pub weight: f64x8<S>,
-    /// `r = σ_t/σ̂`.
-    pub ratio: f64x8<S>,
-    /// a.
-    pub albedo: f64x8<S>,
-}
-
-/// Eight particles that may have left.
-pub struct Departures<S: Simd> {
-    /// Which of them have.
-    pub left: mask64x8<S>,
-    /// Where.
-    pub place: Points<S>,
-    /// In which direction.
-    pub direction: Points<S>,
-    /// With which weight.
-    pub weight: f64x8<S>,
-    /// Which of all were never scattered.
-    pub unscattered: mask64x8<S>,
-}
-
-/// How walks of a problem begin, and what they are worth: so many sums, which begin at 0.
-pub trait Tally<const SUMS: usize> {
-    /// Whether particles cast shadow rays where they are scattered.
-    const CASTS: bool = false;
-
-    /// Where particles set out, and in which directions; those that a mask names may take numbers for it.
-    /// Their weight is 1.
-    fn begin<S: Simd>(
-        &self,
-        simd: S,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-    ) -> [Points<S>; 2];
-
-    /// Particles flew lengths, with weights.
-    #[inline(always)]
-    fn flown<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], length: f64x8<S>, weight: f64x8<S>) {
-        let _ = (sums, length, weight);
-    }
-
-    /// They met tentative collisions.
-    #[inline(always)]
-    fn collided<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], at: &Collisions<S>) {
-        let _ = (sums, at);
-    }
-
-    /// They left.
-    #[inline(always)]
-    fn escaped<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], at: &Departures<S>) {
-        let _ = (sums, at);
-    }
-
-    /// A black ball that stops all that meets it.
-    fn core(&self) -> Option<(Point, f64)> {
-        None
-    }
-
-    /// How shadow rays are cast.
-    fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
-        None
-    }
-
-    /// Whether a walk begins as if it were scattered: it casts a shadow ray, if particles do, and turns.
-    fn begins_turned(&self) -> bool {
-        false
-    }
-
-    /// The cosine with which it turns there, of a uniform number.
-    #[inline(always)]
-    fn first_cosine<L: Lane>(&self, number: L) -> L {
-        number * 2.0 - 1.0
-    }
-
-    /// The light that shadow rays from places are cast to; those that a mask names may take numbers for it.
-    #[inline(always)]
-    fn light<S: Simd>(
-        &self,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-        place: Points<S>,
-    ) -> Light<S> {
-        let _ = (numbers, which);
-        let nothing = place[0].each(0.0);
-        Light { direction: place, share: nothing, distance: nothing }
-    }
-
-    /// Shadow rays found light.
-    #[inline(always)]
-    fn lit<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], found: Found<S>) {
-        let _ = (sums, found);
-    }
-
-    /// Which sum each channel of a draw is.
-    fn channels(&self) -> &[usize];
-}
-
-/// Adds to a sum where a mask says so.
-#[inline(always)]
-pub fn add_where<S: Simd>(sum: &mut f64x8<S>, mask: mask64x8<S>, term: f64x8<S>) {
-    *sum = Lane::select(mask, *sum + term, *sum);
-}
 
 /// The draws of a particle, on the hardware of a level; a request is handed back where that is too narrow,
 /// where the particle splits, and where draws have other channels.

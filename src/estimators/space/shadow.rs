@@ -12,7 +12,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::exit::{Points, chords, rows};
-use super::packet::Numbers;
+use crate::estimators::packet::bank::Numbers;
 use crate::geometry::{Point, Ray};
 use crate::media::Volume;
 use crate::numeric::pack::WIDTH;

@@ -16,6 +16,7 @@
 //! without σ̂, and all that lies outside the bounds, cost nothing at all.
 
 use super::particle::Particle;
+use super::tally::Collision;
 use crate::geometry::{Point, frame};
 use crate::media::majorants::Flight;
 use crate::media::{Majorants, Points};
@@ -34,21 +35,6 @@ pub struct Start {
     pub direction: Point,
     /// w.
     pub weight: f64,
-}
-
-/// A tentative collision.
-#[derive(Debug, Clone, Copy)]
-pub struct Collision {
-    /// Where.
-    pub place: Point,
-    /// The direction of travel before it.
-    pub direction: Point,
-    /// The weight before it.
-    pub weight: f64,
-    /// `r = σ_t/σ̂`.
-    pub ratio: f64,
-    /// a.
-    pub albedo: f64,
 }
 
 /// A particle that is scattered, before its new direction is drawn.
@@ -72,7 +58,7 @@ pub trait Sink {
     }
 
     /// It met a tentative collision, whatever comes of it.
-    fn collided(&mut self, at: &Collision) {
+    fn collided(&mut self, at: &Collision<f64>) {
         let _ = at;
     }
 
@@ -246,7 +232,8 @@ impl<S: Steps + ?Sized> Walk<'_, S> {
             *lookups += 1;
             let ratio = self.field.extinction(place) / sampling;
             let albedo = self.scene.albedo.at(place);
-            self.sink.collided(&Collision { place, direction, weight, ratio, albedo });
+            let at = Collision { inside: true, place: place.0, weight, ratio, albedo };
+            self.sink.collided(&at);
             if self.steps.splits(traveller.depth, *splits) {
                 *splits += 1;
                 traveller.depth += 1;

@@ -7,9 +7,11 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 use super::connect::cone;
 use crate::estimators::Setup;
 use crate::estimators::packet::Request;
+use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, dot, meets, splat};
-use crate::estimators::space::packet::{Departures, Numbers, add_where, walks};
+use crate::estimators::space::packet::walks;
 use crate::estimators::space::shadow::{self, Found, ShadowRays};
+use crate::estimators::space::tally::{Departure, add_where};
 use crate::estimators::space::{Particle, Tally};
 use crate::geometry::{Point, frame};
 use crate::numeric::Lane;
@@ -29,7 +31,7 @@ fn anywhere<S: Simd>(numbers: &mut Numbers<S>, which: mask64x8<S>, up: Points<S>
 
 /// Whether particles that have left have met the light.
 #[inline(always)]
-fn meets_light<S: Simd>(sphere: &Sphere, at: &Departures<S>) -> mask64x8<S> {
+fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
     match sphere.light {
         Light::Environment => at.left,
         Light::Distant(_) => at.left & !at.left,
@@ -66,7 +68,7 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
 
     /// Beside shadow rays only what was never scattered counts, and that of rays only.
     #[inline(always)]
-    fn escaped<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], at: &Departures<S>) {
+    fn escaped<L: Lane>(&self, [found]: &mut [L; 1], at: &Departure<L>) {
         let met = meets_light(self.sphere, at);
         if !CASTS {
             add_where(found, met, at.weight);
