@@ -31,15 +31,15 @@ pub struct ShadowRays<'a> {
     pub tracking: Tracking,
 }
 
-/// Light as eight points see it.
+/// Light as a point sees it, or eight.
 #[derive(Clone, Copy)]
-pub struct Light<S: Simd> {
+pub struct Light<L> {
     /// In which direction it is looked for.
-    pub direction: Points<S>,
+    pub direction: [L; 3],
     /// What it is worth without a medium.
-    pub share: f64x8<S>,
+    pub share: L,
     /// How far it is.
-    pub distance: f64x8<S>,
+    pub distance: L,
 }
 
 /// Light that has been found, and by which rays.
@@ -95,7 +95,7 @@ impl<S: Simd> Shadows<S> {
         &mut self,
         rays: &ShadowRays,
         which: mask64x8<S>,
-        light: &Light<S>,
+        light: &Light<f64x8<S>>,
         (origin, weight): (Points<S>, f64x8<S>),
     ) -> Found<S> {
         let (zero, one) = (weight.each(0.0), weight.each(1.0));

@@ -98,7 +98,7 @@ pub trait Tally<const SUMS: usize> {
         numbers: &mut Numbers<S>,
         which: mask64x8<S>,
         place: Points<S>,
-    ) -> Light<S> {
+    ) -> Light<f64x8<S>> {
         let _ = (numbers, which);
         let nothing = place[0].each(0.0);
         Light { direction: place, share: nothing, distance: nothing }

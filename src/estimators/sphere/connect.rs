@@ -12,6 +12,7 @@
 //! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
 
 use crate::estimators::single_scattering::connection;
+use crate::estimators::space::shadow;
 use crate::estimators::space::{Scattering, Sink, exit};
 use crate::geometry::{Point, Ray, frame};
 use crate::numeric::{Lane, Span};
@@ -65,6 +66,44 @@ pub fn meets(origin: Point, direction: Point, centre: Point, radius: f64) -> Opt
     (!misses).then_some(near)
 }
 
+/// Upwards: a direction from which any other is found by an even cosine and an even azimuth.
+pub const UP: Point = Point([0.0, 0.0, 1.0]);
+
+/// Where a shadow ray from a place is cast to, by uniform numbers.
+#[inline(always)]
+pub fn light<L: Lane>(
+    sphere: &Sphere,
+    place: [L; 3],
+    mut uniform: impl FnMut() -> L,
+) -> shadow::Light<L> {
+    let one = place[0].each(1.0);
+    let points = |Point([x, y, z]): Point| [one.each(x), one.each(y), one.each(z)];
+    let endless = one.each(f64::INFINITY);
+    match sphere.light {
+        Light::Environment => {
+            let cosine = uniform() * 2.0 - 1.0;
+            let direction = frame::turned_lanes(points(UP), cosine, uniform());
+            shadow::Light { direction, share: one, distance: endless }
+        }
+        Light::Distant(direction) => {
+            shadow::Light { direction: points(direction), share: one, distance: endless }
+        }
+        Light::BlackSphere(core) => {
+            let ([a, b, c], [x, y, z]) = (points(sphere.centre), place);
+            let [x, y, z] = [a - x, b - y, c - z];
+            let distance = exit::dot([x, y, z], [x, y, z]).root();
+            let cone = cone(core, distance);
+            let (cosine, scale) = (one - uniform() * cone, one / distance);
+            let axis = [x * scale, y * scale, z * scale];
+            let direction = frame::turned_lanes(axis, cosine, uniform());
+            let (misses, near) = exit::meets(sphere.centre, core, place, direction);
+            // A direction at the edge may miss by rounding: it ends at the point of the edge.
+            let distance = L::select(misses, distance * cosine, near);
+            shadow::Light { direction, share: cone * 0.5, distance }
+        }
+    }
+}
+
 /// A walk that looks for light.
 pub struct Seeker<'a> {
     sphere: &'a Sphere,
@@ -100,33 +139,20 @@ impl<'a> Seeker<'a> {
         if weight == 0.0 {
             return 0;
         }
-        let (direction, share, light) = match self.sphere.light {
-            Light::Environment => {
-                let cosine = 2.0 * rng.uniform() - 1.0;
-                let direction = frame::turned(Point([0.0, 0.0, 1.0]), cosine, rng.uniform());
-                (direction, 1.0, f64::INFINITY)
-            }
-            Light::Distant(direction) => (direction, 1.0, f64::INFINITY),
-            Light::BlackSphere(core) => {
-                let to_centre = self.sphere.centre - place;
-                let distance = to_centre.norm();
-                let cosine = 1.0 - rng.uniform() * cone(core, distance);
-                let axis = to_centre * (1.0 / distance);
-                let direction = frame::turned(axis, cosine, rng.uniform());
-                // A direction at the edge may miss by rounding: it ends at the point of the edge.
-                let light =
-                    meets(place, direction, self.sphere.centre, core).unwrap_or(distance * cosine);
-                (direction, connect.share(core, distance), light)
-            }
-        };
-        let ray = Ray { origin: place, direction, length: f64::INFINITY };
-        let within = self.sphere.scene.volume.bounds().clip(&ray);
-        let inside = connect.reach(within, light);
+        let sphere = self.sphere;
+        let shadow::Light { direction, mut share, distance } =
+            light(sphere, place.0, || rng.uniform());
+        if let Light::BlackSphere(core) = sphere.light {
+            share = connect.share(core, (sphere.centre - place).norm());
+        }
+        let ray = Ray { origin: place, direction: Point(direction), length: f64::INFINITY };
+        let within = sphere.scene.volume.bounds().clip(&ray);
+        let inside = connect.reach(within, distance);
         if inside.is_empty() {
             self.found += weight * share;
             return 0;
         }
-        let volume = &self.sphere.scene.volume;
+        let volume = &sphere.scene.volume;
         let (through, lookups) = connection::transmittance(&**volume, &ray, inside, shadow, rng);
         self.found += weight * share * through;
         lookups
