@@ -52,9 +52,8 @@ impl Walked for Furnace {
         setup: &Setup<Self>,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
         let furnace = &*setup.problem;
-        walks(level, furnace, particle, (&furnace.scene, majorants), request)
+        walks(level, furnace, particle, (&furnace.scene, setup.space.as_ref()), request)
     }
 }
 

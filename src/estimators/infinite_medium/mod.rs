@@ -143,9 +143,8 @@ impl Walked for InfiniteMedium {
         setup: &Setup<Self>,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
         let problem = &*setup.problem;
-        walks(level, problem, particle, (&problem.scene, majorants), request)
+        walks(level, problem, particle, (&problem.scene, setup.space.as_ref()), request)
     }
 }
 

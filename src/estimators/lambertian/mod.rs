@@ -141,10 +141,9 @@ impl Walked for Lambertian {
         setup: &Setup<Self>,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let Some(majorants) = setup.space.as_deref() else { return Some(request) };
         let problem = &*setup.problem;
         let entering = Entering::new(problem, Channels::of(setup, particle));
-        walks(level, &entering, particle, (&problem.scene, majorants), request)
+        walks(level, &entering, particle, (&problem.scene, setup.space.as_ref()), request)
     }
 }
 

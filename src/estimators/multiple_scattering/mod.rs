@@ -57,10 +57,10 @@ impl Walked for MultipleScattering {
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let problem = &*setup.problem;
-        let (Some(_), Some(majorants)) = (problem.entry(), setup.space.as_deref()) else {
+        if problem.entry().is_none() {
             return Some(request);
-        };
-        walks(level, problem, particle, (&problem.scene, majorants), request)
+        }
+        walks(level, problem, particle, (&problem.scene, setup.space.as_ref()), request)
     }
 }
 

@@ -14,6 +14,8 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
+use std::sync::Arc;
+
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
 
 use super::flights::Ground;
@@ -32,14 +34,15 @@ use crate::problems::{Albedo, Scene};
 use crate::rng::{LANES, PACKS};
 
 /// The draws of a particle, on the hardware of a level; a request is handed back where that is too narrow,
-/// where the particle splits, and where draws have other channels.
+/// where the particle splits, where there is no σ̂, and where draws have other channels.
 pub fn walks<'a, const SUMS: usize, T: Tally<SUMS>>(
     level: Level,
     tally: &T,
     particle: &Particle,
-    (scene, majorants): (&Scene, &Majorants),
+    (scene, majorants): (&Scene, Option<&Arc<Majorants>>),
     request: Request<'a>,
 ) -> Option<Request<'a>> {
+    let Some(majorants) = majorants else { return Some(request) };
     let is_fit = particle.splitting == Splitting::None
         && request.buffer.values.len() == tally.channels().len();
     if !is_fit {

@@ -110,9 +110,8 @@ pub(super) fn draw_by_packets<'a>(
     setup: &Setup<Sphere>,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(majorants) = setup.space.as_deref() else { return Some(request) };
     let sphere = &*setup.problem;
-    let world = (&sphere.scene, majorants);
+    let world = (&sphere.scene, setup.space.as_ref());
     match shadow {
         None => {
             let seekers = Seekers::<false> { sphere, shadow: Tracking::Exact };
