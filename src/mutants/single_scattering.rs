@@ -12,13 +12,13 @@ use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
-use crate::theory::single::{Along, Tracking};
+use crate::theory::single::{CameraTracking, Tracking};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SingleScattering>> {
-    let exact = SourceDriven { bug: Bug::None, camera: Along::Exact, shadow: Tracking::Exact };
-    let ratio = SourceDriven { camera: Along::Ratio, ..exact };
+    let exact = SourceDriven { bug: Bug::None, camera: CameraTracking::Exact, shadow: Tracking::Exact };
+    let ratio = SourceDriven { camera: CameraTracking::Ratio, ..exact };
     let tracked = SourceDriven { shadow: Tracking::Ratio { sampling: 1.5, control: 0.0 }, ..exact };
     let of = |name, text, target, twin: SourceDriven, bug| {
         let about = About { name, bug: text, target, check: "mean" };
@@ -51,7 +51,7 @@ enum Bug {
 #[derive(Clone, Copy)]
 struct SourceDriven {
     bug: Bug,
-    camera: Along,
+    camera: CameraTracking,
     shadow: Tracking,
 }
 

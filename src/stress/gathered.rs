@@ -20,7 +20,9 @@ use crate::numeric::{Span, Wide};
 use crate::problems::{Problem, SingleScattering};
 use crate::theory::Mesh;
 use crate::theory::single::predict::DENSITY;
-use crate::theory::single::{Along, Camera, Node, Points, Scene, Technique, Tracking, walks};
+use crate::theory::single::{
+    Camera, CameraTracking, Node, Points, Scene, Technique, Tracking, walks,
+};
 
 /// Panels of s, at least.
 const STEPS: u32 = 40;
@@ -92,14 +94,14 @@ fn trial(t: &mut Trial) -> Option<()> {
     };
     let nodes = nodes(&problem, [sampling, held], tracking);
     let (name, points, raw) = match kind / 3 {
-        0 => ("by angle, exact", by_angle(Along::Exact), at_point(&nodes, false)),
-        1 => ("by angle, ratio", by_angle(Along::Ratio), at_point(&nodes, true)),
+        0 => ("by angle, exact", by_angle(CameraTracking::Exact), at_point(&nodes, false)),
+        1 => ("by angle, ratio", by_angle(CameraTracking::Ratio), at_point(&nodes, true)),
         2 => {
-            let points = walks::at_collisions(&scene(Along::Ratio));
+            let points = walks::at_collisions(&scene(CameraTracking::Ratio));
             ("at collisions", points, at_collisions(&nodes, sampling))
         }
         _ => {
-            let points = walks::at_points(&scene(Along::Ratio), count, &density);
+            let points = walks::at_points(&scene(CameraTracking::Ratio), count, &density);
             ("shared walk", points, shared(&nodes, count))
         }
     };

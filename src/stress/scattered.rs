@@ -20,7 +20,7 @@ use crate::numeric::Wide;
 use crate::problems::Problem;
 use crate::theory::Mesh;
 use crate::theory::single::predict::DENSITY;
-use crate::theory::single::{Along, Camera, Node, Scene, Tracking};
+use crate::theory::single::{Camera, CameraTracking, Node, Scene, Tracking};
 
 /// Techniques that take turns where rays are deep.
 const TECHNIQUES: u64 = 6;
@@ -120,10 +120,10 @@ fn trial(t: &mut Trial, setting: &Setting, is_wanted: &dyn Fn(u64) -> bool) -> O
     };
     let scene = |along| {
         // Delta tracking has no control.
-        let control = if along == Along::Ratio { &main } else { &Control::None };
+        let control = if along == CameraTracking::Ratio { &main } else { &Control::None };
         Scene::new(&problem, Camera::new(&mesh, &flown, control, along), tracking, Vec::new())
     };
-    let walk = scene(Along::Ratio);
+    let walk = scene(CameraTracking::Ratio);
     let mut wanted = Vec::new();
     if is_wanted(0) {
         wanted.push(case.at_collisions(&walk));
@@ -134,11 +134,11 @@ fn trial(t: &mut Trial, setting: &Setting, is_wanted: &dyn Fn(u64) -> bool) -> O
     if is_wanted(2) {
         wanted.push(case.at_points(&walk, &problem, count));
     }
-    let mut alongs = vec![Along::Exact, Along::Ratio];
+    let mut alongs = vec![CameraTracking::Exact, CameraTracking::Ratio];
     if sampling >= sigma {
-        alongs.push(Along::Delta);
+        alongs.push(CameraTracking::Delta);
         if is_wanted(3) {
-            wanted.push(case.found(&scene(Along::Exact)));
+            wanted.push(case.found(&scene(CameraTracking::Exact)));
         }
     }
     let [by_angle, by_depth] = [(); 2].map(|()| alongs[dice.below(alongs.len())]);

@@ -24,7 +24,7 @@ use crate::phase::isotropic::Isotropic;
 use crate::problems::single_scattering::Lamp;
 use crate::problems::{Problem, SingleScattering};
 use crate::theory::Mesh;
-use crate::theory::single::{Along, Camera, Scene, Tracking};
+use crate::theory::single::{Camera, CameraTracking, Scene, Tracking};
 
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
@@ -42,7 +42,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
 fn radiance(problem: &SingleScattering) -> Known {
     let mesh = Mesh::even(problem.medium().clone(), 1);
     let (nothing, none) = (Piecewise::constant(0.0, mesh.support()), Control::None);
-    let camera = Camera::new(&mesh, &nothing, &none, Along::Exact);
+    let camera = Camera::new(&mesh, &nothing, &none, CameraTracking::Exact);
     Scene::new(problem, camera, Tracking::Exact, Vec::new()).radiance()
 }
 

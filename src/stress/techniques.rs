@@ -7,7 +7,7 @@ use crate::numeric::Wide;
 use crate::problems::SingleScattering;
 use crate::theory::raw::{added, poisson};
 use crate::theory::single::predict::Found;
-use crate::theory::single::{Along, Node, Points, Scene, Technique, Tracking, walks};
+use crate::theory::single::{CameraTracking, Node, Points, Scene, Technique, Tracking, walks};
 
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)
@@ -276,7 +276,7 @@ impl Case {
     /// At a point of the density `rⁿ e^{−as}` over its integral, which `density` holds.
     pub fn at_point(
         &mut self,
-        (name, scene, along): (&'static str, &Scene, Along),
+        (name, scene, along): (&'static str, &Scene, CameraTracking),
         [density, blur]: [&dyn Fn(&Node) -> f64; 2],
         (n, a): (i32, Wide),
     ) -> Wanted {
@@ -284,9 +284,9 @@ impl Case {
         let found = Points::of(scene, &Technique { density, gain: &gain, blur, found: None });
         let none = Wide::default();
         let before = |k: usize, case: &Self| match along {
-            Along::Exact => case.sigma * k as f64,
-            Along::Ratio => case.walk.signed(k),
-            Along::Delta => case.sigma,
+            CameraTracking::Exact => case.sigma * k as f64,
+            CameraTracking::Ratio => case.walk.signed(k),
+            CameraTracking::Delta => case.sigma,
         };
         let scattered = self.scattered;
         let norm = self.add(a, Wide::ONE, (n, none), None);
@@ -297,9 +297,9 @@ impl Case {
             self.add(rate, power(scattered, k), kernel, None)
         });
         // σ̂ s, or of delta tracking (σ̂/σ_t)(1 − e^{−σ_t s}); what comes through casts a shadow ray.
-        let through = if along == Along::Delta { self.sigma } else { none };
-        let walked =
-            (along == Along::Ratio).then(|| self.add(a, self.walk.sampling, (0, none), Some(norm)));
+        let through = if along == CameraTracking::Delta { self.sigma } else { none };
+        let walked = (along == CameraTracking::Ratio)
+            .then(|| self.add(a, self.walk.sampling, (0, none), Some(norm)));
         let left = self.add(a + through, Wide::ONE, (n, none), None);
         let cast = self.shadows(a + through, Wide::ONE, n);
         let ratio = self.walk.sampling / self.sigma;

@@ -27,7 +27,7 @@ use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::single::{Along, Scene, Tracking, walks};
+use crate::theory::single::{CameraTracking, Scene, Tracking, walks};
 
 /// Attenuation-driven scattering.
 #[derive(Debug, Clone)]
@@ -48,7 +48,7 @@ pub(super) fn require(setup: &Setup<SingleScattering>, shadow: Tracking) -> Resu
 
 /// For theory.
 pub(super) fn scene(setup: &Setup<SingleScattering>, shadow: Tracking) -> Scene<'_> {
-    Connection { camera: Along::Ratio, shadow }.scene(setup, Vec::new())
+    Connection { camera: CameraTracking::Ratio, shadow }.scene(setup, Vec::new())
 }
 
 /// Walks to the end and tells of every interaction point: where it is, `T̂ σ_t S/σ̂` and σ_t there.

@@ -20,13 +20,13 @@ use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
-use crate::theory::single::{Along, Camera, Scene, Tracking};
+use crate::theory::single::{Camera, CameraTracking, Scene, Tracking};
 
 /// How both transmittances are found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Connection {
     /// That from the ray's origin.
-    pub camera: Along,
+    pub camera: CameraTracking,
     /// That of the shadow ray.
     pub shadow: Tracking,
 }
@@ -94,9 +94,9 @@ impl Connection {
     /// Reads `camera`, one of the words, and `shadow`.
     pub fn read(settings: &Settings, words: &[&'static str]) -> Option<Self> {
         let camera = settings.word_or("camera", words, "exact").map(|word| match word {
-            "ratio" => Along::Ratio,
-            "delta" => Along::Delta,
-            _ => Along::Exact,
+            "ratio" => CameraTracking::Ratio,
+            "delta" => CameraTracking::Delta,
+            _ => CameraTracking::Exact,
         });
         let shadow = read_shadow(settings);
         Some(Self { camera: camera?, shadow: shadow? })
@@ -105,9 +105,9 @@ impl Connection {
     /// In words, as in `ratio camera, delta shadow 1.2`.
     pub fn label(&self) -> String {
         let camera = match self.camera {
-            Along::Exact => "exact camera",
-            Along::Ratio => "ratio camera",
-            Along::Delta => "delta camera",
+            CameraTracking::Exact => "exact camera",
+            CameraTracking::Ratio => "ratio camera",
+            CameraTracking::Delta => "delta camera",
         };
         format!("{camera}, {}", shadow_label(self.shadow))
     }
@@ -115,9 +115,9 @@ impl Connection {
     /// What the walk from the ray's origin takes.
     pub fn inputs(&self) -> Inputs {
         match self.camera {
-            Along::Exact => Inputs::NONE,
-            Along::Ratio => Inputs::BOTH,
-            Along::Delta => Inputs::SAMPLING,
+            CameraTracking::Exact => Inputs::NONE,
+            CameraTracking::Ratio => Inputs::BOTH,
+            CameraTracking::Delta => Inputs::SAMPLING,
         }
     }
 
@@ -128,9 +128,9 @@ impl Connection {
     /// The violated inequality.
     pub fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         match self.camera {
-            Along::Exact => {}
-            Along::Ratio => setup.require_coverage()?,
-            Along::Delta => setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?,
+            CameraTracking::Exact => {}
+            CameraTracking::Ratio => setup.require_coverage()?,
+            CameraTracking::Delta => setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?,
         }
         require_shadow(setup, self.shadow)
     }
@@ -169,16 +169,16 @@ impl Connection {
 pub fn camera(
     setup: &Setup<SingleScattering>,
     medium: &Lookups,
-    along: Along,
+    along: CameraTracking,
     to: f64,
     rng: &mut Stream,
 ) -> (f64, u32) {
     let ray = setup.problem.medium();
     let before = Span::new(ray.support().from, to);
-    if along == Along::Exact {
+    if along == CameraTracking::Exact {
         return (Lane::exp(-ray.optical_depth(before).value), 0);
     }
-    let is_delta = along == Along::Delta;
+    let is_delta = along == CameraTracking::Delta;
     let mut weight =
         if is_delta { 1.0 } else { Lane::exp(-setup.control.optical_depth(before).value) };
     let mut cursor = setup.sampling.begin();

@@ -26,7 +26,7 @@ use crate::rng::Stream;
 use crate::theory::Prediction;
 use crate::theory::raw::{added, poisson};
 use crate::theory::single::predict::Found;
-use crate::theory::single::{Along, Node, Points, Technique, Tracking};
+use crate::theory::single::{CameraTracking, Node, Points, Technique, Tracking};
 
 /// Scattering at the first real collision.
 #[derive(Debug, Clone)]
@@ -97,7 +97,7 @@ impl Estimator<SingleScattering> for DeltaTracking {
                 none: lookups_of_escape(setup),
             }),
         };
-        let connection = Connection { camera: Along::Exact, shadow: self.shadow };
+        let connection = Connection { camera: CameraTracking::Exact, shadow: self.shadow };
         let scene = connection.scene(setup, setup.sampling.knots().to_vec());
         Points::of(&scene, &technique).prediction()
     }

@@ -28,7 +28,7 @@ use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::single::{Along, Node, Tracking, walks};
+use crate::theory::single::{CameraTracking, Node, Tracking, walks};
 
 /// The most points.
 const MOST: usize = 16;
@@ -59,8 +59,8 @@ impl Estimator<SingleScattering> for SharedWalk {
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let scene =
-            Connection { camera: Along::Ratio, shadow: self.shadow }.scene(setup, Vec::new());
+        let scene = Connection { camera: CameraTracking::Ratio, shadow: self.shadow }
+            .scene(setup, Vec::new());
         let density = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
         walks::at_points(&scene, self.points, &density).prediction()
     }

@@ -26,7 +26,7 @@ use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
 use crate::theory::single::predict::{DENSITY, Found};
-use crate::theory::single::{Along, Node, Points, Technique, Tracking};
+use crate::theory::single::{CameraTracking, Node, Points, Technique, Tracking};
 
 /// Equiangular points and delta tracking.
 #[derive(Debug, Clone)]
@@ -36,7 +36,7 @@ pub struct SourceDeltaMis {
 
 impl SourceDeltaMis {
     fn connection(&self) -> Connection {
-        Connection { camera: Along::Exact, shadow: self.shadow }
+        Connection { camera: CameraTracking::Exact, shadow: self.shadow }
     }
 }
 

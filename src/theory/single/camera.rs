@@ -1,6 +1,6 @@
 //! The transmittance from the ray's origin to any point of the ray, as it is estimated.
 
-use super::Along;
+use super::CameraTracking;
 use super::segment::{POWERS, Segment, counts, loss, rounding, size};
 use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
@@ -28,7 +28,7 @@ pub struct Camera<'a> {
     mesh: &'a Mesh,
     sampling: &'a Piecewise,
     control: &'a Control,
-    along: Along,
+    along: CameraTracking,
     rule: GaussLegendre,
     cuts: Vec<f64>,
     ends: Vec<f64>,
@@ -41,7 +41,7 @@ impl<'a> Camera<'a> {
         mesh: &'a Mesh,
         sampling: &'a Piecewise,
         control: &'a Control,
-        along: Along,
+        along: CameraTracking,
     ) -> Self {
         let rule = GaussLegendre::new(16);
         let support = mesh.support();
@@ -55,12 +55,12 @@ impl<'a> Camera<'a> {
             ends: vec![support.from],
             sums: vec![[0.0; COUNT]],
         };
-        if along == Along::Exact || support.is_empty() {
+        if along == CameraTracking::Exact || support.is_empty() {
             return camera;
         }
         let mut cuts = sampling.knots().to_vec();
         cuts.extend(control.breaks());
-        if along == Along::Ratio {
+        if along == CameraTracking::Ratio {
             // Where w changes its sign, its size has a kink.
             cuts.extend(mesh.roots(|t, x| sampling.value(t) - (x - control.extinction(t))));
         }
@@ -84,7 +84,7 @@ impl<'a> Camera<'a> {
     fn integrand(&self, t: f64, extinction: f64) -> [f64; COUNT] {
         let sampling = self.sampling.value(t);
         let control = self.control.extinction(t);
-        if self.along == Along::Delta {
+        if self.along == CameraTracking::Delta {
             let from = self.mesh.support().from;
             let depth = self.depth(t).value;
             let nulls = self.flown(Span::new(from, t)) - depth;
@@ -147,13 +147,13 @@ impl<'a> Camera<'a> {
     pub fn segment(&self, s: f64) -> Segment {
         let depth = self.depth(s);
         match self.along {
-            Along::Exact => Segment::exact(depth),
-            Along::Ratio => {
+            CameraTracking::Exact => Segment::exact(depth),
+            CameraTracking::Ratio => {
                 let [_, b, c, d, e, .., flown, size] = self.at(s);
                 let error = rounding(size) + 4.0 * depth.error;
                 Segment::product([depth.value, b, c, d, e], flown, [error, size])
             }
-            Along::Delta => {
+            CameraTracking::Delta => {
                 let [a, b, c, d, ..] = self.at(s);
                 let from = self.mesh.support().from;
                 Segment::decided(depth, self.flown(Span::new(from, s)), [a, b, c, d])

@@ -28,7 +28,7 @@ pub use segment::{Segment, Tracking};
 
 /// How the transmittance from the ray's origin to a scattering point is found.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Along {
+pub enum CameraTracking {
     /// In closed form.
     Exact,
     /// By ratio tracking through σ̂, or residual ratio tracking where there is a control.
