@@ -112,7 +112,7 @@ impl OfVariance {
         self.design = Some(design);
         let mut sums = GateSums::default();
         sums.absorb(y, &design.arguments());
-        self.capital.add(&design.gains(sums.totals(), y.len() as f64).into());
+        self.capital.add(&design.gains(sums.totals(), y.len() as f64));
     }
 
     /// What is lost of the evidence to the bound's own chance of being wrong.

@@ -13,7 +13,8 @@ use super::grounds::{OfRange, OfVariance, RELIABLE, Spread};
 use crate::numeric::sum::Sum;
 use crate::stats::Powers;
 use crate::stats::betting::Aim;
-use crate::stats::gate::{self, Decision, Design, Evidence, ln_mean_exp};
+use crate::stats::capital::ln_mean_exp;
+use crate::stats::gate::{self, Decision, Design, Evidence};
 
 /// How many draws a question without a promise takes where no number of draws is planned.
 const UNPLANNED: f64 = 67_108_864.0;

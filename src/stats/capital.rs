@@ -13,8 +13,6 @@
 //! change detection*, New England Journal of Statistics in Data Science 2 (2024), section 2; here with
 //! weights that add up to 1, so that the chance of a false alarm is bounded over all time.
 
-use super::gate::ln_mean_exp;
-
 /// The logarithms of what each bet gained on some draws.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Gains {
@@ -42,6 +40,19 @@ struct Later {
     /// The largest term of it, and its s.
     ln_best: f64,
     block: u64,
+}
+
+/// ln of the mean of `e^x`; not a number if one of them is none.
+pub fn ln_mean_exp(x: &[f64]) -> f64 {
+    let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
+    if x.iter().any(|x| x.is_nan()) {
+        return f64::NAN;
+    }
+    if !largest.is_finite() {
+        return largest;
+    }
+    let sum: f64 = x.iter().map(|x| (x - largest).exp()).sum();
+    largest + (sum / x.len() as f64).ln()
 }
 
 /// `ln(eˣ + eʸ)`.

@@ -21,6 +21,7 @@
 //! Stochastic Processes and their Applications 163 (2023); J. Ville, *Étude critique de la notion
 //! de collectif* (1939).
 
+use super::capital::{Gains, ln_mean_exp};
 use super::catoni::{Argument, PsiSums};
 
 /// How many sums of ψ a scalar takes.
@@ -109,7 +110,8 @@ impl Design {
 
     /// The evidence in the sums over `draws` draws.
     pub fn evidence(&self, sums: [f64; SUMS], draws: f64) -> Evidence {
-        self.gains(sums, draws).evidence()
+        let Gains { against, pass: [above, below] } = self.gains(sums, draws);
+        Evidence { ln_e: ln_mean_exp(&against), ln_pass: [above[0], below[0]] }
     }
 
     /// What the sums over `draws` draws add to each L and P. Where V or ε is chosen anew before a
@@ -117,43 +119,13 @@ impl Design {
     pub fn gains(&self, sums: [f64; SUMS], draws: f64) -> Gains {
         let price = |slope: f64, variance: f64| draws * (0.5 * slope * slope * variance).ln_1p();
         let variance = self.variance + self.floor * self.floor;
-        let mut against = [0.0; 2 * SLOPES.len()];
-        for (pair, (m, sum)) in against.chunks_exact_mut(2).zip(SLOPES.iter().zip(sums)) {
+        let against = SLOPES.iter().zip(sums).flat_map(|(m, sum)| {
             let slope = m * self.slope();
             let paid = price(slope, variance) + draws * slope * self.floor;
-            pair.copy_from_slice(&[sum - paid, -sum - paid]);
-        }
+            [sum - paid, -sum - paid]
+        });
         let paid = price(CALM * self.slope(), VARIANCE_MARGIN * self.variance);
-        Gains { against, pass: [sums[3] - paid, sums[4] - paid] }
-    }
-}
-
-/// The logarithms of what each bet has gained.
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct Gains {
-    /// The six L.
-    against: [f64; 2 * SLOPES.len()],
-    /// Both P.
-    pass: [f64; 2],
-}
-
-impl Gains {
-    /// Adds the gains of a later block.
-    pub fn add(&mut self, later: &Self) {
-        self.against.iter_mut().zip(later.against).for_each(|(sum, gain)| *sum += gain);
-        self.pass.iter_mut().zip(later.pass).for_each(|(sum, gain)| *sum += gain);
-    }
-
-    /// The evidence that they are.
-    pub fn evidence(&self) -> Evidence {
-        Evidence { ln_e: ln_mean_exp(&self.against), ln_pass: self.pass }
-    }
-}
-
-impl From<Gains> for super::capital::Gains {
-    fn from(gains: Gains) -> Self {
-        let Gains { against, pass: [above, below] } = gains;
-        Self { against: against.to_vec(), pass: [vec![above], vec![below]] }
+        Gains { against: against.collect(), pass: [vec![sums[3] - paid], vec![sums[4] - paid]] }
     }
 }
 
@@ -172,19 +144,6 @@ impl Evidence {
             Decision::Open
         }
     }
-}
-
-/// ln of the mean of `e^x`; not a number if one of them is none.
-pub fn ln_mean_exp(x: &[f64]) -> f64 {
-    let largest = x.iter().fold(f64::NEG_INFINITY, |most, &x| most.max(x));
-    if x.iter().any(|x| x.is_nan()) {
-        return f64::NAN;
-    }
-    if !largest.is_finite() {
-        return largest;
-    }
-    let sum: f64 = x.iter().map(|x| (x - largest).exp()).sum();
-    largest + (sum / x.len() as f64).ln()
 }
 
 #[cfg(test)]

@@ -193,7 +193,7 @@ impl Independence {
 
     /// ln E.
     pub fn ln_e(&self) -> f64 {
-        super::gate::ln_mean_exp(&self.questions().map(|found| found.ln_e).collect::<Vec<_>>())
+        super::capital::ln_mean_exp(&self.questions().map(|found| found.ln_e).collect::<Vec<_>>())
     }
 
     /// The first dependence whose own evidence reaches `ln_limit`, else the strongest.

@@ -17,6 +17,8 @@
 
 use std::cmp::Ordering;
 
+use super::capital::ln_mean_exp;
+
 /// Which hypotheses Holm's procedure rejects at family-wise level `alpha`, out of `hypotheses` of which
 /// those without a p-value count as 1.
 pub fn holm(p: &[f64], hypotheses: usize, alpha: f64) -> Vec<bool> {
@@ -53,15 +55,8 @@ pub fn e_bonferroni_threshold(hypotheses: usize, alpha: f64) -> f64 {
 
 /// `ln((1/K) Σ e)`; 0, no evidence, without e-values.
 pub fn mean_e_value(ln_e: &[f64]) -> f64 {
-    let largest = ln_e.iter().copied().map(evidence).fold(f64::NEG_INFINITY, f64::max);
-    if ln_e.is_empty() {
-        return 0.0;
-    }
-    if largest.is_infinite() {
-        return largest;
-    }
-    let sum: f64 = ln_e.iter().map(|&x| (evidence(x) - largest).exp()).sum();
-    largest + (sum / ln_e.len() as f64).ln()
+    let ln_e: Vec<f64> = ln_e.iter().copied().map(evidence).collect();
+    if ln_e.is_empty() { 0.0 } else { ln_mean_exp(&ln_e) }
 }
 
 fn evidence(ln_e: f64) -> f64 {
