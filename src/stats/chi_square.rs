@@ -89,25 +89,7 @@ const LEAST: f64 = 500.0;
 /// Source: K. Pearson, *On the criterion …*, Philosophical Magazine 50 (1900), 157–175.
 pub fn p_value(observed: &[f64], probability: &[f64]) -> Option<f64> {
     let draws = observed.iter().sum::<f64>();
-    let mut bins: Vec<(f64, f64)> = Vec::new();
-    let (mut count, mut expected) = (0.0, 0.0);
-    for (&o, &p) in observed.iter().zip(probability) {
-        count += o;
-        expected += p * draws;
-        if expected >= LEAST {
-            bins.push((count, expected));
-            (count, expected) = (0.0, 0.0);
-        }
-    }
-    let total = bins.iter().map(|bin| bin.1).sum::<f64>();
-    let rest = draws - total;
-    count += observed.iter().skip(probability.len()).sum::<f64>();
-    if rest >= LEAST {
-        bins.push((count, rest));
-    } else if let Some(last) = bins.last_mut() {
-        last.0 += count;
-        last.1 += rest;
-    }
+    let bins = merged(observed.iter().copied(), probability, draws);
     if bins.len() < 2 {
         return None;
     }
@@ -116,6 +98,33 @@ pub fn p_value(observed: &[f64], probability: &[f64]) -> Option<f64> {
     }
     let statistic: f64 = bins.iter().map(|(o, e)| (o - e).powi(2) / e).sum();
     Some(upper(statistic, (bins.len() - 1) as f64))
+}
+
+/// Counts and expected draws of bins that are merged until each expects enough.
+fn merged(
+    mut observed: impl Iterator<Item = f64>,
+    probability: &[f64],
+    draws: f64,
+) -> Vec<(f64, f64)> {
+    let mut bins: Vec<(f64, f64)> = Vec::new();
+    let (mut count, mut expected) = (0.0, 0.0);
+    for (p, o) in probability.iter().zip(observed.by_ref()) {
+        count += o;
+        expected += p * draws;
+        if expected >= LEAST {
+            bins.push((count, expected));
+            (count, expected) = (0.0, 0.0);
+        }
+    }
+    let rest = draws - bins.iter().map(|bin| bin.1).sum::<f64>();
+    count += observed.sum::<f64>();
+    if rest >= LEAST {
+        bins.push((count, rest));
+    } else if let Some(last) = bins.last_mut() {
+        last.0 += count;
+        last.1 += rest;
+    }
+    bins
 }
 
 /// `2 min(P(N ≤ count), P(N ≥ count))` of a binomial number N.
@@ -149,18 +158,7 @@ pub fn two_sided(statistic: f64, degrees: f64) -> f64 {
 
 /// The number of bins that [`p_value`] would test at a planned number of draws.
 pub fn testable_bins(probability: &[f64], draws: f64) -> usize {
-    let mut bins = 0;
-    let mut expected = 0.0;
-    let mut total = 0.0;
-    for p in probability {
-        expected += p * draws;
-        if expected >= LEAST {
-            bins += 1;
-            total += expected;
-            expected = 0.0;
-        }
-    }
-    bins + usize::from(draws - total >= LEAST)
+    merged(std::iter::repeat_n(0.0, probability.len()), probability, draws).len()
 }
 
 #[cfg(test)]

@@ -26,21 +26,19 @@ impl Explorers {
     #[allow(clippy::cast_possible_truncation)] // at most 100000
     pub fn read(settings: &Settings, body: Option<&Body>) -> Option<Self> {
         let points = settings.count("points", 2..=100_000);
-        let octaves = if settings.has("octaves") {
-            let octaves = settings.count("octaves", 1..=16).map(|k| k as usize)?;
+        let octaves = settings.optional("octaves", |key| {
+            let octaves = settings.count(key, 1..=16)? as usize;
             let unknown = body.filter(|body| match body {
                 Body::Volume { volume, .. } => volume.coarsened(octaves).is_none(),
                 Body::Line { .. } => true,
             });
             if let Some(body) = unknown {
                 let message = format!("`{}` has no octaves", body.name());
-                settings.fault("octaves", message, "leave it out, or use the field `noise`");
+                settings.fault(key, message, "leave it out, or use the field `noise`");
                 return None;
             }
             Some(octaves)
-        } else {
-            None
-        };
+        })?;
         Some(Self { points: points? as usize, octaves })
     }
 }
