@@ -16,35 +16,7 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use super::Piecewise;
-use super::piecewise_linear::{Layers, Points};
-use crate::catalogue::{Domain, Settings};
+use super::piecewise_linear::Layers;
 
-/// A plane-parallel volume of homogeneous layers.
-pub type PiecewiseConstant = Layers<Steps>;
-
-/// One value between every two breaks.
-pub struct Steps;
-
-/// Reads `breaks` and `values`, one value between every two breaks.
-pub fn read_steps(settings: &Settings) -> Option<Piecewise> {
-    let breaks = settings.numbers("breaks", Domain::Finite, 2);
-    let values = settings.numbers("values", Domain::NonNegative, 1);
-    let (breaks, values) = (breaks?, values?);
-    if breaks.windows(2).any(|ends| ends[0] >= ends[1]) {
-        settings.fault("breaks", "`breaks` do not ascend", "each break is above the one before");
-        return None;
-    }
-    if values.len() + 1 != breaks.len() {
-        let message = format!("{} values stand between {} breaks", values.len(), breaks.len());
-        settings.fault("values", message, "there is one value between every two breaks");
-        return None;
-    }
-    Some(Piecewise::steps(&breaks, &values))
-}
-
-impl Points for Steps {
-    fn read(settings: &Settings) -> Option<Piecewise> {
-        read_steps(settings)
-    }
-}
+/// A plane-parallel volume of homogeneous layers: one value between every two breaks.
+pub type PiecewiseConstant = Layers<true>;

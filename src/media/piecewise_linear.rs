@@ -16,68 +16,58 @@
 //!
 //! Optical depth and free flight are closed forms.
 
-use std::marker::PhantomData;
-
 use super::{Field, Piecewise, Smoothness, body};
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::{Lane, Span};
 
-/// A plane-parallel volume of linearly varying layers.
-pub type PiecewiseLinear = Layers<Lines>;
+/// A plane-parallel volume of linearly varying layers: one value at every knot.
+pub type PiecewiseLinear = Layers<false>;
 
-/// One value at every knot.
-pub struct Lines;
-
-/// Reads `knots` and `values`, one value at every knot.
-pub fn read_lines(settings: &Settings) -> Option<Piecewise> {
-    let knots = settings.numbers("knots", Domain::Finite, 2);
-    let values = settings.numbers("values", Domain::NonNegative, 2);
-    let (knots, values) = (knots?, values?);
-    if knots.windows(2).any(|ends| ends[0] >= ends[1]) {
-        settings.fault("knots", "`knots` do not ascend", "each knot is above the one before");
+/// Reads `values` between every two `breaks`, or at every one of `knots`.
+pub fn read_pieces(settings: &Settings, is_steps: bool) -> Option<Piecewise> {
+    let (key, one, at, fewest) =
+        if is_steps { ("breaks", "break", "between", 1) } else { ("knots", "knot", "at", 2) };
+    let places = settings.numbers(key, Domain::Finite, 2);
+    let values = settings.numbers("values", Domain::NonNegative, fewest);
+    let (places, values) = (places?, values?);
+    if places.windows(2).any(|ends| ends[0] >= ends[1]) {
+        let help = format!("each {one} is above the one before");
+        settings.fault(key, format!("`{key}` do not ascend"), help);
         return None;
     }
-    if values.len() != knots.len() {
-        let message = format!("{} values stand at {} knots", values.len(), knots.len());
-        settings.fault("values", message, "there is one value at every knot");
+    if values.len() + usize::from(is_steps) != places.len() {
+        let message = format!("{} values stand {at} {} {key}", values.len(), places.len());
+        let every = if is_steps { "every two breaks" } else { "every knot" };
+        settings.fault("values", message, format!("there is one value {at} {every}"));
         return None;
     }
-    Some(Piecewise::lines(&knots, &values))
+    Some(if is_steps {
+        Piecewise::steps(&places, &values)
+    } else {
+        Piecewise::lines(&places, &values)
+    })
 }
 
-impl Points for Lines {
-    fn read(settings: &Settings) -> Option<Piecewise> {
-        read_lines(settings)
-    }
-}
-
-/// How the pieces of a plane-parallel volume are read.
-pub trait Points: Send + Sync + 'static {
-    /// Reads straight pieces along the height.
-    fn read(settings: &Settings) -> Option<Piecewise>;
-}
-
-/// A plane-parallel volume: straight pieces along an axis.
-pub struct Layers<P> {
+/// A plane-parallel volume: straight pieces along an axis, level ones if they are steps.
+pub struct Layers<const STEPS: bool> {
     pieces: Piecewise,
     axis: Point,
     bounds: Bounds,
-    points: PhantomData<P>,
 }
 
-impl<P: Points> Field for Layers<P> {
+impl<const STEPS: bool> Field for Layers<STEPS> {
     type Profile = Piecewise;
 
     fn line(settings: &Settings) -> Option<Piecewise> {
-        P::read(settings)
+        read_pieces(settings, STEPS)
     }
 
     fn volume(settings: &Settings) -> Option<Self> {
-        let pieces = P::read(settings);
+        let pieces = read_pieces(settings, STEPS);
         let axis = body::read_axis(settings);
         let bounds = body::read_bounds(settings);
-        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds?, points: PhantomData })
+        Some(Self { pieces: pieces?, axis: axis?, bounds: bounds? })
     }
 
     fn smoothness(&self) -> Smoothness {
@@ -127,9 +117,9 @@ impl<P: Points> Field for Layers<P> {
 mod tests {
     use super::*;
 
-    fn upright(pieces: Piecewise) -> Layers<Lines> {
+    fn upright(pieces: Piecewise) -> Layers<false> {
         let (axis, bounds) = (Point([0.0, 0.0, 1.0]), Bounds::Everywhere);
-        Layers { pieces, axis, bounds, points: PhantomData }
+        Layers { pieces, axis, bounds }
     }
     use crate::media::OpticalDepth;
 

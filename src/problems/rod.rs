@@ -34,8 +34,7 @@
 
 use super::{Problem, default_albedo, number};
 use crate::catalogue::{Settings, Value};
-use crate::media::piecewise_constant::read_steps;
-use crate::media::piecewise_linear::read_lines;
+use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Medium, Piecewise};
 use crate::numeric::Span;
 
@@ -180,7 +179,7 @@ fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option
     }
     let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
     let (index, field) = settings.chosen(key, &names)?;
-    let pieces = if index == 0 { read_steps(&field) } else { read_lines(&field) };
+    let pieces = read_pieces(&field, index == 0);
     field.close();
     let pieces = pieces?;
     if pieces.corner_values().any(|value| value > 1.0) {

@@ -40,6 +40,16 @@ pub enum Light {
     Diffuse,
 }
 
+impl Light {
+    /// `μ₀`, where all of it has the same.
+    pub fn cosine(self) -> Option<f64> {
+        match self {
+            Self::Collimated(cosine) => Some(cosine),
+            Self::Diffuse => None,
+        }
+    }
+}
+
 /// Light and how it is scattered.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Incidence {

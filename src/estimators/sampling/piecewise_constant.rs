@@ -11,7 +11,7 @@
 use super::Recipe;
 use crate::catalogue::Settings;
 use crate::estimators::{Refusal, Site};
-use crate::media::piecewise_constant::read_steps;
+use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Control, Piecewise};
 
 /// A piecewise-constant σ̂.
@@ -21,7 +21,7 @@ pub struct PiecewiseConstant(Piecewise);
 impl PiecewiseConstant {
     /// Reads `{ breaks, values }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
-        read_steps(settings).map(Self)
+        read_pieces(settings, true).map(Self)
     }
 }
 

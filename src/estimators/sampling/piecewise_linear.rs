@@ -11,7 +11,7 @@
 use super::Recipe;
 use crate::catalogue::Settings;
 use crate::estimators::{Refusal, Site};
-use crate::media::piecewise_linear::read_lines;
+use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Control, Piecewise};
 
 /// A piecewise-linear σ̂.
@@ -21,7 +21,7 @@ pub struct PiecewiseLinear(Piecewise);
 impl PiecewiseLinear {
     /// Reads `{ knots, values }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
-        read_lines(settings).map(Self)
+        read_pieces(settings, false).map(Self)
     }
 }
 

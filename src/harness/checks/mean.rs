@@ -11,7 +11,7 @@
 //! bound on the variance, V is that bound; where it has none but knows that tails are light, as of the
 //! length of a walk, V is again twice that of pilot draws.
 
-use super::observe::{Observe, observe_each};
+use super::observe::Observe;
 use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::estimators::DrawBuffer;
 use crate::stats::verdict::FURTHEST;
@@ -85,15 +85,11 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     if known.variance == 0.0 {
         return Kind::Untestable("all pilot draws are the same, which tells nothing here".into());
     }
-    let observe = move |values: &[f64], y: &mut Vec<f64>| {
-        observe_each(
-            values,
-            y,
-            #[inline(always)]
-            |x| (x - truth) * scale,
-        );
-    };
-    let observe = Observe::Value(index, Box::new(observe));
+    let observe = Observe::each_value(
+        index,
+        #[inline(always)]
+        move |x| (x - truth) * scale,
+    );
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
     Kind::Scalar(Scalar::new(subject, known, wanted, observe))
 }

@@ -16,18 +16,21 @@ pub enum Observe {
     Draw(Observer<DrawBuffer>),
 }
 
-/// Appends `f` of each value, on the hardware's registers: `f` must be inlined.
-pub fn observe_each(values: &[f64], y: &mut Vec<f64>, f: impl Fn(f64) -> f64) {
-    // Not extended: that is compiled for the least machine.
-    let first = y.len();
-    y.resize(first + values.len(), 0.0);
-    in_fused_code(
-        #[inline(always)]
-        || y[first..].iter_mut().zip(values).for_each(|(y, &x)| *y = f(x)),
-    );
-}
-
 impl Observe {
+    /// `f` of each value of a channel, on the hardware's registers: `f` must be inlined.
+    pub fn each_value(channel: usize, f: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
+        let observer = move |values: &[f64], y: &mut Vec<f64>| {
+            // Not extended: that is compiled for the least machine.
+            let first = y.len();
+            y.resize(first + values.len(), 0.0);
+            in_fused_code(
+                #[inline(always)]
+                || y[first..].iter_mut().zip(values).for_each(|(y, &x)| *y = f(x)),
+            );
+        };
+        Self::Value(channel, Box::new(observer))
+    }
+
     /// A y for each draw of a buffer.
     pub fn each(&self, draws: &DrawBuffer, y: &mut Vec<f64>) {
         match self {

@@ -10,7 +10,7 @@
 //! values, and of experiments that a case declares biased.
 
 use super::mean::is_faint;
-use super::observe::{Observe, observe_each};
+use super::observe::Observe;
 use super::question::{Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
 use crate::theory::Channel;
 
@@ -49,18 +49,14 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
     let error = moments.error * (1.0 + 3.0 * kurtosis / (kurtosis - 1.0));
     let known = Known { variance: kurtosis - 1.0, error, floor };
     let (mean, scale) = (channel.mean.value, 1.0 / variance.sqrt());
-    let observe = move |values: &[f64], y: &mut Vec<f64>| {
-        observe_each(
-            values,
-            y,
-            #[inline(always)]
-            |x| {
-                let deviation = (x - mean) * scale;
-                deviation * deviation - 1.0
-            },
-        );
-    };
-    let observe = Observe::Value(index, Box::new(observe));
+    let observe = Observe::each_value(
+        index,
+        #[inline(always)]
+        move |x| {
+            let deviation = (x - mean) * scale;
+            deviation * deviation - 1.0
+        },
+    );
     let wanted = Wanted { tolerance: subject.tolerance.variance, cap: CAP };
     Some(Kind::Scalar(Scalar::new(subject, known, wanted, observe)))
 }

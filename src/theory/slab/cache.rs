@@ -2,7 +2,7 @@
 
 use super::{Answer, answers};
 use crate::numeric::Known;
-use crate::problems::slab::{Incidence, Light};
+use crate::problems::slab::Incidence;
 use crate::theory::memo::Memo;
 
 /// What an answer is found by: the bits of all numbers, and the phase function in words, which tell
@@ -20,10 +20,7 @@ static ANSWERS: Memo<Key, Option<Answer>> = Memo::new(4096);
 /// `answer`, which is worked out once and only once, whoever asks.
 pub fn cached(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
     let key = Key {
-        cosine: match incidence.light {
-            Light::Collimated(cosine) => Some(cosine.to_bits()),
-            Light::Diffuse => None,
-        },
+        cosine: incidence.light.cosine().map(f64::to_bits),
         phase: incidence.phase.label(),
         depth: [depth.value.to_bits(), depth.error.to_bits()],
         albedo: albedo.to_bits(),
@@ -39,6 +36,7 @@ fn answer(incidence: &Incidence, depth: Known, albedo: f64) -> Option<Answer> {
 mod tests {
     use super::*;
     use crate::phase::{Phase, isotropic::Isotropic};
+    use crate::problems::slab::Light;
 
     #[test]
     fn what_differs_is_kept_apart() {

@@ -184,11 +184,7 @@ pub fn energies(
     resolution: Resolution,
 ) -> Option<Vec<Energy>> {
     let count = directions::needed(phase, resolution.faintest).max(resolution.directions);
-    let cosine = |light: &Light| match *light {
-        Light::Collimated(cosine) => Some(cosine),
-        Light::Diffuse => None,
-    };
-    let further: Vec<f64> = lights.iter().filter_map(cosine).collect();
+    let further: Vec<f64> = lights.iter().filter_map(|light| light.cosine()).collect();
     let directions = Directions::new(phase, count, &further);
     let layer = stack(&directions, slices, resolution.first_layer)?;
     let mut row = count;
@@ -206,7 +202,7 @@ pub fn energies(
             transmitted: share(&|i| layer.scattered.row(i).iter().sum::<f64>() + layer.direct[i]),
             score: share(&|i| layer.score[i]),
         };
-        row += usize::from(cosine(light).is_some());
+        row += usize::from(light.cosine().is_some());
         found.push(energy);
     }
     let is_finite = |energy: &Energy| {
@@ -240,10 +236,7 @@ pub fn answers(phase: &Phase, lights: &[Light], depth: Known, albedo: f64) -> Op
     let blurred = |(answer, light): (Answer, &Light)| {
         // A layer of optical depth δ more meets light from all directions, and changes no share by more
         // than the light that collides in it.
-        let steepest = match light {
-            Light::Collimated(cosine) => 4.0 + 1.0 / cosine,
-            Light::Diffuse => 6.0,
-        };
+        let steepest = light.cosine().map_or(6.0, |cosine| 4.0 + 1.0 / cosine);
         Answer::each(|of: fn(&Answer) -> &Known| {
             let known = of(&answer);
             Known::new(known.value, known.error + steepest * depth.error)

@@ -128,11 +128,7 @@ fn graded(cut: &Mesh, sampling: &Piecewise, kinks: &[f64], lights: &[Light]) -> 
     }
     let rule = GaussLegendre::new(NODES);
     let piece = |from: f64, to: f64| piece(cut, sampling, Span::new(from, to), &breaks, &rule);
-    let cosine = |light: &Light| match light {
-        Light::Collimated(cosine) => *cosine,
-        Light::Diffuse => STEEP,
-    };
-    let least = lights.iter().map(cosine).fold(STEEP, f64::min);
+    let least = lights.iter().filter_map(|light| light.cosine()).fold(STEEP, f64::min);
     let flown = |ends: &[f64]| piece(ends[0], ends[1]).map_or(0.0, |piece| piece.flown);
     for _ in 0..HALVINGS {
         // Light passes what has no collisions.
