@@ -15,19 +15,22 @@ use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Control, Piecewise};
 
 /// A piecewise-linear σ̂.
-#[derive(Debug, Clone)]
-pub struct PiecewiseLinear(Piecewise);
+pub type PiecewiseLinear = Given<false>;
 
-impl PiecewiseLinear {
-    /// Reads `{ knots, values }`.
+/// A σ̂ of given pieces, which are steps or join.
+#[derive(Debug, Clone)]
+pub struct Given<const STEPS: bool>(Piecewise);
+
+impl<const STEPS: bool> Given<STEPS> {
+    /// Reads `{ breaks, values }` or `{ knots, values }`.
     pub fn read(settings: &Settings, _: Option<&Body>) -> Option<Self> {
-        read_pieces(settings, false).map(Self)
+        read_pieces(settings, STEPS).map(Self)
     }
 }
 
-impl Recipe for PiecewiseLinear {
+impl<const STEPS: bool> Recipe for Given<STEPS> {
     fn label(&self) -> String {
-        "piecewise-linear".into()
+        if STEPS { "piecewise-constant" } else { "piecewise-linear" }.into()
     }
 
     fn prepare(&self, site: &Site, _: &Control) -> Result<Piecewise, Refusal> {
