@@ -248,7 +248,11 @@ impl<'a> Settings<'a> {
     }
 
     /// The same where some names are known only to say what is wrong with them: hints list what is `offered`.
-    fn choice_among(&self, names: &[String], offered: &[String]) -> Option<(usize, Settings<'a>)> {
+    pub(crate) fn choice_among(
+        &self,
+        names: &[String],
+        offered: &[String],
+    ) -> Option<(usize, Settings<'a>)> {
         let list = quoted(offered);
         let [entry] = self.table else {
             let (span, message) = match self.table {

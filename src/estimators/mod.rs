@@ -21,6 +21,7 @@ pub mod setup;
 pub mod single_scattering;
 pub mod slab;
 pub mod space;
+pub mod spectral_transmittance;
 pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;

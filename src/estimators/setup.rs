@@ -23,6 +23,32 @@ pub struct Site<'a> {
     pub address: Address,
 }
 
+/// A channel (wavelength) of a spectral problem.
+#[derive(Clone)]
+pub struct SpectralChannel {
+    /// Its medium, cut into panels.
+    pub mesh: Arc<Mesh>,
+    /// Its σ̂ on the support.
+    pub sampling: Piecewise,
+    /// σ̂, 1/length, where it is one constant, as walks that score several channels need; else 0.
+    pub majorant: f64,
+    /// `ln σ̂`.
+    pub ln_majorant: f64,
+    /// `∫σ̂`.
+    pub collisions: f64,
+}
+
+impl SpectralChannel {
+    /// Joins the parts; σ̂ is restricted to the support.
+    pub fn new(mesh: Arc<Mesh>, sampling: &Piecewise) -> Self {
+        let support = mesh.support();
+        let sampling = sampling.on(support);
+        let majorant = sampling.single_value().unwrap_or(0.0);
+        let collisions = majorant * support.length();
+        Self { mesh, sampling, majorant, ln_majorant: Lane::ln(majorant), collisions }
+    }
+}
+
 /// A problem with everything that its estimators need.
 pub struct Setup<P> {
     /// What is sought.
@@ -48,6 +74,8 @@ pub struct Setup<P> {
     pub skipped: f64,
     /// Whether whole laws are asked for; a search for optima leaves them out.
     pub laws: bool,
+    /// The channels of spectral problems, of which the first is `mesh` and `sampling`; empty for others.
+    pub channels: Vec<SpectralChannel>,
 }
 
 impl<P: Problem> Setup<P> {
@@ -81,7 +109,20 @@ impl<P: Problem> Setup<P> {
             transmittance,
             skipped: 0.0,
             laws: true,
+            channels: Vec::new(),
         }
+    }
+
+    /// The same with the media and σ̂ of channels after the first, which makes the problem spectral.
+    #[must_use]
+    pub fn spectral(mut self, further: Vec<(Arc<Mesh>, Option<Piecewise>)>) -> Self {
+        let none = Piecewise::constant(0.0, self.mesh.support());
+        let first = SpectralChannel::new(self.mesh.clone(), &self.sampling);
+        let further = further
+            .into_iter()
+            .map(|(mesh, sampling)| SpectralChannel::new(mesh, sampling.as_ref().unwrap_or(&none)));
+        self.channels = std::iter::once(first).chain(further).collect();
+        self
     }
 
     /// The same with σ̂ in space, where particles leave the ray: one constant, or what a recipe makes,

@@ -274,13 +274,13 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
         let request = Request { streams, count, buffer };
         let left = match kernel {
             Kernel::Packets(level) if E::IN_PACKETS => {
-                let medium = self.setup.problem.medium().lookups(level);
+                let medium = self.setup.problem.lookups(level);
                 self.estimator.draw_packets(level, &self.setup, &medium, request)
             }
             _ => Some(request),
         };
         if let Some(mut request) = left {
-            let medium = self.setup.problem.medium().lookups(Level::new());
+            let medium = self.setup.problem.lookups(Level::new());
             in_fused_code(
                 #[inline(always)]
                 || self.one_by_one(&medium, &mut request),
@@ -316,7 +316,7 @@ impl<P: Problem, E: Estimator<P>> Experiment for Trial<P, E> {
 
     fn draw_order_free(&self, level: Level, places: &Lanes, requests: &mut [&mut dyn OrderFree]) {
         let placement = Placement::new(&self.setup.sampling);
-        let medium = self.setup.problem.medium().lookups(level);
+        let medium = self.setup.problem.lookups(level);
         order_free::draw(level, &medium, &placement, places, requests);
     }
 }

@@ -94,6 +94,7 @@ impl Case {
         let problem = root.chosen("problem", &names).and_then(|(index, settings)| {
             let kind = problem::kind(index);
             let body = Body::read_for(&settings, kind.ray);
+            let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
             let sweep = read_sweep(&settings);
             let defaults = Defaults {
                 expect_biased: expect_biased.unwrap_or_default(),
@@ -163,6 +164,15 @@ impl Case {
         }
         if errors.is_empty() { Ok(cases) } else { Err(errors) }
     }
+}
+
+/// Refuses a spectral medium where a problem is about one wavelength.
+fn has_one_channel(settings: &Settings, body: &Body) -> bool {
+    let Body::Spectral { .. } = body else { return true };
+    let key = if settings.has("medium") { "medium" } else { "volume" };
+    let help = "give it one field, as in { constant = { value = 1 } }; `spectral-transmittance` takes a list";
+    settings.fault(key, "this problem is about one channel", help);
+    false
 }
 
 fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {

@@ -1,7 +1,8 @@
 //! One estimator as a case file has it.
 
 use super::sweep::What;
-use crate::catalogue::{Catalogue, Page, Settings};
+use crate::catalogue::{Catalogue, Page, Settings, Value};
+use crate::estimators::sampling::spectral::Spectral;
 use crate::estimators::trial::Entry;
 use crate::estimators::{Estimated, Inputs, Order, controls, sampling};
 use crate::media::Body;
@@ -101,6 +102,32 @@ fn read_if<T: ?Sized>(
     }
 }
 
+/// Reads `sampling`, a table, or a list with one for each channel of a spectral medium; `None` after a
+/// mistake.
+#[allow(clippy::option_option)] // the outer `None` is a recorded mistake
+fn read_sampling(
+    settings: &Settings,
+    body: Option<&Body>,
+) -> Option<Option<Box<dyn sampling::Recipe>>> {
+    let entry = settings.entry("sampling");
+    if !entry.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
+        return read_if(settings, "sampling", body, sampling::read);
+    }
+    let tables = settings.tables("sampling")?;
+    if let Some(body) = body.filter(|body| body.channels().len() != tables.len()) {
+        let message = format!(
+            "`sampling` lists {} channels, and the medium has {}",
+            tables.len(),
+            body.channels().len()
+        );
+        settings.fault("sampling", message, "give one σ̂ for each channel, or one table for all");
+        return None;
+    }
+    let recipes: Vec<_> = tables.iter().map(|table| sampling::read(table, body)).collect();
+    let recipes = recipes.into_iter().collect::<Option<Vec<_>>>()?;
+    Some((!recipes.is_empty()).then(|| Box::new(Spectral::new(recipes)) as Box<_>))
+}
+
 impl ParsedEstimator {
     /// In which order the collisions of its draws come.
     pub fn order(&self) -> Order {
@@ -155,7 +182,7 @@ impl ParsedEstimator {
         // What the page takes with other settings is read, and not used.
         let Features { inputs, may_take, is_order_free, .. } = features;
         let sampling = if may_take.sampling {
-            let read = read_if(&settings, "sampling", body, sampling::read);
+            let read = read_sampling(&settings, body);
             read.map(|sampling| sampling.filter(|_| inputs.sampling))
         } else {
             Some(None)
@@ -208,7 +235,7 @@ impl Estimators {
         (defaults, swept): (Defaults, Option<What>),
         accept: Accept,
     ) -> Option<Self> {
-        let sampling = read_if(settings, "sampling", body, sampling::read);
+        let sampling = read_sampling(settings, body);
         let control = read_if(settings, "control", body, controls::read);
         let list = settings.tables("estimators").map(|tables| {
             let read = |table: &Settings| {

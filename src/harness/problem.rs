@@ -19,6 +19,8 @@ use crate::theory::{Mesh, Prediction};
 pub struct ProblemKind {
     /// What it asks of the ray through a volume.
     pub ray: RayNeed,
+    /// Whether its medium may have several channels.
+    pub spectral: bool,
     /// Its estimators.
     pub estimators: Catalogue,
     /// Its reader.
@@ -43,6 +45,7 @@ impl ProblemKind {
     fn of<P: Mutable>() -> Self {
         Self {
             ray: P::RAY,
+            spectral: P::SPECTRAL,
             estimators: P::CATALOGUE,
             read: |body, settings, read_estimators| {
                 let problem = P::read(body, settings).map(Arc::new);
@@ -60,6 +63,8 @@ pub struct Parts<'a> {
     pub mesh: &'a Arc<Mesh>,
     /// σ̂ along the ray.
     pub sampling: Option<Piecewise>,
+    /// Medium and σ̂ of each channel after the first.
+    pub further: Vec<(Arc<Mesh>, Option<Piecewise>)>,
     /// σ_c.
     pub control: Control,
     /// A constant σ̂, 1/length, in place of the recipe's.
@@ -83,8 +88,8 @@ pub enum Walk {
 
 /// A problem with the estimators of a case; estimators are numbered in the order of the case.
 pub trait AnyProblem: Send + Sync {
-    /// The field along the ray.
-    fn medium(&self) -> &Medium;
+    /// The field of each channel along the ray.
+    fn media(&self) -> &[Medium];
 
     /// The distance that each channel of a draw is about.
     fn distances(&self) -> Vec<f64>;
@@ -136,12 +141,13 @@ struct Typed<P> {
 
 impl<P: Mutable> Typed<P> {
     fn setup(&self, estimator: usize, parts: Parts) -> Result<Setup<P>, Refusal> {
-        let Parts { mesh, sampling, control, constant, recipe, factor, albedo } = parts;
+        let Parts { mesh, sampling, further, control, constant, recipe, factor, albedo } = parts;
         let varied = albedo.and_then(|albedo| self.problem.with_albedo(albedo));
         let problem = varied.map_or_else(|| self.problem.clone(), Arc::new);
         let entry = &self.entries[estimator];
         let setup = Setup::new(problem, mesh.clone(), sampling, control);
         let setup = if entry.skips() { setup.skipping() } else { setup };
+        let setup = if P::SPECTRAL { setup.spectral(further) } else { setup };
         let setup = setup.in_space(constant, recipe, factor)?;
         // Without collisions a draw does not begin with the weight T_c.
         if entry.inputs().sampling {
@@ -171,8 +177,8 @@ fn predict<P: Mutable>(entry: &dyn Entry<P>, setup: &Setup<P>, order: Order) -> 
 }
 
 impl<P: Mutable> AnyProblem for Typed<P> {
-    fn medium(&self) -> &Medium {
-        self.problem.medium()
+    fn media(&self) -> &[Medium] {
+        self.problem.media()
     }
 
     fn distances(&self) -> Vec<f64> {

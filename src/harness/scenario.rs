@@ -9,7 +9,7 @@ use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
 use crate::catalogue::Settings;
 use crate::estimators::{Experiment, Order, RayView, Refusal, Site, controls, sampling};
-use crate::media::{Body, Piecewise};
+use crate::media::{Body, Medium, Piecewise};
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
 
@@ -20,7 +20,8 @@ const NOWHERE: Address = Address { seed: 0, experiment: 0, block: 0, lane: 0 };
 pub struct Scenario {
     body: Body,
     problem: Box<dyn AnyProblem>,
-    mesh: OnceLock<Arc<Mesh>>,
+    /// That of each channel.
+    meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
 }
 
@@ -44,7 +45,7 @@ impl Scenario {
             estimators = Estimators::read(settings, body, catalogue, reader, defaults, &accept);
         });
         let (problem, estimators, body) = (problem?, estimators?, body?.clone());
-        Some(Self { body, problem, mesh: OnceLock::new(), estimators })
+        Some(Self { body, problem, meshes: OnceLock::new(), estimators })
     }
 
     /// The field's name in the catalogue.
@@ -180,11 +181,16 @@ impl Scenario {
     }
 
     fn mesh(&self) -> &Arc<Mesh> {
-        self.mesh.get_or_init(|| Arc::new(Mesh::new(self.problem.medium().clone())))
+        &self.meshes()[0]
+    }
+
+    fn meshes(&self) -> &[Arc<Mesh>] {
+        let cut = |medium: &Medium| Arc::new(Mesh::new(medium.clone()));
+        self.meshes.get_or_init(|| self.problem.media().iter().map(cut).collect())
     }
 
     fn site(&self, address: Address) -> Site<'_> {
-        Site { body: &self.body, mesh: self.mesh(), address }
+        Site { body: &self.body.channels()[0], mesh: self.mesh(), address }
     }
 
     /// Calls `f` with the control that an experiment uses.
@@ -227,17 +233,29 @@ impl Scenario {
         let constant =
             constant.filter(|_| self.estimators.list[estimator].features.inputs.sampling);
         let recipe = self.estimators.sampling_of(&self.estimators.list[estimator]);
-        let sampling = match (constant, recipe) {
-            (Some(value), _) => Some(Piecewise::constant(value, mesh.support())),
-            (None, Some(recipe)) => Some(recipe.prepare(&site, &control)?),
-            (None, None) => None,
+        let sampling_of = |channel: usize, site: &Site| {
+            let sampling = match (constant, recipe) {
+                (Some(value), _) => Piecewise::constant(value, mesh.support()),
+                (None, Some(recipe)) => {
+                    let own = recipe.channels().get(channel).map_or(recipe, |own| &**own);
+                    own.prepare(site, &control)?
+                }
+                (None, None) => return Ok(None),
+            };
+            Ok(Some(sampling.scaled(factor)))
         };
-        let sampling = sampling.map(|sampling| sampling.scaled(factor));
+        let sampling = sampling_of(0, &site)?;
+        let channels = self.meshes().iter().zip(self.body.channels()).enumerate().skip(1);
+        let further = channels
+            .map(|(channel, (mesh, body))| {
+                Ok((mesh.clone(), sampling_of(channel, &Site { body, mesh, address })?))
+            })
+            .collect::<Result<_, _>>()?;
         let albedo = match variation {
             Some((What::Albedo, albedo)) => Some(albedo),
             _ => None,
         };
-        Ok(Parts { mesh, sampling, control, constant, recipe, factor, albedo })
+        Ok(Parts { mesh, sampling, further, control, constant, recipe, factor, albedo })
     }
 }
 

@@ -39,6 +39,8 @@ const CASES: BuiltIn = cases![
     "free-flight/layers-with-gap",
     "free-flight/exponential",
     "free-flight/magnet",
+    "spectral-transmittance/layers",
+    "spectral-transmittance/smooth",
     "transmittance-curve/eq21-figure-8",
     "transmittance-curve/noise-figure-5",
     "transmittance-curve/magnet",

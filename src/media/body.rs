@@ -1,9 +1,10 @@
-//! A field as a case file gives it: along a line, or as a volume with a ray through it.
+//! A field as a case file gives it: along a line, or as a volume with a ray through it; or one for each
+//! channel (wavelength) on the same line or ray.
 
 use std::sync::Arc;
 
 use super::{CATALOGUE, Medium, Profile, READERS, Volume};
-use crate::catalogue::{Domain, Settings, number};
+use crate::catalogue::{Domain, Settings, Value, number};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
 
@@ -28,7 +29,17 @@ pub enum Body {
         /// The ray.
         ray: Ray,
     },
+    /// `medium = [{ NAME = { … } }, …]` or `volume = [{ NAME = { … } }, …]`.
+    Spectral {
+        /// The fields' names in the catalogue, without repetition.
+        name: String,
+        /// One for each channel.
+        channels: Vec<Body>,
+    },
 }
+
+/// The most channels.
+pub const MOST_CHANNELS: usize = 8;
 
 /// What a problem asks of the ray through a volume; what it does not ask for may be given, and shows σ_t.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -49,6 +60,12 @@ impl Body {
 
     /// Reads `medium` and `span`, or `volume` and what a problem needs of a `ray`.
     pub fn read_for(settings: &Settings, need: RayNeed) -> Option<Self> {
+        for key in ["medium", "volume"] {
+            let entry = settings.entry(key);
+            if entry.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
+                return read_channels(settings, key);
+            }
+        }
         match (settings.has("medium"), settings.has("volume")) {
             (true, false) => {
                 let field = read_line(settings);
@@ -97,6 +114,15 @@ impl Body {
                 fits(settings, &*volume, ray)?;
                 Some(Self::Volume { name, volume, ray: *ray })
             }
+            Self::Spectral { channels, .. } => channels[0].read_beside(settings),
+        }
+    }
+
+    /// The field of each channel: one, unless it is spectral.
+    pub fn channels(&self) -> &[Self] {
+        match self {
+            Self::Spectral { channels, .. } => channels,
+            one => std::slice::from_ref(one),
         }
     }
 
@@ -114,11 +140,13 @@ impl Body {
     /// The field's name in the catalogue.
     pub fn name(&self) -> &str {
         match self {
-            Self::Line { name, .. } | Self::Volume { name, .. } => name,
+            Self::Line { name, .. } | Self::Volume { name, .. } | Self::Spectral { name, .. } => {
+                name
+            }
         }
     }
 
-    /// The field along its line or ray, clipped to its bounds.
+    /// The field along its line or ray, clipped to its bounds; that of the first channel.
     pub fn medium(&self) -> Medium {
         match self {
             Self::Line { profile, span, .. } => Medium::new(profile.clone(), *span, *span),
@@ -128,8 +156,56 @@ impl Body {
                 let profile = volume.along(ray, support);
                 Medium::clipped(profile, ray.span(), ends)
             }
+            Self::Spectral { channels, .. } => channels[0].medium(),
         }
     }
+}
+
+/// Reads a list of media with a `span`, or of volumes with a `ray`.
+fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
+    let fields = settings.tables(key);
+    let (span, ray) = if key == "medium" {
+        (Some(read_span(settings)), None)
+    } else {
+        (None, Some(settings.table("ray").and_then(|ray| read_ray(&ray, None))))
+    };
+    let fields = fields?;
+    if !(1..=MOST_CHANNELS).contains(&fields.len()) {
+        let message = format!("`{key}` lists {} channels", fields.len());
+        settings.fault(key, message, format!("it takes 1 to {MOST_CHANNELS}"));
+        return None;
+    }
+    let (names, mut channels) = (names(), Vec::new());
+    for table in &fields {
+        channels.push(if let Some(span) = span {
+            choose_line(table, &names, Settings::choice_among).zip(span).and_then(
+                |((name, profile), span)| {
+                    not_too_many(table, "", profile.pieces(span))?;
+                    Some(Body::Line { name, profile, span })
+                },
+            )
+        } else {
+            let field = table.choice(&names).and_then(|(index, field)| {
+                let volume = (READERS[index].volume)(&field);
+                field.close();
+                Some((names[index].clone(), volume?))
+            });
+            field.zip(ray.flatten()).and_then(|((name, volume), ray)| {
+                fits(table, &*volume, &ray)?;
+                Some(Body::Volume { name, volume, ray })
+            })
+        });
+    }
+    let channels: Vec<Body> = channels.into_iter().collect::<Option<_>>()?;
+    let support = channels[0].medium().support();
+    if channels.iter().any(|channel| channel.medium().support() != support) {
+        let message = "the channels do not fill the same part of the ray";
+        settings.fault(key, message, "give all of them the same `bounds`");
+        return None;
+    }
+    let mut different: Vec<&str> = channels.iter().map(Body::name).collect();
+    different.dedup();
+    Some(Body::Spectral { name: different.join(", "), channels })
 }
 
 /// More pieces than this along one ray are a mistake in the case: they would fill the memory.
@@ -165,10 +241,20 @@ fn names() -> Vec<String> {
 }
 
 fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
-    let names = names();
+    choose_line(settings, &names(), |settings, names, offered| {
+        settings.chosen_among("medium", names, offered)
+    })
+}
+
+/// Reads a field along a line that `choose` finds among the names, of which some are offered.
+fn choose_line<'a>(
+    settings: &Settings<'a>,
+    names: &[String],
+    choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
+) -> Option<(String, Arc<Profile>)> {
     let offered = names.iter().zip(READERS).filter(|(_, reader)| reader.in_line);
     let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
-    let (index, field) = settings.chosen_among("medium", &names, &offered)?;
+    let (index, field) = choose(settings, names, &offered)?;
     let profile = (READERS[index].line)(&field);
     field.close();
     Some((names[index].clone(), profile?))

@@ -10,7 +10,7 @@
 
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
-use super::{Extinction, Field};
+use super::{Extinction, Field, Medium};
 use crate::geometry::{Bounds, Point};
 use crate::numeric::pack::{self, Task, WIDTH, in_fused_code};
 use crate::numeric::twin::PAIR;
@@ -73,13 +73,28 @@ pub struct Lookups<'a> {
     batch: Box<dyn Batch + 'a>,
     single_value: Option<f64>,
     is_costly: bool,
+    /// The fields of the channels after the first.
+    further: Vec<Lookups<'a>>,
 }
 
 impl<'a> Lookups<'a> {
     /// Those of a field on the hardware of a level.
     pub fn new<F: Extinction>(field: &'a F, level: Level) -> Self {
         let (single_value, is_costly) = (field.single_value(), field.is_costly());
-        Self { batch: pack::on(level, Compile(field)), single_value, is_costly }
+        let batch = pack::on(level, Compile(field));
+        Self { batch, single_value, is_costly, further: Vec::new() }
+    }
+
+    /// Those of one field for each channel: of the first, and of others.
+    pub fn of_channels(first: &'a Medium, further: &'a [Medium], level: Level) -> Self {
+        let further = further.iter().map(|medium| medium.lookups(level)).collect();
+        Self { further, ..first.lookups(level) }
+    }
+
+    /// The field of a channel.
+    #[inline(always)]
+    pub fn channel(&self, channel: usize) -> &Self {
+        if channel == 0 { self } else { &self.further[channel - 1] }
     }
 
     /// `σ_t`, where it has one value.

@@ -28,6 +28,7 @@ pub mod scores;
 pub mod single_scattering;
 pub mod slab;
 pub mod space;
+pub mod spectral;
 pub mod sphere;
 pub mod streams;
 pub mod target;
@@ -42,8 +43,8 @@ use crate::estimators::{Draw, Estimated, Experiment, Setup};
 use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
-    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab, Sphere,
-    Transmittance, TransmittanceCurve, each_problem,
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
+    SpectralTransmittance, Sphere, Transmittance, TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -145,6 +146,7 @@ mutable! {
         precision::mutants();
     FreeFlight: free_flight::mutants(), precision::flights();
     TransmittanceCurve: curve::mutants();
+    SpectralTransmittance: spectral::mutants();
     Rod: rod::mutants();
     SingleScattering: single_scattering::mutants();
     Furnace: space::in_furnace();

@@ -125,3 +125,18 @@ pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ra
 pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
 /// The same ball in an environment.
 pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");
+/// Three layers in three channels, one channel a draw.
+pub const SPECTRAL_INDEPENDENT: Target =
+    on("spectral-transmittance/layers", 0, "independent (delta)");
+/// All channels by one walk, `σ̂ = 1.6, 1.1, 1.9`.
+pub const SPECTRAL_MIS_RATIO: Target =
+    on("spectral-transmittance/layers", 4, "spectral-mis (ratio)");
+/// The same by delta tracking.
+pub const SPECTRAL_MIS_DELTA: Target =
+    on("spectral-transmittance/layers", 5, "spectral-mis (delta)");
+/// `σ̂ = 1.9` for all channels.
+pub const SPECTRAL_MAXIMUM: Target =
+    on("spectral-transmittance/layers", 9, "spectral-tracking (maximum)");
+/// `σ̂ = 1.9` for all channels.
+pub const SPECTRAL_HISTORY: Target =
+    on("spectral-transmittance/layers", 10, "spectral-tracking (history)");

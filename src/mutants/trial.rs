@@ -30,7 +30,7 @@ impl<P: Problem> Experiment for Trial<P> {
     fn fill_by(&self, _: Kernel, streams: &mut Streams, count: usize, buffer: &mut DrawBuffer) {
         buffer.clear();
         let begin = streams.clone();
-        let medium = &self.setup.problem.medium().lookups(Level::new());
+        let medium = &self.setup.problem.lookups(Level::new());
         for number in 0..count {
             if self.replays && number % PERIOD == 0 {
                 streams.clone_from(&begin);

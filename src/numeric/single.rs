@@ -147,7 +147,7 @@ macro_rules! single {
             fn where_bits(words: u64, bits: u64, wanted: u64, yes: Self, no: Self) -> Self {
                 // Bits, not a branch: what a hash decides cannot be foreseen.
                 let mask = u64::from(words & bits == wanted).wrapping_neg();
-                let [yes, no] = [yes, no].map(|x| f64::from(x.0).to_bits());
+                let (yes, no) = (f64::from(yes.0).to_bits(), f64::from(no.0).to_bits());
                 Self(f64::from_bits(no ^ ((no ^ yes) & mask)) as $number)
             }
 
@@ -165,7 +165,13 @@ macro_rules! single {
             #[inline(always)]
             fn columns(self, table: &[Row]) -> [Self; 5] {
                 let [a, b, c, d, e, ..] = table[place(f64::from(self.0), table.len())].0;
-                [a, b, c, d, e].map(|x| Self(x as $number))
+                [
+                    Self(a as $number),
+                    Self(b as $number),
+                    Self(c as $number),
+                    Self(d as $number),
+                    Self(e as $number),
+                ]
             }
 
             $(

@@ -7,13 +7,16 @@ pub mod lambertian;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
+pub mod spectral_transmittance;
 pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 
+use fearless_simd::Level;
+
 use crate::catalogue::{Catalogue, Domain, Settings, Value};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Lookups, Medium, Volume};
 
 pub mod multiple_scattering;
 pub mod scene;
@@ -29,6 +32,7 @@ pub use scene::{Albedo, Scene};
 pub use single_scattering::SingleScattering;
 pub use sky::Sky;
 pub use slab::Slab;
+pub use spectral_transmittance::SpectralTransmittance;
 pub use sphere::Sphere;
 pub use transmittance::Transmittance;
 pub use transmittance_curve::TransmittanceCurve;
@@ -41,6 +45,7 @@ macro_rules! each_problem {
             transmittance::Transmittance,
             free_flight::FreeFlight,
             transmittance_curve::TransmittanceCurve,
+            spectral_transmittance::SpectralTransmittance,
             rod::Rod,
             slab::Slab,
             single_scattering::SingleScattering,
@@ -71,12 +76,24 @@ pub trait Problem: Send + Sync + Sized + 'static {
 
     /// What it asks of the ray through a volume.
     const RAY: RayNeed = RayNeed::Whole;
+    /// Whether its medium may have several channels (wavelengths).
+    const SPECTRAL: bool = false;
 
     /// Reads what the problem needs beside the field, which is absent after a mistake.
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self>;
 
     /// The field along the ray.
     fn medium(&self) -> &Medium;
+
+    /// The field of each channel along the ray, that of [`Problem::medium`] first.
+    fn media(&self) -> &[Medium] {
+        std::slice::from_ref(self.medium())
+    }
+
+    /// Their lookups, for kernels on the hardware of a level.
+    fn lookups(&self, level: Level) -> Lookups<'_> {
+        Lookups::of_channels(self.medium(), &self.media()[1..], level)
+    }
 
     /// The field in space that particles walk through, for problems that take σ̂ in space.
     fn volume(&self) -> Option<&Volume> {

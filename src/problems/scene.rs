@@ -73,7 +73,7 @@ impl Scene {
         let phase = Phase::read(settings);
         let volume = match body {
             Some(Body::Volume { volume, .. }) => Some(volume.clone()),
-            Some(Body::Line { .. }) => {
+            Some(Body::Line { .. } | Body::Spectral { .. }) => {
                 let help = "write `volume` instead of `medium`";
                 settings.fault("medium", "particles walk through a field in space", help);
                 None

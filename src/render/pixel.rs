@@ -122,7 +122,16 @@ impl<'a> Pixel<'a> {
         } else {
             (None, Control::None)
         };
-        Ok(Parts { mesh, sampling, control, constant: None, recipe, factor: 1.0, albedo: None })
+        Ok(Parts {
+            mesh,
+            sampling,
+            further: Vec::new(),
+            control,
+            constant: None,
+            recipe,
+            factor: 1.0,
+            albedo: None,
+        })
     }
 
     /// What a draw is expected to cost and to be spread by, at the covered pixel of a number.

@@ -21,6 +21,7 @@ pub mod rule;
 pub mod single;
 pub mod slab;
 pub mod space;
+pub mod spectral;
 pub mod sphere;
 pub mod volterra;
 

@@ -30,6 +30,7 @@ mod slab;
 mod small_spreads;
 mod space;
 mod space_packets;
+mod spectral;
 mod sphere;
 mod stress;
 mod threads;

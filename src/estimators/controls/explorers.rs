@@ -30,7 +30,7 @@ impl Explorers {
             let octaves = settings.count(key, 1..=16)? as usize;
             let unknown = body.filter(|body| match body {
                 Body::Volume { volume, .. } => volume.coarsened(octaves).is_none(),
-                Body::Line { .. } => true,
+                Body::Line { .. } | Body::Spectral { .. } => true,
             });
             if let Some(body) = unknown {
                 let message = format!("`{}` has no octaves", body.name());

@@ -53,7 +53,7 @@ impl LocalMajorants {
                 }
                 let bounded = match body {
                     Some(Body::Volume { volume, .. }) => volume.bounds().enclosing_box().is_some(),
-                    Some(Body::Line { .. }) => false,
+                    Some(Body::Line { .. } | Body::Spectral { .. }) => false,
                     None => true,
                 };
                 if !bounded {
@@ -90,7 +90,7 @@ impl Recipe for LocalMajorants {
             (Self::Grid(cells), Body::Volume { volume, ray, .. }) => {
                 in_cells(&**volume, ray, support, *cells)
             }
-            (Self::Grid(_), Body::Line { .. }) => {
+            (Self::Grid(_), Body::Line { .. } | Body::Spectral { .. }) => {
                 Err(Refusal::mismatch("a volume for its grid", "a field in 1-D"))
             }
         }

@@ -5,6 +5,7 @@ pub mod local_majorants;
 pub mod piecewise_constant;
 pub mod piecewise_linear;
 pub mod pilot;
+pub mod spectral;
 
 use super::{Refusal, Site, recipes};
 use crate::media::{Control, Majorants, Piecewise, Volume};
@@ -22,6 +23,11 @@ pub trait Recipe: Send + Sync {
     /// Whether it looks σ_t up to learn from it: lookups that nobody counts.
     fn learns(&self) -> bool {
         false
+    }
+
+    /// The recipes of the channels of a spectral medium, where each has its own.
+    fn channels(&self) -> &[Box<dyn Recipe>] {
+        &[]
     }
 
     /// Makes σ̂ on the support of the medium.

@@ -1,0 +1,39 @@
+//! A σ̂ for each channel of a spectral medium: `sampling = [{ constant.value = 1.6 }, …]`.
+
+use super::Recipe;
+use crate::estimators::{Refusal, Site};
+use crate::media::{Control, Piecewise};
+
+/// One recipe for each channel.
+pub struct Spectral {
+    recipes: Vec<Box<dyn Recipe>>,
+}
+
+impl Spectral {
+    /// Joins the recipes, of which there is at least one.
+    pub fn new(recipes: Vec<Box<dyn Recipe>>) -> Self {
+        Self { recipes }
+    }
+}
+
+impl Recipe for Spectral {
+    fn label(&self) -> String {
+        let labels = self.recipes.iter().map(|recipe| match recipe.constant() {
+            Some(value) => value.to_string(),
+            None => recipe.label(),
+        });
+        labels.collect::<Vec<_>>().join(", ")
+    }
+
+    fn channels(&self) -> &[Box<dyn Recipe>] {
+        &self.recipes
+    }
+
+    fn learns(&self) -> bool {
+        self.recipes.iter().any(|recipe| recipe.learns())
+    }
+
+    fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
+        self.recipes[0].prepare(site, control)
+    }
+}

@@ -1,0 +1,59 @@
+//! Ratio tracking of all channels at once, through one σ̂ for all.
+//!
+//! ```text
+//! X_λ = Π (1 − σ_λ(tᵢ)/μ̄),  tᵢ a Poisson process of rate μ̄
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `sampling` | one constant σ̂ > 0 for all channels | required here or in the case |
+//!
+//! Unbiased for every σ̂ > 0. Nothing is chosen by chance but the places: where the densities of the channels are
+//! alike it has the least variance of all.
+//!
+//! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
+//! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
+
+use super::walk::{self, Heroes};
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Lookups;
+use crate::problems::SpectralTransmittance;
+use crate::problems::spectral_transmittance::Values;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+use crate::theory::spectral::Tracker;
+
+/// The ratio tracker of all channels.
+#[derive(Debug, Clone)]
+pub struct CommonRatio;
+
+impl Estimator<SpectralTransmittance> for CommonRatio {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(_: &Settings) -> Option<Self> {
+        Some(Self)
+    }
+
+    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
+        walk::require_constants(setup)?;
+        walk::require_common(setup)
+    }
+
+    fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {
+        let tracker = Tracker::Hero { delta: false };
+        walk::spectrum(setup, &Heroes::Uniform, tracker).predict(&setup.problem.luminance)
+    }
+
+    #[inline(always)]
+    fn draw(
+        &self,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        let count = setup.channels.len();
+        let passed = walk::walk(setup, medium, rng, (0, false), 0..count);
+        Draw::free(setup.problem.values(&passed.ratios[..count]), passed.lookups)
+    }
+}

@@ -1,0 +1,112 @@
+//! Spectral tracking: one σ̂ for all channels, and a chance of null collisions that depends on all of them.
+//!
+//! ```text
+//! at a collision null with P_n, then w_λ ← w_λ (n_λ/μ̄)/P_n;  else real, and X = 0;   X_λ = w_λ at the end
+//! average  P_n = mean_λ n_λ/μ̄
+//! maximum  P_n = max n/(max n + max σ)
+//! history  P_n = Σ |w_λ n_λ| / (Σ |w_λ n_λ| + Σ |w_λ σ_λ|)
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `probabilities` | `"average"`, `"maximum"` or `"history"` | `"average"` |
+//! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each | required here or in the case |
+//!
+//! Unbiased there. The history-aware form scores what `spectral-mis` with delta tracking, one σ̂ and equal
+//! probabilities scores.
+//!
+//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
+//! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+
+use super::walk::{self, Heroes};
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::body::MOST_CHANNELS;
+use crate::media::{Extinction, Lookups};
+use crate::problems::SpectralTransmittance;
+use crate::problems::spectral_transmittance::Values;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+use crate::theory::spectral::{Chance, Tracker};
+
+/// Spectral tracking; without a fixed chance it depends on the weights so far.
+#[derive(Debug, Clone)]
+pub struct SpectralTracking {
+    chance: Option<Chance>,
+}
+
+impl Estimator<SpectralTransmittance> for SpectralTracking {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        let words = ["average", "maximum", "history"];
+        let chance = match settings.word_or("probabilities", &words, "average")? {
+            "average" => Some(Chance::Average),
+            "maximum" => Some(Chance::Maximum),
+            _ => None,
+        };
+        Some(Self { chance })
+    }
+
+    fn label(&self, _: bool) -> String {
+        match self.chance {
+            Some(Chance::Average) => "average".into(),
+            Some(Chance::Maximum) => "maximum".into(),
+            None => "history".into(),
+        }
+    }
+
+    fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
+        walk::require_constants(setup)?;
+        walk::require_common(setup)?;
+        walk::require_majorants(setup)
+    }
+
+    fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {
+        // Weights that remember are those of the balance heuristic.
+        let tracker = self.chance.map_or(Tracker::Mis { delta: true }, Tracker::Tracking);
+        walk::spectrum(setup, &Heroes::Uniform, tracker).predict(&setup.problem.luminance)
+    }
+
+    #[inline(always)]
+    fn draw(
+        &self,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<Values> {
+        let count = setup.channels.len();
+        let common = &setup.channels[0];
+        let mut cursor = common.sampling.begin();
+        let (mut weights, mut shares) = ([1.0; MOST_CHANNELS], [0.0; MOST_CHANNELS]);
+        let (weights, shares) = (&mut weights[..count], &mut shares[..count]);
+        let mut lookups = 0;
+        loop {
+            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+            if common.sampling.fly(&mut cursor, depth).is_none() {
+                return Draw::free(setup.problem.values(weights), lookups);
+            }
+            lookups += 1;
+            for (channel, share) in shares.iter_mut().enumerate() {
+                let extinction = medium.channel(channel).extinction(cursor.t);
+                *share = 1.0 - extinction / common.majorant;
+            }
+            let null = if let Some(chance) = self.chance {
+                chance.of_null(shares)
+            } else {
+                let (mut nulls, mut all) = (0.0, 0.0);
+                for (weight, share) in weights.iter().zip(shares.iter()) {
+                    nulls += weight * share;
+                    all += weight;
+                }
+                nulls / all
+            };
+            if number >= null {
+                return Draw::free(setup.problem.values(&[0.0; MOST_CHANNELS][..count]), lookups);
+            }
+            for (weight, share) in weights.iter_mut().zip(shares.iter()) {
+                *weight *= share / null;
+            }
+        }
+    }
+}

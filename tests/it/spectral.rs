@@ -1,0 +1,155 @@
+//! Chromatic media against reference values that were computed by other means, and what is refused.
+
+use std::collections::BTreeMap;
+
+use serde::Deserialize;
+use trueflight::harness::record::Row;
+
+use crate::common::{mistakes, predicted, rows};
+
+#[derive(Deserialize)]
+struct Reference {
+    id: String,
+    value: Vec<f64>,
+    error: f64,
+}
+
+const LAYERS: &str = include_str!("../../cases/spectral-transmittance/layers.toml");
+const SMOOTH: &str = include_str!("../../cases/spectral-transmittance/smooth.toml");
+const HERO_DELTA: &str = include_str!("../../cases/spectral-transmittance/hero-delta.toml");
+
+/// The trackers by the names of the reference values.
+const TRACKERS: [(&str, &str, &str); 10] = [
+    ("indep-delta", "independent (delta)", ""),
+    ("indep-ratio", "independent (ratio)", ""),
+    ("hero-ratio", "hero (ratio)", ""),
+    ("hero-delta", "hero (delta)", ""),
+    ("mis-ratio", "spectral-mis (ratio)", ""),
+    ("mis-delta", "spectral-mis (delta)", "1.6, 1.1, 1.9"),
+    ("spectral-avg", "spectral-tracking (average)", ""),
+    ("spectral-max", "spectral-tracking (maximum)", ""),
+    ("history-avg", "spectral-tracking (history)", ""),
+    ("common-ratio", "common-ratio", ""),
+];
+
+/// The channels of an estimator, the luminance last.
+fn of<'a>(rows: &'a [Row], estimator: &str, sampling: &str) -> Vec<&'a Row> {
+    let is_asked = |row: &&Row| {
+        row.estimator == estimator && (sampling.is_empty() || row.sampling_kind == sampling)
+    };
+    rows.iter().filter(is_asked).collect()
+}
+
+#[test]
+fn moments_and_lookups_are_those_of_the_references() {
+    let mut rows: BTreeMap<&str, Vec<Row>> = BTreeMap::new();
+    rows.insert("PW3", predicted(LAYERS).into_iter().chain(predicted(HERO_DELTA)).collect());
+    let with_hero = SMOOTH.replace(
+        "  { spectral-mis = { collisions = \"ratio\" } },",
+        "  { hero = { collisions = \"delta\" } },\n  { spectral-mis = { collisions = \"ratio\" } },",
+    );
+    rows.insert("SM4", predicted(&with_hero));
+    let references: Vec<Reference> =
+        serde_json::from_str(include_str!("../data/spectral-transmittance.json"))
+            .expect("the reference values");
+    let mut count = 0;
+    for Reference { id, value, error } in references {
+        let parts: Vec<&str> = id.split('/').collect();
+        let rows = &rows[parts[1]];
+        if parts[2] == "mean" {
+            for (row, expected) in of(rows, "independent (delta)", "").iter().zip(&value) {
+                let found = row.truth.expect("a truth");
+                assert!((found - expected).abs() <= error, "{id}: {found} for {expected}");
+                count += 1;
+            }
+            continue;
+        }
+        let (_, estimator, sampling) =
+            TRACKERS.into_iter().find(|tracker| tracker.0 == parts[2]).expect("a tracker");
+        let rows = of(rows, estimator, sampling);
+        let found: Vec<f64> = if parts[3] == "var" {
+            rows[..value.len()].iter().map(|row| row.predicted_variance.expect("known")).collect()
+        } else {
+            let last = rows.last().expect("the luminance");
+            let (variance, lookups) = (last.predicted_variance, last.predicted_lookups);
+            let (variance, lookups) = (variance.expect("known"), lookups.expect("known"));
+            vec![variance, lookups, variance * lookups]
+        };
+        for (found, expected) in found.iter().zip(&value) {
+            assert!((found - expected).abs() <= error, "{id}: {found} for {expected}");
+            count += 1;
+        }
+    }
+    assert!(count >= 120, "{count}");
+}
+
+/// With equal probabilities the mean of all channels is 1 for a survivor: the luminance of four channels has
+/// the variance of one bit, `Ȳ(1 − Ȳ)`.
+#[test]
+fn multiple_importance_sampling_removes_colour_noise_only() {
+    let drawn = rows(SMOOTH, 200_000);
+    let luminance = |name: &str| {
+        let rows = of(&drawn, name, "");
+        let row = rows.last().expect("the luminance");
+        assert_eq!(row.channel, "luminance");
+        (row.truth.expect("known"), row.variance.expect("drawn"))
+    };
+    for name in ["independent (delta)", "spectral-mis (delta)"] {
+        let (truth, variance) = luminance(name);
+        let bit = truth * (1.0 - truth);
+        assert!((variance / bit - 1.0).abs() < 0.01, "{name}: {variance} for {bit}");
+    }
+}
+
+/// A case of two channels with the given σ̂ and estimator.
+fn two(media: &str, sampling: &str, estimator: &str) -> String {
+    format!(
+        "title = \"two channels\"\n[problem.spectral-transmittance]\nmedium = [{media}]\nspan = [0, 2]\n\
+         sampling = {sampling}\nestimators = [{{ {estimator} }}]\n"
+    )
+}
+
+const RAMP: &str = "{ piecewise-linear = { knots = [0, 2], values = [0, 1] } }, { constant = { extinction = 0.3 } }";
+
+#[test]
+fn a_hero_whose_majorant_touches_is_refused_with_the_place() {
+    let reason = |text: &str| {
+        let rows = predicted(text);
+        format!("{:?}", rows[0].verdict) + &rows[0].reason
+    };
+    let touches =
+        reason(&two(RAMP, "{ constant = { value = 1 } }", "hero = { collisions = \"delta\" }"));
+    assert!(touches.contains("E[X²] is infinite at t = 2"), "{touches}");
+    let same = RAMP.replace("values = [0, 1]", "values = [1, 1]");
+    let biased =
+        reason(&two(&same, "{ constant = { value = 1 } }", "hero = { collisions = \"delta\" }"));
+    assert!(biased.contains("biases the others, at t = 0"), "{biased}");
+    // Multiple importance sampling mends both.
+    for media in [RAMP, &same] {
+        let fine = reason(&two(
+            media,
+            "{ constant = { value = 1 } }",
+            "spectral-mis = { collisions = \"delta\" }",
+        ));
+        assert!(!fine.contains("Refused"), "{fine}");
+    }
+}
+
+#[test]
+fn mistakes_are_named() {
+    let constant = "{ constant = { value = 1 } }";
+    let ratio = "hero = { collisions = \"ratio\" }";
+    for (text, expected) in [
+        (two(RAMP, &format!("[{constant}]"), ratio), "lists 1 channels, and the medium has 2"),
+        (two(RAMP, constant, "hero = { hero = [0.5, 0.6] }"), "the probabilities sum to 1.1"),
+        (two("", constant, ratio), "lists 0 channels"),
+        (two(&[RAMP; 5].join(", "), constant, ratio), "lists 10 channels"),
+        (
+            two(RAMP, constant, ratio).replace("spectral-transmittance", "transmittance"),
+            "this problem is about one channel",
+        ),
+    ] {
+        let found = mistakes(&text).map(|error| error.render(false)).unwrap_or_default();
+        assert!(found.contains(expected), "{expected}: {found}");
+    }
+}
