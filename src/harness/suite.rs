@@ -47,6 +47,8 @@ const CASES: BuiltIn = cases![
     "rod/three-rules-a0.7",
     "rod/roulette",
     "rod/magnet",
+    "spectral-rod/three-albedos",
+    "spectral-rod/near-albedos",
     "single-scattering/homogeneous",
     "single-scattering/magnet",
     "slab/magnet",

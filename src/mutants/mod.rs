@@ -29,6 +29,7 @@ pub mod single_scattering;
 pub mod slab;
 pub mod space;
 pub mod spectral;
+pub mod spectral_rod;
 pub mod sphere;
 pub mod streams;
 pub mod target;
@@ -44,7 +45,7 @@ use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
     FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
-    SpectralTransmittance, Sphere, Transmittance, TransmittanceCurve, each_problem,
+    SpectralRod, SpectralTransmittance, Sphere, Transmittance, TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -147,6 +148,7 @@ mutable! {
     FreeFlight: free_flight::mutants(), precision::flights();
     TransmittanceCurve: curve::mutants();
     SpectralTransmittance: spectral::mutants();
+    SpectralRod: spectral_rod::mutants();
     Rod: rod::mutants();
     SingleScattering: single_scattering::mutants();
     Furnace: space::in_furnace();

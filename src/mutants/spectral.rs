@@ -13,7 +13,8 @@ use super::target::{
     SPECTRAL_MIS_RATIO,
 };
 use super::{About, Mutant, with};
-use crate::estimators::spectral_transmittance::walk::{Heroes, Passed, relative_density};
+use crate::estimators::heroes::Heroes;
+use crate::estimators::spectral_transmittance::walk::{Passed, relative_density};
 use crate::estimators::{Draw, Setup};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
@@ -95,7 +96,7 @@ fn independent(
     rng: &mut Stream,
 ) -> Draw<Values> {
     let count = setup.channels.len();
-    let hero = Heroes::Uniform.choose(setup, rng.uniform());
+    let hero = Heroes::Uniform.choose(setup.channels.len(), rng.uniform());
     let (passed, _) = walk(slip, setup, medium, rng, (hero, true));
     let weight = if slip == Slip::ChoiceFree { 1.0 } else { count as f64 };
     let value = if passed.is_alive { weight } else { 0.0 };
@@ -117,7 +118,7 @@ fn balanced(
 ) -> Draw<Values> {
     let count = setup.channels.len();
     let chosen = if slip == Slip::ByLuminance { Heroes::Luminance } else { Heroes::Uniform };
-    let hero = chosen.choose(setup, rng.uniform());
+    let hero = chosen.choose(setup.channels.len(), rng.uniform());
     let (passed, last) = walk(slip, setup, medium, rng, (hero, delta));
     let mut found = [0.0; MOST_CHANNELS];
     if passed.is_alive {
@@ -134,7 +135,7 @@ fn balanced(
             let by_hero = if nulls { found[channel] } else { relative };
             own[channel] = by_hero;
             if slip != Slip::Dropped || channel + 1 < count {
-                density += Heroes::Uniform.probability(setup, channel) * by_hero;
+                density += Heroes::Uniform.probability(count, channel) * by_hero;
             }
         }
         if slip == Slip::TwiceAsMany {
@@ -170,7 +171,7 @@ fn walk(
         }
         passed.lookups += 1;
         if slip == Slip::Anew {
-            hero = Heroes::Uniform.choose(setup, rng.uniform());
+            hero = Heroes::Uniform.choose(setup.channels.len(), rng.uniform());
         }
         let mut survival = 1.0;
         for (channel, own) in setup.channels.iter().enumerate() {

@@ -140,3 +140,8 @@ pub const SPECTRAL_MAXIMUM: Target =
 /// `σ̂ = 1.9` for all channels.
 pub const SPECTRAL_HISTORY: Target =
     on("spectral-transmittance/layers", 10, "spectral-tracking (history)");
+/// Albedos .99, .5 and .1, `p_f = .75`, an optical length of 2.
+pub const SPECTRAL_ROD_MIS: Target = on("spectral-rod/three-albedos", 1, "spectral-mis");
+/// The same with a thin rod of albedos .6, .5 and .4.
+pub const SPECTRAL_ROD_TRACKING: Target =
+    on("spectral-rod/near-albedos", 1, "spectral-tracking (average)");

@@ -7,6 +7,7 @@ pub mod lambertian;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
+pub mod spectral_rod;
 pub mod spectral_transmittance;
 pub mod sphere;
 pub mod transmittance;
@@ -32,6 +33,7 @@ pub use scene::{Albedo, Scene};
 pub use single_scattering::SingleScattering;
 pub use sky::Sky;
 pub use slab::Slab;
+pub use spectral_rod::SpectralRod;
 pub use spectral_transmittance::SpectralTransmittance;
 pub use sphere::Sphere;
 pub use transmittance::Transmittance;
@@ -47,6 +49,7 @@ macro_rules! each_problem {
             transmittance_curve::TransmittanceCurve,
             spectral_transmittance::SpectralTransmittance,
             rod::Rod,
+            spectral_rod::SpectralRod,
             slab::Slab,
             single_scattering::SingleScattering,
             furnace::Furnace,

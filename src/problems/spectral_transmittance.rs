@@ -42,7 +42,8 @@ pub struct SpectralTransmittance {
 impl SpectralTransmittance {
     /// Through the media of the channels, of which there is at least one.
     pub fn new(media: Vec<Medium>) -> Self {
-        let luminance = if media.len() > 1 { luminance(media.len()) } else { Vec::new() };
+        let count = if media.len() > 1 { media.len() } else { 0 };
+        let luminance = (0..count).map(|channel| luminance(count, channel)).collect();
         Self { media, luminance }
     }
 
@@ -60,12 +61,11 @@ impl SpectralTransmittance {
     }
 }
 
-/// The weights of N channels in the luminance.
-pub fn luminance(channels: usize) -> Vec<f64> {
-    if channels == 3 {
-        return vec![0.2126, 0.7152, 0.0722];
-    }
-    vec![1.0 / channels as f64; channels]
+/// The weight of one of N channels in the luminance.
+#[inline(always)]
+pub fn luminance(channels: usize, channel: usize) -> f64 {
+    const BT709: [f64; 3] = [0.2126, 0.7152, 0.0722];
+    if channels == BT709.len() { BT709[channel] } else { 1.0 / channels as f64 }
 }
 
 impl Problem for SpectralTransmittance {

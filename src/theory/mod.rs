@@ -22,6 +22,7 @@ pub mod single;
 pub mod slab;
 pub mod space;
 pub mod spectral;
+pub mod spectral_rod;
 pub mod sphere;
 pub mod volterra;
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Deserialize;
 use trueflight::harness::record::Row;
+use trueflight::theory::spectral_rod::critical;
 
 use crate::common::{mistakes, predicted, rows};
 
@@ -152,4 +153,103 @@ fn mistakes_are_named() {
         let found = mistakes(&text).map(|error| error.render(false)).unwrap_or_default();
         assert!(found.contains(expected), "{expected}: {found}");
     }
+}
+
+#[derive(Deserialize)]
+struct RodReference {
+    id: String,
+    params: RodParams,
+    value: Vec<f64>,
+    error: f64,
+}
+
+#[derive(Deserialize)]
+struct RodParams {
+    medium: String,
+    albedos: Vec<f64>,
+}
+
+/// A rod of that optical length, the same whatever its fields.
+fn rod(length: &str, albedos: &[f64], forward: &str) -> Vec<Row> {
+    predicted(&format!(
+        "title = \"rod\"\n[problem.spectral-rod]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
+         albedos = {albedos:?}\nforward = {forward}\nsampling.constant = {{ value = 0.8 }}\nestimators = [\n\
+         {{ spectral-tracking = {{ probabilities = \"average\" }} }},\n\
+         {{ spectral-tracking = {{ probabilities = \"maximum\" }} }},\n{{ spectral-mis = {{}} }} ]\n",
+        2.0 * length.parse::<f64>().expect("a length")
+    ))
+}
+
+#[test]
+fn rods_of_coloured_scatterers_have_the_variances_of_the_references() {
+    let references: Vec<RodReference> =
+        serde_json::from_str(include_str!("../data/spectral-rod.json"))
+            .expect("the reference values");
+    let mut count = 0;
+    let mut agrees = |id: &str, found: f64, expected: f64, error: f64| {
+        // What is printed of a variance is exact to its error, and to rounding of the moments it is made of.
+        let near = error.max(1e-13 * (1.0 + expected.abs()));
+        assert!((found - expected).abs() <= near, "{id}: {found} for {expected}");
+        count += 1;
+    };
+    for RodReference { id, params, value, error } in references {
+        let parts: Vec<&str> = id.split('/').collect();
+        let forward = params.medium.rsplit("p_f=").next().expect("p_f").parse().expect("a number");
+        let albedos = &params.albedos;
+        if id.ends_with("L_critical") {
+            let maximum = parts[2] == "spectral-max";
+            let most = albedos.iter().fold(0.0f64, |most, &a| most.max(a));
+            let least = albedos.iter().fold(1.0f64, |least, &a| least.min(a));
+            let mean = albedos.iter().sum::<f64>() / albedos.len() as f64;
+            let chance = if maximum { most / (most + 1.0 - least) } else { mean };
+            for (albedo, expected) in albedos.iter().zip(value) {
+                let found = critical(albedo * albedo / chance, forward);
+                if expected > 0.0 {
+                    agrees(&id, found, expected, error);
+                } else {
+                    assert_eq!(found, f64::INFINITY, "{id}");
+                }
+            }
+            continue;
+        }
+        let rows = rod(&parts[2][1..], albedos, &forward.to_string());
+        let of = |estimator: &str, channel: &str| {
+            let is_asked = |row: &&Row| row.estimator == estimator && row.channel == channel;
+            rows.iter().find(is_asked)
+        };
+        for (channel, expected) in value.iter().enumerate() {
+            let number = channel % albedos.len() + 1;
+            let side = if channel < albedos.len() { "transmittance" } else { "reflectance" };
+            let name = format!("{side}, channel {number}");
+            let estimator = match parts[3] {
+                "spectral-avg" => "spectral-tracking (average)",
+                "spectral-max" => "spectral-tracking (maximum)",
+                _ => "spectral-mis",
+            };
+            let Some(row) = of(estimator, &name) else {
+                // A reflectance of 0 is no channel.
+                assert!(expected.abs() < 1e-15, "{id}: {name}");
+                continue;
+            };
+            let found = if parts[3] == "mean" { row.truth } else { row.predicted_variance };
+            agrees(&id, found.expect("known"), *expected, error);
+        }
+    }
+    assert!(count >= 30, "{count}");
+}
+
+#[test]
+fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importance_sampling_is_not()
+{
+    let rows = rod("1.6", &[1.0, 0.0], "0.5");
+    let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
+    assert!(
+        reasons[0].contains("E[X²] of channel 1 is infinite from optical length 1.5708 on"),
+        "{reasons:?}"
+    );
+    let fine = rows.iter().filter(|row| row.estimator == "spectral-mis");
+    assert!(
+        fine.clone().count() == 3 && fine.clone().all(|row| row.reason.is_empty()),
+        "{reasons:?}"
+    );
 }

@@ -14,8 +14,9 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
 
-use super::walk::{self, Heroes};
+use super::walk;
 use crate::catalogue::Settings;
+use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::SpectralTransmittance;

@@ -18,8 +18,9 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::walk::{self, Heroes};
+use super::walk;
 use crate::catalogue::Settings;
+use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
@@ -53,7 +54,7 @@ impl Estimator<SpectralTransmittance> for Independent {
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        self.heroes.require(setup)?;
+        self.heroes.require(setup.channels.len())?;
         walk::require_constants(setup)?;
         if self.delta { walk::require_majorants(setup) } else { Ok(()) }
     }
@@ -76,7 +77,7 @@ impl Estimator<SpectralTransmittance> for Independent {
         let chosen = if self.in_turn {
             0..count
         } else {
-            let hero = self.heroes.choose(setup, rng.uniform());
+            let hero = self.heroes.choose(setup.channels.len(), rng.uniform());
             hero..hero + 1
         };
         let (mut found, mut lookups) = ([0.0; MOST_CHANNELS], 0);
@@ -85,7 +86,7 @@ impl Estimator<SpectralTransmittance> for Independent {
             let passed = walk::walk(setup, medium, rng, own, hero..hero + 1);
             let value = if self.delta { 1.0 } else { passed.ratios[hero] };
             let weight =
-                if self.in_turn { 1.0 } else { 1.0 / self.heroes.probability(setup, hero) };
+                if self.in_turn { 1.0 } else { 1.0 / self.heroes.probability(count, hero) };
             found[hero] = if passed.is_alive { value * weight } else { 0.0 };
             lookups += passed.lookups;
         }

@@ -18,8 +18,9 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::walk::{self, Heroes};
+use super::walk;
 use crate::catalogue::Settings;
+use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
@@ -49,7 +50,7 @@ impl Estimator<SpectralTransmittance> for SpectralMis {
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        self.heroes.require(setup)?;
+        self.heroes.require(setup.channels.len())?;
         walk::require_constants(setup)?;
         if self.delta { walk::require_majorants(setup) } else { Ok(()) }
     }
@@ -67,7 +68,7 @@ impl Estimator<SpectralTransmittance> for SpectralMis {
         rng: &mut Stream,
     ) -> Draw<Values> {
         let count = setup.channels.len();
-        let hero = self.heroes.choose(setup, rng.uniform());
+        let hero = self.heroes.choose(setup.channels.len(), rng.uniform());
         let passed = walk::walk(setup, medium, rng, (hero, self.delta), 0..count);
         let mut found = [0.0; MOST_CHANNELS];
         if passed.is_alive {
@@ -76,7 +77,7 @@ impl Estimator<SpectralTransmittance> for SpectralMis {
                 let relative = walk::relative_density(setup, channel, hero, passed.lookups);
                 *found = relative * passed.ratios[channel];
                 let by_hero = if self.delta { *found } else { relative };
-                density += self.heroes.probability(setup, channel) * by_hero;
+                density += self.heroes.probability(count, channel) * by_hero;
             }
             for found in &mut found[..count] {
                 *found /= density;

@@ -18,8 +18,9 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
 
-use super::walk::{self, Heroes};
+use super::walk;
 use crate::catalogue::Settings;
+use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};

@@ -14,7 +14,8 @@
 
 use std::ops::Range;
 
-use crate::catalogue::{Domain, Settings, Value, rounded};
+use crate::catalogue::{Settings, rounded};
+use crate::estimators::heroes::Heroes;
 use crate::estimators::{Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
@@ -22,94 +23,6 @@ use crate::numeric::Lane;
 use crate::problems::SpectralTransmittance;
 use crate::rng::Stream;
 use crate::theory::spectral::{Spectrum, Tracker};
-
-/// How far the sum of probabilities may be from 1.
-const SUM: f64 = 1e-9;
-
-/// The law of the hero channel.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Heroes {
-    /// Every channel with the same probability.
-    Uniform,
-    /// By the weights of the luminance.
-    Luminance,
-    /// As given.
-    Given(Vec<f64>),
-}
-
-impl Heroes {
-    /// Reads `hero`: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1.
-    pub fn read(settings: &Settings) -> Option<Self> {
-        let entry = settings.entry("hero");
-        if !entry.is_some_and(|entry| matches!(entry.node.value, Value::Array(_))) {
-            let word = settings.word_or("hero", &["uniform", "luminance"], "uniform")?;
-            return Some(if word == "uniform" { Self::Uniform } else { Self::Luminance });
-        }
-        let given = settings.numbers("hero", Domain::Positive, 1)?;
-        let sum: f64 = given.iter().sum();
-        if (sum - 1.0).abs() > SUM {
-            let message = format!("the probabilities sum to {}", rounded(sum));
-            settings.fault("hero", message, "give each channel its share of 1");
-            return None;
-        }
-        Some(Self::Given(given))
-    }
-
-    /// In words, as in `hero .2, .8`; empty where every channel has the same probability.
-    pub fn label(&self) -> String {
-        match self {
-            Self::Uniform => String::new(),
-            Self::Luminance => "hero by luminance".into(),
-            Self::Given(given) => {
-                let given: Vec<String> = given.iter().map(f64::to_string).collect();
-                format!("hero {}", given.join(" "))
-            }
-        }
-    }
-
-    /// The probability of a channel.
-    #[inline(always)]
-    pub fn probability(&self, setup: &Setup<SpectralTransmittance>, channel: usize) -> f64 {
-        match self {
-            Self::Luminance if setup.channels.len() > 1 => setup.problem.luminance[channel],
-            Self::Given(given) => given[channel],
-            _ => 1.0 / setup.channels.len() as f64,
-        }
-    }
-
-    /// All of them.
-    pub fn probabilities(&self, setup: &Setup<SpectralTransmittance>) -> Vec<f64> {
-        (0..setup.channels.len()).map(|channel| self.probability(setup, channel)).collect()
-    }
-
-    /// The hero that a uniform number chooses.
-    #[inline(always)]
-    pub fn choose(&self, setup: &Setup<SpectralTransmittance>, number: f64) -> usize {
-        let (mut hero, mut sum) = (0, self.probability(setup, 0));
-        while number >= sum && hero + 1 < setup.channels.len() {
-            hero += 1;
-            sum += self.probability(setup, hero);
-        }
-        hero
-    }
-
-    /// One probability for each channel.
-    ///
-    /// # Errors
-    ///
-    /// How many there are.
-    pub fn require(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        match self {
-            Self::Given(given) if given.len() != setup.channels.len() => {
-                let needs = "one hero probability for each channel";
-                let channels = setup.channels.len();
-                let found = format!("there are {} for {channels} channels", given.len());
-                Err(Refusal::mismatch(needs, found))
-            }
-            _ => Ok(()),
-        }
-    }
-}
 
 /// Reads `collisions`: whether real collisions end the walk.
 pub fn read_delta(settings: &Settings) -> Option<bool> {
@@ -188,7 +101,7 @@ pub fn spectrum(
 ) -> Spectrum {
     let meshes: Vec<_> = setup.channels.iter().map(|channel| &*channel.mesh).collect();
     let majorants = setup.channels.iter().map(|channel| channel.majorant).collect();
-    Spectrum::new(&meshes, majorants, heroes.probabilities(setup), tracker)
+    Spectrum::new(&meshes, majorants, heroes.of(setup.channels.len()), tracker)
 }
 
 /// A constant σ̂ > 0 in each channel, and so few collisions that walks end.

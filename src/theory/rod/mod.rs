@@ -150,6 +150,18 @@ pub fn predict(
     }
 }
 
+/// `E[M(M − 1)…(M − k + 1)]`, k = 1 … 4, of the lookups of a walk, with absolute errors; `None` where its second
+/// moments diverge or the rod is too long.
+pub fn factorial_lookups(
+    mesh: &Mesh,
+    rod: &Rod,
+    sampling: &Piecewise,
+    rule: ParticleRule,
+) -> Option<[[f64; 2]; 4]> {
+    let walk = Walk::new(mesh, rod, Some(sampling), rule)?;
+    RawMoments::of(&walk, true).map(|found| found.lookups)
+}
+
 /// What is known of an unbiased walk whose draws lie in `[0, 1]`: truths, and `Var[X] ≤ E[X](1 − E[X])`.
 pub fn bounded(mesh: &Mesh, rod: &Rod) -> Prediction {
     let truth = truth_or_nan(mesh, rod);

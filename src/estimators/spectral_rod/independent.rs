@@ -1,0 +1,63 @@
+//! Independent tracking: one channel a draw, by an analog walk with its own albedo.
+//!
+//! ```text
+//! X_h = 1/w_h where it leaves, the others 0,  h of probability w_h
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `hero` | the law of the channel: `"uniform"`, or a list of probabilities that sum to 1 | `"uniform"` |
+//! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
+//!
+//! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
+//! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
+
+use super::walk;
+use crate::catalogue::Settings;
+use crate::estimators::heroes::Heroes;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::media::Lookups;
+use crate::media::body::MOST_CHANNELS;
+use crate::problems::SpectralRod;
+use crate::problems::spectral_rod::Values;
+use crate::rng::Stream;
+use crate::theory::Prediction;
+use crate::theory::spectral_rod::{Spectrum, Tracker};
+
+/// Independent tracking.
+#[derive(Debug, Clone)]
+pub struct Independent {
+    heroes: Heroes,
+}
+
+impl Estimator<SpectralRod> for Independent {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { heroes: Heroes::read(settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.heroes.label()
+    }
+
+    fn domain(&self, setup: &Setup<SpectralRod>) -> Result<(), Refusal> {
+        walk::require(setup, &self.heroes)
+    }
+
+    fn predict(&self, setup: &Setup<SpectralRod>) -> Prediction {
+        let heroes = self.heroes.of(setup.problem.albedos.len());
+        let spectrum = Spectrum::new(&setup.problem, heroes, Tracker::Independent);
+        spectrum.predict(&setup.mesh, &setup.sampling)
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
+        let rod = &setup.problem;
+        let hero = self.heroes.choose(rod.albedos.len(), rng.uniform());
+        let left = walk::walk(setup, medium, rng, rod.albedos[hero]);
+        let mut weights = [0.0; MOST_CHANNELS];
+        weights[hero] = 1.0 / self.heroes.probability(rod.albedos.len(), hero);
+        Draw::free(rod.values(left.end, &weights), left.lookups)
+    }
+}
