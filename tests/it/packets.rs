@@ -119,6 +119,9 @@ const CENTRE: &str = "eq21";
 
 fn cases(matrix: Matrix) -> Vec<Case> {
     let mut cases = if matrix == Matrix::Full { shipped() } else { Vec::new() };
+    cases.push(case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")));
+    cases.push(case("smooth", include_str!("../../cases/spectral-transmittance/smooth.toml")));
+    cases.push(case("hero", include_str!("../../cases/spectral-transmittance/hero-delta.toml")));
     for (name, medium) in MEDIA {
         if matrix == Matrix::Cross && name != CENTRE {
             let text = format!(

@@ -244,7 +244,7 @@ fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importan
     let rows = rod("1.6", &[1.0, 0.0], "0.5");
     let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
     assert!(
-        reasons[0].contains("E[X²] of channel 1 is infinite from optical length 1.5708 on"),
+        reasons[0].contains("E[X²] of channel 1 is infinite from optical length 1.570796 on"),
         "{reasons:?}"
     );
     let fine = rows.iter().filter(|row| row.estimator == "spectral-mis");

@@ -12,7 +12,8 @@ use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
-    FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, Transmittance, TransmittanceCurve,
+    FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, SpectralRod, SpectralTransmittance,
+    Transmittance, TransmittanceCurve,
 };
 
 /// Draws of each experiment.
@@ -209,10 +210,22 @@ fn balls() -> Vec<Case> {
     ]
 }
 
+fn spectral() -> Vec<Case> {
+    vec![
+        case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")),
+        case("colours", include_str!("../../cases/spectral-rod/near-albedos.toml")),
+    ]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases: Vec<Case> =
-        cases().into_iter().chain(rods()).chain(spaces()).chain(balls()).collect();
+    let cases: Vec<Case> = cases()
+        .into_iter()
+        .chain(rods())
+        .chain(spaces())
+        .chain(balls())
+        .chain(spectral())
+        .collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -268,6 +281,8 @@ fn every_estimator_of_the_catalogue_is_there() {
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
         (Rod::CATALOGUE, ["rod", "roulette"]),
         (Slab::CATALOGUE, ["slab", "slab"]),
+        (SpectralTransmittance::CATALOGUE, ["layers", "layers"]),
+        (SpectralRod::CATALOGUE, ["colours", "colours"]),
         (Furnace::CATALOGUE, ["furnace", "furnace"]),
         (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
         (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),

@@ -24,11 +24,14 @@ pub type Numbers<S> = Xoshiro<u64x8<S>>;
 
 /// The state of eight particles.
 pub trait Particles<S: Simd> {
+    /// What is looked up for eight of them.
+    type Found;
+
     /// Each flies on; answers where σ_t is asked for: inside the support.
     fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S>;
 
-    /// What happens to each there, given σ_t; answers whose walks end, as bits.
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64;
+    /// What happens to each there, given what was looked up; answers whose walks end, as bits.
+    fn collide(&mut self, found: Self::Found, numbers: &mut Numbers<S>) -> u64;
 
     /// Makes draws of the walks that ended, as bits; answers whose last ones these are.
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
@@ -37,12 +40,12 @@ pub trait Particles<S: Simd> {
     fn restart(&mut self, numbers: &mut Numbers<S>);
 }
 
-/// Walks until every lane has made its draws.
+/// Walks until every lane has made its draws; `look_up` answers for both packs.
 #[inline(always)]
 pub fn run<S: Simd, P: Particles<S>>(
     simd: S,
     begin: impl Fn(&mut Numbers<S>) -> P,
-    medium: &Lookups,
+    look_up: impl Fn(Twin<f64x8<S>>) -> [P::Found; 2],
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -56,7 +59,7 @@ pub fn run<S: Simd, P: Particles<S>>(
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
     while slots.are_open() || other_slots.are_open() {
         let places = Twin(particles.fly(&mut first), others.fly(&mut second));
-        let Twin(here, there) = medium.pair(simd, places);
+        let [here, there] = look_up(places);
         let ended = particles.collide(here, &mut first);
         let other_ended = others.collide(there, &mut second);
         if ended != 0 {
@@ -73,6 +76,13 @@ pub fn run<S: Simd, P: Particles<S>>(
         other_slots.step();
     }
     streams.turn = (turn + count) % LANES;
+}
+
+/// σ_t for both packs.
+#[inline(always)]
+pub fn extinctions<S: Simd>(simd: S, medium: &Lookups, t: Twin<f64x8<S>>) -> [f64x8<S>; 2] {
+    let Twin(here, there) = medium.pair(simd, t);
+    [here, there]
 }
 
 /// What each lane has to do and has done.

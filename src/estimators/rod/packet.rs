@@ -87,7 +87,8 @@ impl Walks<'_, '_> {
             simd,
             #[inline(always)]
             |_| fresh,
-            medium,
+            #[inline(always)]
+            |places| bank::extinctions(simd, medium, places),
             request,
         );
     }
@@ -115,6 +116,8 @@ struct InRod<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> Particles<S> for InRod<'_, S, C> {
+    type Found = f64x8<S>;
+
     #[inline(always)]
     fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
         let depth = -numbers.ln_uniform();

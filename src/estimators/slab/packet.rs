@@ -82,7 +82,8 @@ impl Walks<'_, '_> {
                 weight: from.each(1.0),
                 cosine: entering(slab.incidence.light, numbers, all, from.each(1.0)),
             },
-            medium,
+            #[inline(always)]
+            |places| bank::extinctions(simd, medium, places),
             request,
         );
     }
@@ -118,6 +119,8 @@ struct InSlab<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> Particles<S> for InSlab<'_, S, C> {
+    type Found = f64x8<S>;
+
     #[inline(always)]
     fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
         let length = -numbers.ln_uniform();

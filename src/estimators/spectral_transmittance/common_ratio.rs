@@ -14,9 +14,13 @@
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating
 //! Media*, ACM Transactions on Graphics 33 (2014), with one majorant for all channels.
 
+use fearless_simd::Level;
+
+use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::SpectralTransmittance;
@@ -31,6 +35,7 @@ pub struct CommonRatio;
 
 impl Estimator<SpectralTransmittance> for CommonRatio {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
@@ -56,5 +61,17 @@ impl Estimator<SpectralTransmittance> for CommonRatio {
         let count = setup.channels.len();
         let passed = walk::walk(setup, medium, rng, (0, false), 0..count);
         Draw::free(setup.problem.values(&passed.ratios[..count]), passed.lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let tracker = Tracker::Hero { delta: false };
+        let rule = Rule { tracker, is_common: true, heroes: &Heroes::Uniform };
+        packet::walks(level, setup, rule, medium, request)
     }
 }

@@ -17,9 +17,13 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
+use fearless_simd::Level;
+
+use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::{Settings, rounded};
 use crate::estimators::heroes::Heroes;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
@@ -41,6 +45,7 @@ pub struct Hero {
 
 impl Estimator<SpectralTransmittance> for Hero {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let (delta, heroes) = (walk::read_delta(settings), Heroes::read(settings));
@@ -85,6 +90,18 @@ impl Estimator<SpectralTransmittance> for Hero {
             }
         }
         Draw::free(setup.problem.values(&found[..count]), passed.lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let tracker = Tracker::Hero { delta: self.delta };
+        let rule = Rule { tracker, is_common: false, heroes: &self.heroes };
+        packet::walks(level, setup, rule, medium, request)
     }
 }
 

@@ -18,9 +18,13 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
+use fearless_simd::Level;
+
+use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
@@ -40,6 +44,7 @@ pub struct Independent {
 
 impl Estimator<SpectralTransmittance> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let delta = walk::read_delta(settings);
@@ -91,5 +96,20 @@ impl Estimator<SpectralTransmittance> for Independent {
             lookups += passed.lookups;
         }
         Draw::free(setup.problem.values(&found[..count]), lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        if self.in_turn {
+            return Some(request);
+        }
+        let tracker = Tracker::Independent { delta: self.delta };
+        let rule = Rule { tracker, is_common: false, heroes: &self.heroes };
+        packet::walks(level, setup, rule, medium, request)
     }
 }

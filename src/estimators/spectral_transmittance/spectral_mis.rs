@@ -18,9 +18,13 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
+use fearless_simd::Level;
+
+use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
@@ -39,6 +43,7 @@ pub struct SpectralMis {
 
 impl Estimator<SpectralTransmittance> for SpectralMis {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let (delta, heroes) = (walk::read_delta(settings), Heroes::read(settings));
@@ -84,5 +89,17 @@ impl Estimator<SpectralTransmittance> for SpectralMis {
             }
         }
         Draw::free(setup.problem.values(&found[..count]), passed.lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let tracker = Tracker::Mis { delta: self.delta };
+        let rule = Rule { tracker, is_common: false, heroes: &self.heroes };
+        packet::walks(level, setup, rule, medium, request)
     }
 }

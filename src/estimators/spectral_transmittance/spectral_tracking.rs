@@ -18,9 +18,13 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
 
+use fearless_simd::Level;
+
+use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
+use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
@@ -38,6 +42,7 @@ pub struct SpectralTracking {
 
 impl Estimator<SpectralTransmittance> for SpectralTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let words = ["average", "maximum", "history"];
@@ -109,5 +114,17 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
                 *weight *= share / null;
             }
         }
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralTransmittance>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let tracker = self.chance.map_or(Tracker::Mis { delta: true }, Tracker::Tracking);
+        let rule = Rule { tracker, is_common: true, heroes: &Heroes::Uniform };
+        packet::walks(level, setup, rule, medium, request)
     }
 }

@@ -86,7 +86,8 @@ fn walk<S: Simd, C: Course<S> + Copy>(
         simd,
         #[inline(always)]
         |_| fresh,
-        medium,
+        #[inline(always)]
+        |places| bank::extinctions(simd, medium, places),
         request,
     );
 }
@@ -107,6 +108,8 @@ struct AlongCurve<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
+    type Found = f64x8<S>;
+
     #[inline(always)]
     fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S> {
         self.inside = self.course.fly(-numbers.ln_uniform());
