@@ -233,6 +233,19 @@ pub struct Row {
     pub log_unit: Option<f64>,
 }
 
+impl Row {
+    /// `log₁₀ LTUV`, LTUV = V · lookups of a draw: the lookups to unit variance of Miller et al. 2019, section 6; the
+    /// figure of merit upside down.
+    pub fn log10_ltuv(&self) -> Option<f64> {
+        self.fom.map(|fom| -fom.log10())
+    }
+
+    /// The same in theory.
+    pub fn predicted_log10_ltuv(&self) -> Option<f64> {
+        self.predicted_fom.map(|fom| -fom.log10())
+    }
+}
+
 /// What one check found of one experiment.
 #[derive(Debug, Clone, Serialize)]
 pub struct Finding {

@@ -107,6 +107,8 @@ pub fn columns<'a>() -> Vec<Column<JoinedRow<'a>>> {
         "reused" = |joined| joined.is_reused.then_some("yes");
         "moments_error" = |joined| joined.row.moments_error;
         "not_normal" = |joined| joined.row.not_normal.join(" ");
+        "log10_ltuv" = |joined| joined.row.log10_ltuv();
+        "predicted_log10_ltuv" = |joined| joined.row.predicted_log10_ltuv();
     }
 }
 
