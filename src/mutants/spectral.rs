@@ -38,7 +38,7 @@ pub fn mutants() -> Vec<Mutant<SpectralTransmittance>> {
         of("spectral-twice-as-many", "the densities are averaged over 2N techniques, of which N are drawn", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::TwiceAsMany),
         of("spectral-hero-luminance", "the hero is chosen by the luminance, and weighted as if all were alike", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::ByLuminance),
         of("spectral-hero-anew", "every collision has a new hero", SPECTRAL_MIS_DELTA, "mean", delta, Slip::Anew),
-        of("spectral-next-majorant", "the hero flies through the σ̂ of the next channel", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::NextMajorant),
+        of("spectral-heros-majorant", "the nulls of all channels are those of the hero's σ̂", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::HerosMajorant),
         of("spectral-last-stretch", "f and p lack the transmittance of the last stretch (Algorithm 2, line 9, as printed)", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::LastStretch),
         of("spectral-nulls-in-f-only", "the densities of delta tracking lack the probabilities of null collisions", SPECTRAL_MIS_DELTA, "mean", delta, Slip::NullsInContributionOnly),
         of("spectral-own-density", "each channel is divided by its own density", SPECTRAL_MIS_RATIO, "mean", ratio, Slip::OwnDensity),
@@ -66,7 +66,7 @@ enum Slip {
     TwiceAsMany,
     ByLuminance,
     Anew,
-    NextMajorant,
+    HerosMajorant,
     LastStretch,
     NullsInContributionOnly,
     OwnDensity,
@@ -157,9 +157,7 @@ fn walk(
     rng: &mut Stream,
     (mut hero, delta): (usize, bool),
 ) -> (Passed, f64) {
-    let count = setup.channels.len();
-    let flown = if slip == Slip::NextMajorant { (hero + 1) % count } else { hero };
-    let sampling = &setup.channels[flown].sampling;
+    let sampling = &setup.channels[hero].sampling;
     let mut cursor = sampling.begin();
     let mut passed = Passed { lookups: 0, ratios: [1.0; MOST_CHANNELS], is_alive: true };
     loop {
@@ -175,7 +173,9 @@ fn walk(
         }
         let mut survival = 1.0;
         for (channel, own) in setup.channels.iter().enumerate() {
-            let null = 1.0 - medium.channel(channel).extinction(cursor.t) / own.majorant;
+            let is_heros = slip == Slip::HerosMajorant;
+            let majorant = if is_heros { setup.channels[hero].majorant } else { own.majorant };
+            let null = 1.0 - medium.channel(channel).extinction(cursor.t) / majorant;
             passed.ratios[channel] *= null;
             if channel == hero {
                 survival = null;

@@ -33,7 +33,6 @@ const PREDICT: &[Spec] = &[
     ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
     ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
-    ("lg LTUV", true, 10, |row| digits(row.predicted_log10_ltuv(), 3)),
     ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
     ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
     ("best σ\u{302}", true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
