@@ -73,6 +73,16 @@ impl Control {
         }
     }
 
+    /// The same from one distance to others.
+    #[inline(always)]
+    pub fn depths<L: Lane>(&self, from: f64, to: L) -> L {
+        match self {
+            Self::None => to.each(0.0),
+            Self::Pieces(pieces) => pieces.depths(from, to),
+            Self::Field(field) => to.map(|to| field.optical_depth(Span::new(from, to)).value),
+        }
+    }
+
     /// The kinks of the control, in any order.
     pub fn breaks(&self) -> Vec<f64> {
         match self {

@@ -42,6 +42,20 @@ impl Piecewise {
         self.fly_over(cursor, depth)
     }
 
+    /// Where flights from the beginning through optical depths end.
+    #[inline(always)]
+    pub fn flown<L: Lane>(&self, depth: L) -> L {
+        if let Some(even) = &self.even {
+            return even
+                .spread(depth.times_plus(depth.each(1.0 / even.value), depth.each(even.from)));
+        }
+        depth.map(|depth| {
+            let mut cursor = self.begin();
+            self.fly_over(&mut cursor, depth);
+            cursor.t
+        })
+    }
+
     /// The same over several pieces.
     #[inline]
     pub(super) fn fly_over(&self, cursor: &mut Cursor, mut depth: f64) -> Option<f64> {

@@ -192,6 +192,22 @@ impl Piecewise {
             }
         }
     }
+
+    /// `∫` from one distance to others, as [`OpticalDepth`] finds it.
+    #[inline(always)]
+    pub fn depths<L: Lane>(&self, from: f64, to: L) -> L {
+        if let ([first, end], [left], [slope]) = (&self.knots[..], &self.left[..], &self.slope[..])
+        {
+            let width = to - *first;
+            let within = width * (width * (0.5 * *slope) + *left) + self.depth[0];
+            let before = width * *left;
+            let beyond = (to - *end) * self.line(0, *end) + self.depth[1];
+            let inside = L::select(to.below(to.each(*end)), within, beyond);
+            return L::select(to.below(to.each(*first)), before, inside) - self.depth_to(from);
+        }
+        let from = self.depth_to(from);
+        to.map(|to| self.depth_to(to) - from)
+    }
 }
 
 impl Extinction for Piecewise {

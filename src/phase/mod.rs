@@ -80,7 +80,7 @@ macro_rules! phases {
             }
 
             /// `p(cos θ)`, 1/sr, for `cos θ` from −1 to 1.
-            #[inline]
+            #[inline(always)]
             pub fn value<L: Lane>(&self, cosine: L) -> L {
                 match self { $(Self::$Page(page) => page.value(cosine)),* }
             }

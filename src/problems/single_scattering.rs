@@ -137,13 +137,13 @@ impl SingleScattering {
 
     /// The squared distance of `p(s)` from the light.
     #[inline(always)]
-    fn square(&self, s: f64) -> f64 {
+    fn square<L: Lane>(&self, s: L) -> L {
         self.square_beyond(s - self.light.foot)
     }
 
     /// The same of the point so far beyond the foot.
     #[inline(always)]
-    fn square_beyond(&self, along: f64) -> f64 {
+    fn square_beyond<L: Lane>(&self, along: L) -> L {
         let across = self.light.distance;
         along * along + across * across
     }
@@ -151,30 +151,30 @@ impl SingleScattering {
     /// `a p(cos θ) Φ/(4π r²)`: what `σ_t` scatters at `p(s)` towards the ray's origin, but for the
     /// two transmittances.
     #[inline(always)]
-    pub fn source(&self, s: f64) -> f64 {
+    pub fn source<L: Lane>(&self, s: L) -> L {
         self.scattered(s, self.cosine(s))
     }
 
     /// `cos θ` of light that is scattered at `p(s)` towards the ray's origin.
     #[inline(always)]
-    pub fn cosine(&self, s: f64) -> f64 {
+    pub fn cosine<L: Lane>(&self, s: L) -> L {
         // (p − l)·d = s − foot: beyond the foot the light travels on along the ray.
-        let cosine = (self.light.foot - s) / self.square(s).sqrt();
-        cosine.or_more(-1.0).or_less(1.0)
+        let cosine = (s.each(self.light.foot) - s) / self.square(s).root();
+        cosine.or_more(s.each(-1.0)).or_less(s.each(1.0))
     }
 
     /// `a p(cos θ) Φ/(4π r²)` with r that of `p(s)`.
     #[inline(always)]
-    pub fn scattered(&self, s: f64, cosine: f64) -> f64 {
+    pub fn scattered<L: Lane>(&self, s: L, cosine: L) -> L {
         let phase = self.phase.value(cosine);
-        self.albedo * phase * self.light.power / (4.0 * PI * self.square(s))
+        phase * self.albedo * self.light.power / (self.square(s) * (4.0 * PI))
     }
 
     /// The distance along the ray that the light sees at an angle from its foot, which lies between
     /// two right angles.
     #[inline(always)]
-    pub fn at_angle(&self, angle: f64) -> f64 {
-        self.light.foot + self.light.distance * (Lane::sin(angle) / Lane::cos(angle))
+    pub fn at_angle<L: Lane>(&self, angle: L) -> L {
+        Lane::sin(angle) / Lane::cos(angle) * self.light.distance + self.light.foot
     }
 
     /// The angles of the ends of the support.
@@ -184,15 +184,15 @@ impl SingleScattering {
 
     /// The density over distance of points whose angles are uniform: `D/(Δθ r²)`, 1/length.
     #[inline(always)]
-    pub fn equiangular_density(&self, s: f64) -> f64 {
+    pub fn equiangular_density<L: Lane>(&self, s: L) -> L {
         self.equiangular_density_beyond(s - self.light.foot)
     }
 
     /// The same at the point so far beyond the foot: next to the light `s` has lost the digits of its
     /// distance from there.
     #[inline(always)]
-    pub fn equiangular_density_beyond(&self, along: f64) -> f64 {
-        self.light.distance / (self.light.width * self.square_beyond(along))
+    pub fn equiangular_density_beyond<L: Lane>(&self, along: L) -> L {
+        along.each(self.light.distance) / (self.square_beyond(along) * self.light.width)
     }
 
     /// `a p(cos θ) Φ/(4π r²)` at the point so far beyond the foot, as [`source`](Self::source), and by how much
@@ -210,6 +210,25 @@ impl SingleScattering {
         let steep = if phase > 0.0 { (phase - beside).abs() / (STEP * phase) } else { 0.0 };
         let source = self.albedo * phase * self.light.power / (4.0 * PI * square);
         [source, f64::EPSILON * (4.0 + steep)]
+    }
+
+    /// The way from `p(s)` to the light for points side by side: their coordinates, and direction and length of
+    /// the rays of [`Self::shadow`].
+    #[inline(always)]
+    pub fn to_light<L: Lane>(&self, s: L) -> ([L; 3], [L; 3], L) {
+        let (Point(origin), Point(direction)) = (self.ray.origin, self.ray.direction);
+        let Point(light) = self.light.position;
+        let [mut from, mut way] = [[s; 3]; 2];
+        for axis in 0..3 {
+            from[axis] = s * direction[axis] + origin[axis];
+            way[axis] = s.each(light[axis]) - from[axis];
+        }
+        let [x, y, z] = way;
+        let largest = x.size().or_more(y.size()).or_more(z.size());
+        let scale = s.each(1.0) / largest;
+        let [x, y, z] = [x * scale, y * scale, z * scale];
+        let unit = s.each(1.0) / (x * x + y * y + z * z).root();
+        (from, [x * unit, y * unit, z * unit], self.square(s).root())
     }
 
     /// The ray from `p(s)` to the light, and its stretch within the bounds of the volume; `None`

@@ -198,6 +198,14 @@ impl<S: Simd> Xoshiro<u64x8<S>> {
         number
     }
 
+    /// The same of [`Self::ln_uniform`].
+    #[inline(always)]
+    pub fn ln_uniform_where(&mut self, mask: mask64x8<S>) -> f64x8<S> {
+        // `1 − u` is exact, as it is in `positive_uniform`.
+        let number = self.uniform_where(mask);
+        (number.each(1.0) - number).ln()
+    }
+
     /// Where the streams stand.
     #[inline(always)]
     pub fn at_rest(self) -> Lanes {

@@ -25,6 +25,7 @@ mod properties;
 mod render;
 mod rod;
 mod single_scattering;
+mod single_scattering_packets;
 mod skips;
 mod slab;
 mod small_spreads;

@@ -132,7 +132,7 @@ fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
 }
 
 /// Every level that fuses, from the best down.
-fn fusing_levels() -> Vec<Level> {
+pub fn fusing_levels() -> Vec<Level> {
     let mut levels = vec![Level::new()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     levels.extend(Level::new().as_avx2().map(Level::Avx2));
@@ -140,10 +140,9 @@ fn fusing_levels() -> Vec<Level> {
     levels
 }
 
-#[test]
-fn packets_are_the_scalar_walks_at_every_level_that_fuses() {
-    let cases = cases();
-    let plan = Plan::new(&cases, &options(1, 1_000));
+/// Compares all experiments of cases on all levels; answers how many comparisons that were.
+pub fn compare(cases: &[Case]) -> usize {
+    let plan = Plan::new(cases, &options(1, 1_000));
     let (mut wrong, mut compared) = (Vec::new(), 0);
     for (case, planned) in plan.experiments().filter(|(_, planned)| planned.outcome.is_ok()) {
         let single = drawn(planned, Kernel::Single);
@@ -163,5 +162,11 @@ fn packets_are_the_scalar_walks_at_every_level_that_fuses() {
     }
     println!("{compared} compared");
     none(&wrong);
+    compared
+}
+
+#[test]
+fn packets_are_the_scalar_walks_at_every_level_that_fuses() {
+    let compared = compare(&cases());
     assert!(fusing_levels().is_empty() || compared > 500, "only {compared} compared");
 }

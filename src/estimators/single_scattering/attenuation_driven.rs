@@ -20,6 +20,8 @@
 
 use super::Connection;
 use super::connection::{self, require_shadow};
+use super::in_packets;
+use super::packet::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Control, Extinction, Lookups};
@@ -82,6 +84,7 @@ pub(super) fn interactions(
 
 impl Estimator<SingleScattering> for AttenuationDriven {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => (Kind::Interactions, self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { shadow: connection::read_shadow(settings)? })

@@ -15,6 +15,8 @@
 
 use super::attenuation_driven::{interactions, require, scene};
 use super::connection;
+use super::in_packets;
+use super::packet::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
@@ -31,6 +33,7 @@ pub struct AttenuationResampled {
 
 impl Estimator<SingleScattering> for AttenuationResampled {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => (Kind::Resampled, self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { shadow: connection::read_shadow(settings)? })

@@ -12,6 +12,7 @@
 //! σ_t = 0 there is nothing to light, and where it misses the bounds nothing in the way: neither
 //! costs a lookup.
 
+use super::packet::Kind;
 use crate::catalogue::{Domain, Settings, number, rounded};
 use crate::estimators::{Inputs, Refusal, Setup};
 use crate::geometry::Ray;
@@ -110,6 +111,12 @@ impl Connection {
             CameraTracking::Delta => "delta camera",
         };
         format!("{camera}, {}", shadow_label(self.shadow))
+    }
+
+    /// The packets of points from the light, from the main part of the control, or from both.
+    #[must_use]
+    pub fn kind(&self, from_source: bool, from_main: bool) -> (Kind, Tracking) {
+        (Kind::Points { camera: self.camera, from_source, from_main }, self.shadow)
     }
 
     /// What the walk from the ray's origin takes.

@@ -17,6 +17,8 @@
 
 use super::Connection;
 use super::connection::{self, require_shadow};
+use super::in_packets;
+use super::packet::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups, OpticalDepth};
@@ -73,6 +75,7 @@ pub(super) fn lookups_of_escape(setup: &Setup<SingleScattering>) -> [f64; 5] {
 
 impl Estimator<SingleScattering> for DeltaTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    in_packets!(self => (Kind::Collision, self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { shadow: connection::read_shadow(settings)? })

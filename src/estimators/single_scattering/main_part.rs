@@ -34,18 +34,17 @@ impl<'a> MainPart<'a> {
 
     /// The point that a uniform number finds.
     #[inline(always)]
-    pub fn point(&self, u: f64) -> f64 {
-        let depth = -Lane::ln(1.0 - u * self.absorbed);
-        let mut cursor = self.pieces.begin();
-        self.pieces.fly(&mut cursor, depth);
+    pub fn point<L: Lane>(&self, u: L) -> L {
+        let depth = -Lane::ln(u.each(1.0) - u * self.absorbed);
         // Rounding may carry the last point past the end.
-        cursor.t.or_less(self.support.to)
+        self.pieces.flown(depth).or_less(u.each(self.support.to))
     }
 
     /// Its density, 1/length.
     #[inline(always)]
-    pub fn density(&self, s: f64) -> f64 {
-        self.pieces.value(s) * Lane::exp(-self.depth(s).value) / self.absorbed
+    pub fn density<L: Lane>(&self, s: L) -> L {
+        let depth = self.pieces.depths(self.support.from, s);
+        self.pieces.value(s) * Lane::exp(-depth) / s.each(self.absorbed)
     }
 
     #[inline(always)]

@@ -5,6 +5,7 @@ pub mod attenuation_resampled;
 pub mod connection;
 pub mod delta_tracking;
 pub mod main_part;
+mod packet;
 pub mod scattering_driven;
 pub mod shared_walk;
 pub mod source_delta_mis;
@@ -15,6 +16,25 @@ use crate::estimators::estimators;
 use crate::problems::SingleScattering;
 
 pub use connection::Connection;
+
+/// How an estimator draws by packets: its technique and its shadow rays, as in
+/// `in_packets!(self => (Kind::Collision, self.shadow))`.
+macro_rules! in_packets {
+    ($this:ident => $kind:expr) => {
+        const IN_PACKETS: bool = true;
+
+        fn draw_packets<'a>(
+            &$this,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<$crate::problems::SingleScattering>,
+            medium: &$crate::media::Lookups,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::single_scattering::packet::draw(level, setup, $kind, medium, request)
+        }
+    };
+}
+use in_packets;
 
 estimators! {
     SingleScattering:

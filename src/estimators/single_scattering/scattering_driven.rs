@@ -20,6 +20,7 @@
 //! Source: Szirmay-Kalos et al. 2017, section 4.3.
 
 use super::Connection;
+use super::in_packets;
 use super::main_part::{self, MainPart};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -37,6 +38,7 @@ pub struct ScatteringDriven {
 
 impl Estimator<SingleScattering> for ScatteringDriven {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => self.connection.kind(false, true));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { connection: Connection::read(settings, &["exact", "ratio"])? })

@@ -20,6 +20,8 @@
 
 use super::Connection;
 use super::connection::{self, require_shadow};
+use super::in_packets;
+use super::packet::Kind;
 use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -31,7 +33,7 @@ use crate::theory::Prediction;
 use crate::theory::single::{CameraTracking, Node, Tracking, walks};
 
 /// The most points.
-const MOST: usize = 16;
+pub(super) const MOST: usize = 16;
 
 /// Points that share a walk.
 #[derive(Debug, Clone)]
@@ -42,6 +44,7 @@ pub struct SharedWalk {
 
 impl Estimator<SingleScattering> for SharedWalk {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => (Kind::Shared(self.points), self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
         let points = settings.count_or("points", 1..=MOST as u64, 4);

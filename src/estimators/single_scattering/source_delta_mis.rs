@@ -17,6 +17,8 @@
 use super::Connection;
 use super::connection::{self, require_shadow};
 use super::delta_tracking::{collide, lookups_at, lookups_of_escape};
+use super::in_packets;
+use super::packet::Kind;
 use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -42,6 +44,7 @@ impl SourceDeltaMis {
 
 impl Estimator<SingleScattering> for SourceDeltaMis {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    in_packets!(self => (Kind::SourceAndCollision, self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { shadow: connection::read_shadow(settings)? })

@@ -19,9 +19,11 @@
 //! Media*, Computer Graphics Forum 31 (2012), section 4; Szirmay-Kalos et al. 2017, section 4.3.
 
 use super::Connection;
+use super::in_packets;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
+use crate::numeric::Lane;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -36,13 +38,14 @@ pub struct SourceDriven {
 
 /// The point that a uniform number finds.
 #[inline(always)]
-pub(super) fn point(problem: &SingleScattering, u: f64) -> f64 {
+pub(super) fn point<L: Lane>(problem: &SingleScattering, u: L) -> L {
     let angles = problem.angles();
-    problem.at_angle(angles.from + u * angles.length())
+    problem.at_angle(u * angles.length() + angles.from)
 }
 
 impl Estimator<SingleScattering> for SourceDriven {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => self.connection.kind(true, false));
 
     fn read(settings: &Settings) -> Option<Self> {
         let connection = Connection::read(settings, &["exact", "ratio", "delta"])?;

@@ -15,6 +15,7 @@
 //! SIGGRAPH 1995, section 3; Szirmay-Kalos et al. 2017, section 4.3.
 
 use super::Connection;
+use super::in_packets;
 use super::main_part::{self, MainPart};
 use super::source_driven::point;
 use crate::catalogue::Settings;
@@ -34,6 +35,7 @@ pub struct SourceScatteringMis {
 
 impl Estimator<SingleScattering> for SourceScatteringMis {
     const INPUTS: Inputs = Inputs::BOTH;
+    in_packets!(self => self.connection.kind(true, true));
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { connection: Connection::read(settings, &["exact", "ratio"])? })

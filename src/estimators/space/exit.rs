@@ -124,7 +124,7 @@ fn of_ball<S: Simd>(
 
 /// The same ray by ray, for those whose bits are set.
 #[inline(never)]
-fn one_by_one(
+pub fn one_by_one(
     bounds: &Bounds,
     rays: &[[[f64; WIDTH]; 3]; 2],
     which: u64,

@@ -9,24 +9,22 @@
 //! walks of the other lanes. Bit for bit what
 //! [`transmittance`](crate::estimators::single_scattering::connection::transmittance) finds.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::exit::{Points, chords, rows};
+use super::exit::{Points, chords, one_by_one, rows};
 use crate::estimators::packet::bank::Numbers;
-use crate::geometry::{Point, Ray};
+use crate::geometry::{Bounds, Point, Ray};
 use crate::media::Volume;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
 use crate::theory::single::Tracking;
 
-/// How shadow rays are cast: through a volume in a ball.
+/// How shadow rays are cast: through a volume, from within its bounds.
 pub struct ShadowRays<'a> {
     /// What is in the way.
     pub volume: &'a Volume,
-    /// The centre of the ball.
-    pub centre: Point,
-    /// R.
-    pub radius: f64,
+    /// Where it is.
+    pub bounds: Bounds,
     /// How the transmittance is found.
     pub tracking: Tracking,
 }
@@ -99,7 +97,19 @@ impl<S: Simd> Shadows<S> {
         (origin, weight): (Points<S>, f64x8<S>),
     ) -> Found<S> {
         let (zero, one) = (weight.each(0.0), weight.each(1.0));
-        let [from, to] = chords(rays.centre, rays.radius, [origin, light.direction], which);
+        let [from, to] = match rays.bounds {
+            Bounds::Everywhere => [zero, light.distance],
+            Bounds::Sphere { centre, radius } => {
+                chords(centre, radius, [origin, light.direction], which)
+            }
+            Bounds::Box(_) => {
+                let lines = [rows(origin), rows(light.direction)];
+                let mut ends = rows([zero, zero, zero]);
+                one_by_one(&rays.bounds, &lines, which.to_bitmask(), &mut ends);
+                let simd = zero.token();
+                [f64x8::from_slice(simd, &ends[0]), f64x8::from_slice(simd, &ends[1])]
+            }
+        };
         let (from, end) = (from.or_more(zero), light.distance.or_less(to));
         let is_blocked = which & from.below(end);
         let worth = weight * light.share;
@@ -110,6 +120,10 @@ impl<S: Simd> Shadows<S> {
                 let blocked = is_blocked.to_bitmask();
                 if blocked == 0 {
                     return (which, worth);
+                }
+                if let Some(value) = rays.volume.single_value() {
+                    let through = (-((end - from) * value)).exp();
+                    return (which, worth * Lane::select(is_blocked, through, one));
                 }
                 let (lines, [start, ..]) = ([rows(origin), rows(light.direction)], rows([from; 3]));
                 let through = end.replaced(|ends| rays.exact(blocked, &lines, ends, &start));
@@ -152,9 +166,14 @@ impl<S: Simd> Shadows<S> {
         extinction: f64x8<S>,
     ) -> Found<S> {
         let zero = extinction.each(0.0);
-        let distance = rays.centre.square_to(place, 1.0).root();
-        let is_medium = distance.at_most(zero.each(rays.radius));
-        let extinction = Lane::select(is_medium, extinction, zero);
+        let extinction = match rays.bounds {
+            Bounds::Sphere { centre, radius } => {
+                let distance = centre.square_to(place, 1.0).root();
+                Lane::select(distance.at_most(zero.each(radius)), extinction, zero)
+            }
+            // Boxes are clipped by who looks up.
+            Bounds::Everywhere | Bounds::Box(_) => extinction,
+        };
         let mut ends = self.on & !inside;
         match rays.tracking {
             Tracking::Ratio { sampling, control } => {

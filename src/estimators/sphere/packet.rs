@@ -13,7 +13,7 @@ use crate::estimators::space::packet::walks;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays};
 use crate::estimators::space::tally::{Departure, add_where};
 use crate::estimators::space::{Particle, Tally};
-use crate::geometry::Point;
+use crate::geometry::{Bounds, Point};
 use crate::numeric::Lane;
 use crate::problems::Sphere;
 use crate::problems::sphere::{self, Sought};
@@ -74,7 +74,8 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
     fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
         let Sphere { centre, radius, .. } = *self.sphere;
         let volume = &*self.sphere.scene.volume;
-        CASTS.then_some(ShadowRays { volume, centre, radius, tracking: self.shadow })
+        let bounds = Bounds::Sphere { centre, radius };
+        CASTS.then_some(ShadowRays { volume, bounds, tracking: self.shadow })
     }
 
     #[inline(always)]

@@ -1,0 +1,158 @@
+//! Points that are chosen beforehand: source-driven, scattering-driven, and both by multiple importance sampling.
+
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+
+use super::walk::{Walk, World};
+use super::{Page, Sums};
+use crate::estimators::packet::bank::Numbers;
+use crate::estimators::single_scattering::main_part::MainPart;
+use crate::estimators::single_scattering::source_driven::point;
+use crate::estimators::space::shadow::Found;
+use crate::estimators::space::tally::add_where;
+use crate::numeric::Lane;
+use crate::theory::single::CameraTracking;
+
+/// Eight walks to points.
+pub struct Points<'a, S: Simd> {
+    /// The ray.
+    pub world: World<'a>,
+    /// How the transmittance from the ray's origin is found.
+    pub camera: CameraTracking,
+    /// Whether points are found from the light.
+    pub from_source: bool,
+    /// From what points are found, or those after the light's.
+    pub main: Option<MainPart<'a>>,
+    walk: Walk<'a, S>,
+    looks: mask64x8<S>,
+    done: mask64x8<S>,
+    is_second: mask64x8<S>,
+    s: f64x8<S>,
+    extinction: f64x8<S>,
+    weight: f64x8<S>,
+}
+
+impl<'a, S: Simd> Points<'a, S> {
+    /// None has begun.
+    #[inline(always)]
+    pub fn new(
+        simd: S,
+        (world, walk): (World<'a>, Walk<'a, S>),
+        camera: CameraTracking,
+        from_source: bool,
+        main: Option<MainPart<'a>>,
+    ) -> Self {
+        let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
+        let (looks, done, is_second) = (none, none, none);
+        let (s, extinction, weight) = (walk.t, zero, zero);
+        Self {
+            world,
+            camera,
+            from_source,
+            main,
+            walk,
+            looks,
+            done,
+            is_second,
+            s,
+            extinction,
+            weight,
+        }
+    }
+}
+
+impl<S: Simd> Page<S> for Points<'_, S> {
+    #[inline(always)]
+    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>) {
+        let u = numbers.uniform_where(which);
+        let problem = &*self.world.setup.problem;
+        let s = match (&self.main, self.from_source) {
+            (None, _) => point(problem, u),
+            (Some(main), false) => main.point(u),
+            (Some(main), true) => Lane::select(self.is_second, main.point(u), point(problem, u)),
+        };
+        self.s = Lane::select(which, s, self.s);
+        self.looks |= which;
+    }
+
+    #[inline(always)]
+    fn flies(&self) -> mask64x8<S> {
+        self.walk.on
+    }
+
+    #[inline(always)]
+    fn fly(&mut self, _: &mut Numbers<S>, flies: mask64x8<S>, depth: f64x8<S>) -> f64x8<S> {
+        let mut t = self.walk.t;
+        if self.camera != CameraTracking::Exact {
+            t = self.walk.fly(flies, depth);
+            self.walk.inside &= t.below(self.s);
+        }
+        Lane::select(self.looks, self.s, t)
+    }
+
+    #[inline(always)]
+    fn collide(
+        &mut self,
+        numbers: &mut Numbers<S>,
+        _: mask64x8<S>,
+        extinction: f64x8<S>,
+        sums: &mut Sums<S>,
+    ) -> (mask64x8<S>, f64x8<S>) {
+        let (zero, one) = (extinction.each(0.0), extinction.each(1.0));
+        let looked = self.looks;
+        let scatters = looked & zero.below(extinction);
+        self.looks = looked & !looked;
+        self.extinction = Lane::select(looked, extinction, self.extinction);
+        let mut ends = looked & !scatters;
+        let mut arrives = scatters;
+        if self.camera == CameraTracking::Exact {
+            add_where(&mut sums.lookups, looked, one);
+            let transmittance = self.world.transmittance(self.s, scatters);
+            self.weight = Lane::select(scatters, transmittance, self.weight);
+        } else {
+            let inside = self.walk.inside;
+            add_where(&mut sums.lookups, looked | inside, one);
+            arrives = self.walk.flew & !inside;
+            if self.camera == CameraTracking::Delta {
+                let number = numbers.uniform_where(inside);
+                let killed = inside & (number * self.walk.sampling()).below(extinction);
+                ends |= killed;
+                self.walk.on &= !killed;
+                self.weight = Lane::select(scatters, one, self.weight);
+            } else {
+                let weight = self.weight * self.walk.kept(&self.world, extinction);
+                self.weight = Lane::select(inside, weight, self.weight);
+                let begun = self.world.controlled(self.s);
+                self.weight = Lane::select(scatters, begun, self.weight);
+            }
+            self.walk.on &= !arrives;
+            self.walk.begin(scatters);
+        }
+        let is_nothing = arrives & self.weight.at_most(zero) & zero.at_most(self.weight);
+        self.done |= ends | is_nothing;
+        (arrives & !is_nothing, self.s)
+    }
+
+    #[inline(always)]
+    fn lit(&mut self, (which, light): Found<S>, sums: &mut Sums<S>) {
+        let problem = &*self.world.setup.problem;
+        let radiance = self.weight * (self.extinction * problem.source(self.s)) * light;
+        let density = match (&self.main, self.from_source) {
+            (None, _) => problem.equiangular_density(self.s),
+            (Some(main), false) => main.density(self.s),
+            (Some(main), true) => problem.equiangular_density(self.s) + main.density(self.s),
+        };
+        add_where(&mut sums.value, which, radiance / density);
+        self.done |= which;
+    }
+
+    #[inline(always)]
+    fn finish(&mut self) -> [mask64x8<S>; 2] {
+        let (begins, mut ended) = (self.done, self.done);
+        self.done = begins & !begins;
+        if self.from_source && self.main.is_some() {
+            ended &= self.is_second;
+            self.is_second ^= begins;
+        }
+        [ended, begins]
+    }
+}
