@@ -88,13 +88,15 @@ impl<S: Simd, const RESAMPLED: bool> Page<S> for Interactions<'_, S, RESAMPLED> 
 
     #[inline(always)]
     fn lit(&mut self, (which, light): Found<S>, sums: &mut Sums<S>) {
-        let mut worth = self.worth;
         if RESAMPLED {
-            let is_negative = worth.below(worth.each(0.0));
-            worth = Lane::select(is_negative, -self.sum, self.sum);
+            // The one point's value is the draw's, its sign included where it is 0.
+            let is_negative = self.worth.below(self.worth.each(0.0));
+            let worth = Lane::select(is_negative, -self.sum, self.sum);
+            sums.value = Lane::select(which, worth * light, sums.value);
             self.done |= which;
+        } else {
+            add_where(&mut sums.value, which, self.worth * light);
         }
-        add_where(&mut sums.value, which, worth * light);
     }
 
     #[inline(always)]

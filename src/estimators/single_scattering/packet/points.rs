@@ -141,7 +141,10 @@ impl<S: Simd> Page<S> for Points<'_, S> {
             (Some(main), false) => main.density(self.s),
             (Some(main), true) => problem.equiangular_density(self.s) + main.density(self.s),
         };
-        add_where(&mut sums.value, which, radiance / density);
+        let (value, is_one_of_two) = (radiance / density, self.from_source && self.main.is_some());
+        // The one point's value is the draw's, its sign included where it is 0.
+        let value = if is_one_of_two { sums.value + value } else { value };
+        sums.value = Lane::select(which, value, sums.value);
         self.done |= which;
     }
 
