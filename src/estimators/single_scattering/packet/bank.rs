@@ -14,6 +14,7 @@ use crate::estimators::single_scattering::main_part::MainPart;
 use crate::estimators::space::exit;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays, Shadows};
 use crate::estimators::{DrawBuffer, Setup};
+use crate::geometry::Bounds;
 use crate::media::course::Even;
 use crate::media::{Batches, Lookups, even};
 use crate::numeric::pack::{self, Task, WIDTH};
@@ -47,8 +48,8 @@ pub enum Kind {
     Shared(usize),
 }
 
-/// The draws of a technique, on the hardware of a level; a request is handed back where that is too narrow, and
-/// where σ̂ has several values.
+/// The draws of a technique, on the hardware of a level; a request is handed back where that is too narrow,
+/// where σ̂ has several values, and where one draw after the other is faster.
 pub fn draw<'a>(
     level: Level,
     setup: &Setup<SingleScattering>,
@@ -67,7 +68,13 @@ pub fn draw<'a>(
     let volume = setup.problem.volume();
     let bounds = volume.bounds();
     let rays = ShadowRays { volume, bounds, tracking };
-    let is_box = matches!(bounds, crate::geometry::Bounds::Box(_));
+    let is_box = matches!(bounds, Bounds::Box(_));
+    let is_tracked = matches!(kind, Kind::Points { camera, .. } if camera != CameraTracking::Exact);
+    let is_single = setup.control.single_value().is_some();
+    // Clipped lookups of shadow rays, and a main part of many pieces beside a tracked camera, do not pay.
+    if (is_box && tracking != Tracking::Exact) || (main.is_some() && is_tracked && !is_single) {
+        return Some(request);
+    }
     let in_space = volume.batches(level, is_box);
     let (support, extinction) = (setup.problem.medium().support(), medium.single_value());
     let world = World { setup, support, extinction };
