@@ -4,6 +4,7 @@
 //! its loop is compiled once per field type and entered once per buffer of draws. Estimators of
 //! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
 
+pub mod bidirectional_rod;
 pub mod controls;
 pub mod domain;
 pub mod free_flight;

@@ -60,6 +60,7 @@ const CASES: BuiltIn = cases![
     "infinite-medium/magnet",
     "sphere/magnet",
     "sphere/environment",
+    "bidirectional-rod/magnet",
 ];
 
 /// The cases of `trueflight self-test`, which are no part of the suite.

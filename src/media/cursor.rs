@@ -21,6 +21,16 @@ impl Piecewise {
         Cursor { t, way: t, piece: 0 }
     }
 
+    /// A walk back from the last knot, or from where a field ends that is [`Piecewise::even`].
+    #[inline]
+    pub fn end(&self) -> Cursor {
+        let piece = self.left.len() - 1;
+        let t = self.knots[piece + 1];
+        let even = self.even.as_ref();
+        let way = even.map_or(t, |even| even.to);
+        Cursor { t: even.map_or(t, |even| even.spread(way)), way, piece }
+    }
+
     /// A walk over the pieces from any distance between the first and the last knot.
     pub(super) fn begin_at(&self, t: f64) -> Cursor {
         Cursor { t, way: t, piece: self.piece_at(t).1 }

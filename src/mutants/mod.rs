@@ -13,6 +13,7 @@
 //! The bugs are those that renderers and transport codes have had, and those that a formula of this
 //! crate invites.
 
+pub mod bidirectional_rod;
 pub mod control;
 pub mod curve;
 pub mod decisions;
@@ -44,8 +45,9 @@ use crate::estimators::{Draw, Estimated, Experiment, Setup};
 use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
-    FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod, SingleScattering, Slab,
-    SpectralRod, SpectralTransmittance, Sphere, Transmittance, TransmittanceCurve, each_problem,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod,
+    SingleScattering, Slab, SpectralRod, SpectralTransmittance, Sphere, Transmittance,
+    TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -156,6 +158,7 @@ mutable! {
     InfiniteMedium: space::in_infinite_medium();
     Slab: slab::mutants();
     Sphere: sphere::mutants();
+    BidirectionalRod: bidirectional_rod::mutants();
 }
 
 /// Every mutant of every problem, without the wrong streams.

@@ -145,3 +145,15 @@ pub const SPECTRAL_ROD_MIS: Target = on("spectral-rod/three-albedos", 1, "spectr
 /// The same with a thin rod of albedos .6, .5 and .4.
 pub const SPECTRAL_ROD_TRACKING: Target =
     on("spectral-rod/near-albedos", 1, "spectral-tracking (average)");
+/// Both orders of a rod by all techniques, exact connections.
+pub const BIDIRECTIONAL_FULL: Target =
+    on("bidirectional-rod/magnet", 0, "full-mis (exact connection)");
+/// The same with ratio-tracked connections.
+pub const BIDIRECTIONAL_TRACKED: Target =
+    on("bidirectional-rod/magnet", 1, "full-mis (ratio connection)");
+/// Directional weights.
+pub const BIDIRECTIONAL_DIRECTIONAL: Target =
+    on("bidirectional-rod/magnet", 2, "directional-mis (exact connection)");
+/// One technique: a connection between two scatterings.
+pub const BIDIRECTIONAL_TECHNIQUE: Target =
+    on("bidirectional-rod/magnet", 3, "technique (s=2, exact connection)");

@@ -1,5 +1,6 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
+pub mod bidirectional_rod;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
@@ -23,6 +24,7 @@ pub mod multiple_scattering;
 pub mod scene;
 pub mod sky;
 
+pub use bidirectional_rod::BidirectionalRod;
 pub use free_flight::FreeFlight;
 pub use furnace::Furnace;
 pub use infinite_medium::InfiniteMedium;
@@ -56,6 +58,7 @@ macro_rules! each_problem {
             lambertian::Lambertian,
             infinite_medium::InfiniteMedium,
             sphere::Sphere,
+            bidirectional_rod::BidirectionalRod,
         }
     };
 }

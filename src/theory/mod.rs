@@ -3,6 +3,7 @@
 //! Floor 3. Nothing here holds a generator of random numbers. All integrals run over one [`Mesh`]
 //! per medium and ray, on which σ_t is looked up once and shared by every σ̂, control and rule.
 
+pub mod bidirectional_rod;
 pub mod count;
 pub mod curve;
 pub mod flight;

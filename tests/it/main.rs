@@ -3,6 +3,7 @@
 mod architecture;
 mod baseline;
 mod bench;
+mod bidirectional_rod;
 mod calibration;
 mod cases;
 mod channels;

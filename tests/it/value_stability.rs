@@ -12,8 +12,8 @@ use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
-    FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, SpectralRod, SpectralTransmittance,
-    Transmittance, TransmittanceCurve,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, SpectralRod,
+    SpectralTransmittance, Transmittance, TransmittanceCurve,
 };
 
 /// Draws of each experiment.
@@ -217,15 +217,31 @@ fn spectral() -> Vec<Case> {
     ]
 }
 
+fn paths() -> Vec<Case> {
+    vec![case(
+        "bidirectional-rod",
+        "title = \"bidirectional path tracing\"
+        [problem.bidirectional-rod]
+        medium.piecewise-linear = { knots = [0, 2, 4], values = [0.3, 1.2, 0.5] }
+        span = [0, 4]
+        albedo = 0.9
+        forward = 0.6
+        sensor = \"reflected\"
+        orders = 2
+        sampling.piecewise-linear = { knots = [0, 2, 4], values = [0.6, 2.4, 1] }
+        estimators = [
+            { technique.light-vertices = 1 },
+            { directional-mis = {} },
+            { full-mis = {} },
+            { full-mis = { heuristic = \"power\", connection = \"ratio\" } },
+        ]",
+    )]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases: Vec<Case> = cases()
-        .into_iter()
-        .chain(rods())
-        .chain(spaces())
-        .chain(balls())
-        .chain(spectral())
-        .collect();
+    let cases: Vec<Case> =
+        [cases(), rods(), spaces(), balls(), spectral(), paths()].into_iter().flatten().collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -286,6 +302,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Furnace::CATALOGUE, ["furnace", "furnace"]),
         (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
         (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),
+        (BidirectionalRod::CATALOGUE, ["bidirectional-rod", "bidirectional-rod"]),
     ] {
         for page in pages {
             let found =

@@ -1,0 +1,32 @@
+//! All techniques of bidirectional path tracing, weighted by densities of directions only.
+//!
+//! ```text
+//! X = Σ_s w_s c_s,   w_s ∝ 1 for s = 0 and s = r + 2, else ([ρ_{s−1}]_{s≥2} [ρ_s]_{s≤r})^{−β}
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `heuristic` | `"balance"`: β = 1, `"power"`: β = 2 | `"balance"` |
+//! | `connection` | `"exact"`: `T̂ = exp(−∫σ_t)`, no lookups; `"ratio"`: tracked through σ̂ | `"exact"` |
+//!
+//! Weights as of renderers that do not know the densities of distances: those of real scatterings and null
+//! vertices are left out. The densities that paths are divided by are the full ones, so that it is unbiased
+//! for `σ̂ ≥ σ_t` like `technique`.
+//!
+//! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
+
+use super::{Page, pages, read_heuristic};
+use crate::catalogue::Settings;
+use crate::theory::bidirectional_rod::Combination;
+
+/// Directional weights; σ̂ is its input.
+#[derive(Debug, Clone, Copy)]
+pub struct DirectionalMis(Page);
+
+impl DirectionalMis {
+    fn combination(settings: &Settings) -> Option<Combination> {
+        read_heuristic(settings).map(Combination::Directional)
+    }
+}
+
+pages!(DirectionalMis);

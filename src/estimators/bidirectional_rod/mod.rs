@@ -1,0 +1,181 @@
+//! Techniques of bidirectional path tracing in a rod, alone and together.
+
+pub mod directional_mis;
+pub mod full_mis;
+pub mod technique;
+pub mod walk;
+
+use self::walk::Steps;
+use crate::catalogue::{Settings, rounded};
+use crate::estimators::{Refusal, Setup, estimators};
+use crate::problems::BidirectionalRod;
+use crate::problems::bidirectional_rod::Sensor;
+use crate::theory::Prediction;
+use crate::theory::bidirectional_rod::{self, Combination, Connection, Heuristic, Rules, Scene};
+
+/// What the settings of a page say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Page {
+    /// Which techniques.
+    pub combination: Combination,
+    /// Whether connections are tracked.
+    pub is_tracked: bool,
+}
+
+impl Steps for Page {
+    #[inline(always)]
+    fn combination(&self) -> Combination {
+        self.combination
+    }
+
+    #[inline(always)]
+    fn is_tracked(&self) -> bool {
+        self.is_tracked
+    }
+}
+
+/// Longer rods need finer grids than theory has.
+const LONGEST: f64 = 12.0;
+/// More tentative collisions on a tracked connection have probabilities that are no doubles.
+const MOST_TRACKED: f64 = 500.0;
+/// Ratios that differ by less are one number.
+const SAME: f64 = 1e-12;
+
+fn read_heuristic(settings: &Settings) -> Option<Heuristic> {
+    let word = settings.word_or("heuristic", &["balance", "power"], "balance")?;
+    Some(if word == "power" { Heuristic::Power } else { Heuristic::Balance })
+}
+
+impl Page {
+    fn read(
+        settings: &Settings,
+        combination: impl Fn(&Settings) -> Option<Combination>,
+    ) -> Option<Self> {
+        let combination = combination(settings);
+        let connection = settings.word_or("connection", &["exact", "ratio"], "exact");
+        Some(Self { combination: combination?, is_tracked: connection? == "ratio" })
+    }
+
+    /// In words, as in `power, ratio connection`.
+    fn label(self) -> String {
+        let first = match self.combination {
+            Combination::Technique(s) => format!("s={s}, "),
+            Combination::Directional(Heuristic::Power) | Combination::Full(Heuristic::Power) => {
+                "power, ".into()
+            }
+            _ => String::new(),
+        };
+        let connection = if self.is_tracked { "ratio" } else { "exact" };
+        format!("{first}{connection} connection")
+    }
+
+    fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
+        setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        let depth = setup.mesh.optical_depth().value;
+        if depth > LONGEST {
+            let found = format!("τ = {}", rounded(depth));
+            return Err(Refusal::mismatch("τ ≤ 12, as far as theory goes", found));
+        }
+        if self.is_tracked {
+            let needs = "one number σ_t/σ̂ where connections are tracked, and ∫σ̂ ≤ 500";
+            match one_ratio(setup) {
+                None => return Err(Refusal::mismatch(needs, "σ_t/σ̂ varies along the rod")),
+                Some(ratio) if depth > MOST_TRACKED * ratio => {
+                    let found = format!("∫σ̂ = {}", rounded(depth / ratio));
+                    return Err(Refusal::mismatch(needs, found));
+                }
+                Some(_) => {}
+            }
+        }
+        let orders = &setup.problem.orders;
+        match self.combination {
+            Combination::Technique(s) if s > orders.start() + 2 => {
+                let needs = "at most r + 2 light vertices, r the lowest order";
+                let found = format!("s = {s} and r = {}", orders.start());
+                Err(Refusal::mismatch(needs, found))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn predict(self, setup: &Setup<BidirectionalRod>) -> Prediction {
+        let problem = &setup.problem;
+        let scene = Scene {
+            depth: setup.mesh.optical_depth(),
+            albedo: problem.albedo,
+            forward: problem.forward,
+            is_transmitted: problem.sensor == Sensor::Transmitted,
+            orders: problem.orders.clone(),
+        };
+        let ratio = one_ratio(setup);
+        // Elsewhere it is refused, and forced draws have no prediction.
+        let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
+        let connection = tracked.unwrap_or(Connection::Exact);
+        let rules = Rules { combination: self.combination, connection };
+        bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
+    }
+}
+
+/// `σ_t/σ̂`, if it is the same wherever there is a medium.
+fn one_ratio(setup: &Setup<BidirectionalRod>) -> Option<f64> {
+    let cut = setup.mesh.refined(setup.sampling.knots(), &|_, _| Vec::new());
+    let places = cut.panels().flat_map(|panel| panel.t.iter().zip(panel.extinction));
+    let ratios = places.filter_map(|(&t, sigma)| {
+        let sampling = setup.sampling.value(t);
+        (sampling > 0.0).then_some(sigma / sampling)
+    });
+    let [least, most] = ratios.fold([f64::INFINITY, 0.0], |[least, most], ratio: f64| {
+        [least.min(ratio), most.max(ratio)]
+    });
+    (least > 0.0 && most - least <= SAME * most).then_some(most.min(1.0))
+}
+
+/// The plumbing of a page: all that differs is how it reads which techniques, as in `pages!(FullMis)`.
+macro_rules! pages {
+    ($Page:ident) => {
+        impl $crate::estimators::Estimator<$crate::problems::BidirectionalRod> for $Page {
+            const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+
+            fn read(settings: &$crate::catalogue::Settings) -> Option<Self> {
+                Page::read(settings, Self::combination).map(Self)
+            }
+
+            fn label(&self, _: bool) -> String {
+                self.0.label()
+            }
+
+            fn domain(
+                &self,
+                setup: &$crate::estimators::Setup<$crate::problems::BidirectionalRod>,
+            ) -> Result<(), $crate::estimators::Refusal> {
+                self.0.domain(setup)
+            }
+
+            fn predict(
+                &self,
+                setup: &$crate::estimators::Setup<$crate::problems::BidirectionalRod>,
+            ) -> $crate::theory::Prediction {
+                self.0.predict(setup)
+            }
+
+            #[inline(always)]
+            fn draw(
+                &self,
+                setup: &$crate::estimators::Setup<$crate::problems::BidirectionalRod>,
+                medium: &$crate::media::Lookups,
+                rng: &mut $crate::rng::Stream,
+            ) -> $crate::estimators::Draw<$crate::problems::bidirectional_rod::Values> {
+                $crate::estimators::bidirectional_rod::walk::draw(&self.0, setup, medium, rng)
+            }
+        }
+    };
+}
+use pages;
+
+estimators! {
+    BidirectionalRod:
+    technique::Technique,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+}

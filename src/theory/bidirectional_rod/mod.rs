@@ -1,0 +1,233 @@
+//! Bidirectional path tracing in a rod: every technique's share of the light, and its moments.
+//!
+//! A path with r scatterings at the optical depths `u₁ … u_r` has the contribution f, and the technique that
+//! makes its first s vertices from the light and the others from the sensor the density `p_s`; lengths `d_j`
+//! are those of its segments, `j = 0 … r`, and ρ is `p_f` or `1 − p_f` at each turn:
+//!
+//! ```text
+//! f = ∏ᵢ a ρᵢ · ∏ⱼ e^{−d_j},   c_s = f/p_s = 1 for s = 0 and s = r + 2, else
+//! c_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r},   T̂ⱼ = e^{−dⱼ}, or ∏ (1 − σ_t/σ̂) over its null vertices
+//! X_s = w_s c_s,   E[X_s^k] = ∫ p_s X_s^k = ∫ f w_s^k c_s^{k−1},   Σ w_s = 1
+//! ```
+//!
+//! | weights | `w_s ∝` |
+//! |---|---|
+//! | one technique | 1 for that, 0 for all others |
+//! | directional | `c′_s^{−β}`, `c′_s` = `c_s` without a and T̂ |
+//! | full | `c_s^{−β}` |
+//!
+//! β = 1 is the balance heuristic, β = 2 the power heuristic. Everything depends on the medium by its optical
+//! depth only, as long as connections are exact or `σ_t/σ̂` is one number.
+//!
+//! A draw has an independent path for each technique, so that moments of sums follow from those of the
+//! techniques. Renderers connect every vertex of one light subpath with every vertex of one camera subpath; the
+//! covariances of techniques that share vertices are not known.
+//!
+//! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH
+//! 1995; B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*,
+//! ACM Transactions on Graphics 38 (2019), sections 5.1, 5.2 and 5.5, Eqs. 42–44. The moments are derived here.
+
+pub mod full;
+pub mod grid;
+pub mod lookups;
+pub mod paths;
+mod predict;
+
+use std::ops::RangeInclusive;
+
+use self::grid::Grid;
+use crate::numeric::Known;
+
+pub use predict::predict;
+
+/// The highest power of a draw whose mean is worked out.
+pub const HIGHEST: usize = 8;
+/// `E[X^k]`, k = 0 … 8.
+pub type Powers = [f64; HIGHEST + 1];
+
+/// A rod as its paths see it.
+#[derive(Debug, Clone)]
+pub struct Scene {
+    /// τ.
+    pub depth: Known,
+    /// a.
+    pub albedo: f64,
+    /// `p_f`.
+    pub forward: f64,
+    /// Whether the sensor is at the end, not at the light.
+    pub is_transmitted: bool,
+    /// Numbers of scatterings.
+    pub orders: RangeInclusive<usize>,
+}
+
+impl Scene {
+    /// ρ of a scattering that goes straight on or turns.
+    pub fn phase(&self, turns: bool) -> f64 {
+        if turns { 1.0 - self.forward } else { self.forward }
+    }
+
+    /// The optical depth between a place and the sensor.
+    fn to_sensor(&self, u: f64) -> f64 {
+        if self.is_transmitted { self.depth.value - u } else { u }
+    }
+}
+
+/// How the transmittance of a connection is found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Connection {
+    /// In closed form.
+    Exact,
+    /// By ratio tracking, with this number for `σ_t/σ̂`; weights know the null vertices of all segments.
+    Ratio(f64),
+}
+
+impl Connection {
+    /// `e^{−d} E[g(ln T̂)]` over the null vertices of a segment of a path.
+    ///
+    /// ```text
+    /// ln T̂ = m ln(1 − σ_t/σ̂),   m Poisson of mean d (σ̂/σ_t − 1)
+    /// ```
+    fn mean(self, depth: f64, g: impl Fn(f64) -> f64) -> f64 {
+        let Self::Ratio(ratio) = self else { return (-depth).exp() * g(-depth) };
+        let nulls = depth * (1.0 - ratio) / ratio;
+        let (step, mut m, mut probability) = ((-ratio).ln_1p(), 0.0, (-depth - nulls).exp());
+        let (mut sum, mut last) = (0.0, 0.0);
+        loop {
+            let term = if m == 0.0 { probability * g(0.0) } else { probability * g(m * step) };
+            sum += term;
+            m += 1.0;
+            probability *= nulls / m;
+            // Terms rise to one peak and fall.
+            if probability == 0.0 || (term <= last && term <= 1e-18 * sum) {
+                return sum;
+            }
+            last = term;
+        }
+    }
+
+    /// `e^{−d} E[T̂^{k−1}]`.
+    fn power(self, depth: f64, k: usize) -> f64 {
+        match self {
+            Self::Exact => (-(k as f64) * depth).exp(),
+            Self::Ratio(ratio) => {
+                let kept = (1.0 - ratio).powf((k - 1) as f64);
+                (-depth - depth * (1.0 - ratio) / ratio * (1.0 - kept)).exp()
+            }
+        }
+    }
+}
+
+/// How techniques that could have made the same path share it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Heuristic {
+    /// In proportion to their densities.
+    Balance,
+    /// In proportion to the squares of their densities.
+    Power,
+}
+
+impl Heuristic {
+    /// β.
+    pub fn exponent(self) -> f64 {
+        match self {
+            Self::Balance => 1.0,
+            Self::Power => 2.0,
+        }
+    }
+
+    /// `(1 − β) k − 1`.
+    fn power(self, k: usize) -> f64 {
+        (1.0 - self.exponent()) * k as f64 - 1.0
+    }
+
+    /// The k for which that is a number of its own.
+    fn own_powers(self) -> RangeInclusive<usize> {
+        match self {
+            Self::Balance => 1..=1,
+            Self::Power => 1..=HIGHEST,
+        }
+    }
+
+    /// The share of technique s in a path of r scatterings, by `f/p` of each technique.
+    #[inline(always)]
+    pub fn share(self, s: usize, order: usize, quotient: impl Fn(usize) -> f64) -> f64 {
+        let density = |j: usize| {
+            let density = 1.0 / quotient(j);
+            if self == Self::Power { density * density } else { density }
+        };
+        density(s) / (0..order + 3).map(density).sum::<f64>()
+    }
+}
+
+/// `c_s`, by `T̂ⱼ` of each segment and `a ρᵢ` of each scattering, `i = 1 … r`.
+#[inline(always)]
+pub fn quotient(
+    s: usize,
+    order: usize,
+    transmittance: impl Fn(usize) -> f64,
+    scattered: impl Fn(usize) -> f64,
+) -> f64 {
+    if s == 0 || s == order + 2 {
+        return 1.0;
+    }
+    let light = if s >= 2 { scattered(s - 1) } else { 1.0 };
+    let camera = if s <= order { scattered(s) } else { 1.0 };
+    transmittance(s - 1) * light * camera
+}
+
+/// What techniques are worth beside each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Combination {
+    /// One with this number of light vertices, by itself.
+    Technique(usize),
+    /// All, by multiple importance sampling with densities of directions only.
+    Directional(Heuristic),
+    /// All, by multiple importance sampling with the densities of whole paths.
+    Full(Heuristic),
+}
+
+impl Combination {
+    /// The numbers of light vertices of its techniques at one order.
+    pub fn techniques(self, order: usize) -> RangeInclusive<usize> {
+        match self {
+            Self::Technique(s) if s <= order + 2 => s..=s,
+            #[allow(clippy::reversed_empty_ranges)] // there is none
+            Self::Technique(_) => 1..=0,
+            _ => 0..=order + 2,
+        }
+    }
+
+    /// The weight of a technique by the phase function at each scattering; 1 where that does not tell.
+    #[inline(always)]
+    pub fn weight(self, phase: &[f64], s: usize) -> f64 {
+        let Self::Directional(heuristic) = self else { return 1.0 };
+        let order = phase.len();
+        heuristic.share(s, order, |j| quotient(j, order, |_| 1.0, |i| phase[i - 1]))
+    }
+}
+
+/// What is drawn, and how.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Rules {
+    /// Which techniques.
+    pub combination: Combination,
+    /// How their connections are made.
+    pub connection: Connection,
+}
+
+/// `E[X_s^k]` of every technique that is drawn, order by order.
+fn powers(scene: &Scene, rules: &Rules, [size, step]: [f64; 2]) -> Vec<Powers> {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a small whole number
+    let grid = Grid::new(scene.depth.value, size as usize);
+    let by_order: Vec<Vec<Powers>> = match rules.combination {
+        Combination::Full(heuristic) => {
+            full::moments(scene, rules.connection, heuristic, &grid, step)
+        }
+        _ => scene.orders.clone().map(|order| paths::moments(scene, rules, order, &grid)).collect(),
+    };
+    let drawn = |(order, powers): (usize, Vec<Powers>)| {
+        let techniques = rules.combination.techniques(order);
+        techniques.map(move |s| powers[s]).collect::<Vec<_>>()
+    };
+    scene.orders.clone().zip(by_order).flat_map(drawn).collect()
+}

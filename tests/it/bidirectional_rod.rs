@@ -1,0 +1,282 @@
+//! Bidirectional path tracing in a rod: shares and second moments of every technique against numbers from
+//! another arithmetic, see `tests/data/README.md`, and predictions against draws.
+
+use crate::common::{case, mistakes, none, options, row, rows};
+use serde::Deserialize;
+use trueflight::harness::Plan;
+use trueflight::harness::record::Verdict;
+use trueflight::numeric::Known;
+use trueflight::theory::Prediction;
+use trueflight::theory::bidirectional_rod::{
+    Combination, Connection, Heuristic, Rules, Scene, predict,
+};
+
+#[derive(Deserialize)]
+struct Reference {
+    id: String,
+    sensor: String,
+    order: usize,
+    what: String,
+    value: Vec<f64>,
+    error: f64,
+}
+
+fn values() -> Vec<Reference> {
+    serde_json::from_str(include_str!("../data/bidirectional-rod.json")).expect("values")
+}
+
+/// The rod of the reference values: τ = 2, a = 0.9, `p_f` = 0.75.
+fn scene(sensor: &str, order: usize) -> Scene {
+    let depth = Known::exact(2.0);
+    let is_transmitted = sensor == "T";
+    Scene { depth, albedo: 0.9, forward: 0.75, is_transmitted, orders: order..=order }
+}
+
+fn predicted(scene: &Scene, combination: Combination, connection: Connection) -> Prediction {
+    predict(scene, &Rules { combination, connection }, None, true)
+}
+
+const FULL: Combination = Combination::Full(Heuristic::Balance);
+const DIRECTIONAL: Combination = Combination::Directional(Heuristic::Balance);
+
+/// Shares, then second moments, of every technique.
+fn shares(prediction: &Prediction) -> Vec<f64> {
+    let techniques = &prediction.channels[..prediction.channels.len() - 1];
+    let share = techniques.iter().map(|channel| channel.truth.value);
+    let second = techniques.iter().map(|channel| {
+        let variance = channel.moments.expect("moments").variance();
+        variance + channel.truth.value.powi(2)
+    });
+    share.chain(second).collect()
+}
+
+/// The variance of the sum.
+fn variance(prediction: &Prediction) -> f64 {
+    let sum = prediction.channels.last().expect("a sum");
+    assert_eq!(sum.name, "sum");
+    sum.moments.expect("moments").variance()
+}
+
+#[test]
+fn every_reference_value_is_met() {
+    let mut wrong = Vec::new();
+    for Reference { id, sensor, order, what, value, error } in values() {
+        let scene = scene(&sensor, order);
+        let of = |combination| predicted(&scene, combination, Connection::Exact);
+        let found = match what.as_str() {
+            "full" => shares(&of(FULL)),
+            "C_s" => shares(&of(FULL))[..order + 3].to_vec(),
+            "V_s" => shares(&of(FULL))[order + 3..].to_vec(),
+            "directional" => shares(&of(DIRECTIONAL)),
+            "variance" => vec![variance(&of(FULL)), variance(&of(DIRECTIONAL))],
+            "total" => vec![of(FULL).channels.last().expect("a sum").truth.value],
+            "M2_s" => {
+                let alone = |s| of(Combination::Technique(s)).channels[0].clone();
+                let second = |s| {
+                    let channel = alone(s);
+                    let moments = channel.moments.expect("moments");
+                    moments.variance() + channel.truth.value.powi(2)
+                };
+                (0..order + 3).map(second).collect()
+            }
+            other => panic!("{other}"),
+        };
+        assert_eq!(found.len(), value.len(), "{id}");
+        for (i, (found, value)) in found.iter().zip(&value).enumerate() {
+            let off = (found - value).abs();
+            if off > error {
+                wrong.push(format!("{id}, {i}: {found:e} against {value:e}, off by {off:.1e}"));
+            }
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn stated_errors_hold() {
+    // Two resolutions of the same integrals, and numbers from elsewhere, agree to what is stated.
+    for Reference { id, sensor, order, what, value, error } in values() {
+        if what != "full" {
+            continue;
+        }
+        let prediction = predicted(&scene(&sensor, order), FULL, Connection::Exact);
+        for (channel, share) in prediction.channels.iter().zip(&value) {
+            let off = (channel.truth.value - share).abs();
+            assert!(off <= channel.truth.error + error, "{id}: {off:e}");
+            assert!(channel.truth.error < 1e-13, "{id}: {:e}", channel.truth.error);
+            let moments = channel.moments.expect("moments");
+            assert!(moments.error < 1e-10, "{id}: {:e}", moments.error);
+        }
+    }
+}
+
+/// Every way to share a path, and every connection.
+fn combinations() -> Vec<(Combination, Connection)> {
+    let heuristics = [Heuristic::Balance, Heuristic::Power];
+    let combined = heuristics
+        .into_iter()
+        .flat_map(|heuristic| [Combination::Full(heuristic), Combination::Directional(heuristic)]);
+    let alone = (0..3).map(Combination::Technique);
+    let connections = [Connection::Exact, Connection::Ratio(0.4), Connection::Ratio(1.0)];
+    let all = combined
+        .chain(alone)
+        .flat_map(|combination| connections.map(|connection| (combination, connection)));
+    all.collect()
+}
+
+#[test]
+fn shares_add_up_to_the_light_of_their_order() {
+    let mut wrong = Vec::new();
+    for is_transmitted in [true, false] {
+        for forward in [0.0, 0.3, 1.0] {
+            let orders = 2..=2;
+            let depth = Known::exact(1.7);
+            let scene = Scene { depth, albedo: 0.8, forward, is_transmitted, orders };
+            let alone = predicted(&scene, Combination::Technique(0), Connection::Exact);
+            let truth = alone.channels[0].truth.value;
+            for (combination, connection) in combinations() {
+                let found = predicted(&scene, combination, connection);
+                let whole = found.channels.last().expect("a channel").truth;
+                if (whole.value - truth).abs() > whole.error + 1e-13 * truth {
+                    wrong.push(format!(
+                        "{combination:?}, {connection:?}: {} and {truth}",
+                        whole.value
+                    ));
+                }
+            }
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn optimal_weights_are_better_than_any_technique() {
+    // Veach's bound: the second moment of the balance heuristic is the least of all weights.
+    for (sensor, order) in [("T", 0), ("T", 2), ("R", 1), ("R", 3)] {
+        let scene = scene(sensor, order);
+        let second = |combination| {
+            let prediction = predicted(&scene, combination, Connection::Exact);
+            shares(&prediction)[order + 3..].iter().sum::<f64>()
+        };
+        let best = second(FULL);
+        for heuristic in [Heuristic::Balance, Heuristic::Power] {
+            assert!(second(Combination::Directional(heuristic)) > best);
+        }
+        assert!(second(Combination::Full(Heuristic::Power)) > best);
+    }
+}
+
+#[test]
+fn a_tight_majorant_needs_no_null_vertices() {
+    // σ̂ = σ_t: a tracked connection is 1 or 0, and weights know no distances.
+    let scene = scene("T", 2);
+    let found = predicted(&scene, FULL, Connection::Ratio(1.0));
+    let directional = predicted(&scene, DIRECTIONAL, Connection::Ratio(1.0));
+    assert_eq!(found.channels.len(), directional.channels.len());
+    // Of a coarse σ̂ many null vertices make a tracked connection nearly exact.
+    let exact = predicted(&scene, FULL, Connection::Exact);
+    let many = predicted(&scene, FULL, Connection::Ratio(1e-2));
+    for (exact, many) in exact.channels.iter().zip(&many.channels) {
+        assert!((many.truth.value / exact.truth.value - 1.0).abs() < 5e-3, "{}", exact.name);
+    }
+}
+
+/// A rod with estimators.
+fn rod(sensor: &str, orders: usize, lowest: usize, estimators: &str) -> String {
+    format!(
+        "title = \"a rod\"
+        [problem.bidirectional-rod]
+        medium.piecewise-constant = {{ breaks = [0, 1, 2, 2.6], values = [0.6, 0, 1.5] }}
+        span = [0, 2.6]
+        albedo = 0.85
+        forward = 0.35
+        sensor = \"{sensor}\"
+        orders = {orders}
+        lowest = {lowest}
+        sampling.piecewise-constant = {{ breaks = [0, 1, 2, 2.6], values = [0.9, 0, 2.25] }}
+        estimators = [{estimators}]"
+    )
+}
+
+const ALL: &str = "
+    { full-mis = {} }, { full-mis.connection = \"ratio\" },
+    { full-mis.heuristic = \"power\" }, { full-mis = { heuristic = \"power\", connection = \"ratio\" } },
+    { directional-mis = {} }, { directional-mis.connection = \"ratio\" },
+    { directional-mis = { heuristic = \"power\" } },
+    { technique.light-vertices = 0 }, { technique.light-vertices = 1 },
+    { technique = { light-vertices = 2, connection = \"ratio\" } },
+    { technique.light-vertices = 3 }";
+
+#[test]
+fn draws_meet_means_variances_covariances_and_lookups() {
+    for (sensor, orders, lowest) in [("transmitted", 2, 1), ("reflected", 3, 1)] {
+        let found = rows(&rod(sensor, orders, lowest, ALL), 200_000);
+        let mut wrong = Vec::new();
+        for row in &found {
+            let is_sound = !matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None);
+            if !is_sound {
+                wrong.push(format!("{} {}: {}", row.estimator, row.channel, row.reason));
+            }
+            let asked = |check: &str| row.findings.iter().any(|finding| finding.check == check);
+            assert!(asked("mean") && asked("variance"), "{} {}", row.estimator, row.channel);
+        }
+        let asked = |check: &str| found.iter().flat_map(|r| &r.findings).any(|f| f.check == check);
+        assert!(asked("lookups") && asked("covariance"));
+        none(&wrong);
+    }
+}
+
+#[test]
+fn unscattered_light_of_one_technique_does_not_vary() {
+    let text = rod("transmitted", 0, 0, "{ technique.light-vertices = 1 }, { full-mis = {} }");
+    let found = rows(&text, 20_000);
+    let alone = row(&found, "technique");
+    assert_eq!(alone.verdict, Some(Verdict::Pass));
+    assert_eq!(alone.predicted_variance, Some(0.0));
+}
+
+#[test]
+fn what_does_not_fit_is_refused() {
+    let refusal = |text: &str| {
+        let cases = [case("test", text)];
+        let plan = Plan::new(&cases, &options(1, 1000));
+        let (_, planned) = plan.experiments().next().expect("an experiment");
+        planned.outcome.as_ref().err().expect("a refusal").to_string()
+    };
+    let says = |text: &str, expected: &str| {
+        let found = refusal(text);
+        assert!(found.contains(expected), "{found}");
+    };
+    let below = "{ full-mis.sampling.constant.value = 1.4 }";
+    says(&rod("transmitted", 1, 1, below), "σ̂ ≥ σ_t");
+    let uneven = "{ full-mis = { connection = \"ratio\", sampling.constant.value = 2 } }";
+    says(&rod("transmitted", 1, 1, uneven), "one number σ_t/σ̂");
+    let beyond = "{ technique.light-vertices = 4 }";
+    says(&rod("transmitted", 3, 1, beyond), "light vertices");
+    let white = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("0.35", "0");
+    says(&white, "an answer between");
+    let thick = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("2.6", "20");
+    says(&thick, "τ ≤ 12");
+}
+
+#[test]
+fn mistakes_are_named() {
+    let good = rod("reflected", 2, 1, "{ full-mis = {} }");
+    assert!(mistakes(&good).is_none());
+    for (from, to, expected) in [
+        ("orders = 2", "orders = 0", "`orders` is 0"),
+        ("orders = 2", "orders = 6", "`orders` is 6"),
+        ("orders = 2", "", "`orders` is missing"),
+        ("lowest = 1", "lowest = 3", "`lowest` is 3"),
+        ("lowest = 1", "lowest = 0", "`lowest` is 0"),
+        ("\"reflected\"", "\"behind\"", "`sensor` is \"behind\""),
+        ("albedo = 0.85", "albedo = 1.5", "`albedo` is 1.5"),
+        ("full-mis = {}", "technique = {}", "`light-vertices` is missing"),
+        ("full-mis = {}", "full-mis.heuristic = \"maximum\"", "`heuristic` is \"maximum\""),
+        ("full-mis = {}", "directional-mis.connection = \"delta\"", "`connection` is \"delta\""),
+    ] {
+        let error = mistakes(&good.replace(from, to)).expect("a mistake");
+        let shown = error.render(false);
+        assert!(shown.contains(expected) && error.mistakes() == 1, "{expected}: {shown}");
+    }
+}
