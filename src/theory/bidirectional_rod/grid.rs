@@ -64,17 +64,25 @@ impl Grid {
 
     /// The flights of a kernel of the optical depth flown.
     pub fn operator(&self, kernel: impl Fn(f64) -> f64) -> Operator {
+        let [operator] = self.several(|depth| [kernel(depth)]);
+        operator
+    }
+
+    /// The flights of several kernels.
+    pub fn several<const N: usize>(&self, kernels: impl Fn(f64) -> [f64; N]) -> [Operator; N] {
         let size = self.points.len();
-        let mut rows = vec![0.0; size * size];
-        for ((row, nodes), basis) in
-            rows.chunks_mut(size).zip(&self.before).zip(self.basis.chunks(size * size))
-        {
-            for (&[flown, weight], basis) in nodes.iter().zip(basis.chunks(size)) {
-                let factor = weight * kernel(flown);
-                row.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += factor * basis);
+        let mut operators = [(); N].map(|()| Operator { rows: vec![0.0; size * size], size });
+        for (i, nodes) in self.before.iter().enumerate() {
+            let basis = self.basis[i * size * size..].chunks(size);
+            for (&[flown, weight], basis) in nodes.iter().zip(basis) {
+                for (operator, kernel) in operators.iter_mut().zip(kernels(flown)) {
+                    let row = &mut operator.rows[i * size..(i + 1) * size];
+                    let factor = weight * kernel;
+                    row.iter_mut().zip(basis).for_each(|(sum, basis)| *sum += factor * basis);
+                }
             }
         }
-        Operator { rows, size }
+        operators
     }
 }
 

@@ -82,27 +82,24 @@ pub enum Connection {
 }
 
 impl Connection {
-    /// `e^{−d} E[g(ln T̂)]` over the null vertices of a segment of a path.
+    /// The values of `1/T̂` over the null vertices of a segment of a path, each with its probability times
+    /// `e^{−d}`.
     ///
     /// ```text
-    /// ln T̂ = m ln(1 − σ_t/σ̂),   m Poisson of mean d (σ̂/σ_t − 1)
+    /// T̂ = (1 − σ_t/σ̂)^m,   m Poisson of mean d (σ̂/σ_t − 1)
     /// ```
-    fn mean(self, depth: f64, g: impl Fn(f64) -> f64) -> f64 {
-        let Self::Ratio(ratio) = self else { return (-depth).exp() * g(-depth) };
-        let nulls = depth * (1.0 - ratio) / ratio;
-        let (step, mut m, mut probability) = ((-ratio).ln_1p(), 0.0, (-depth - nulls).exp());
-        let (mut sum, mut last) = (0.0, 0.0);
-        loop {
-            let term = if m == 0.0 { probability * g(0.0) } else { probability * g(m * step) };
-            sum += term;
-            m += 1.0;
-            probability *= nulls / m;
-            // Terms rise to one peak and fall.
-            if probability == 0.0 || (term <= last && term <= 1e-18 * sum) {
-                return sum;
-            }
-            last = term;
-        }
+    fn transmittances(self, depth: f64) -> impl Iterator<Item = [f64; 2]> {
+        let (nulls, first, step) = match self {
+            Self::Exact => (0.0, depth.exp(), 1.0),
+            Self::Ratio(ratio) => (depth * (1.0 - ratio) / ratio, 1.0, 1.0 / (1.0 - ratio)),
+        };
+        let all = std::iter::successors(
+            Some((1.0, [(-depth - nulls).exp(), first])),
+            move |&(m, [probability, inverse])| {
+                Some((m + 1.0, [probability * nulls / m, inverse * step]))
+            },
+        );
+        all.map(|(_, term)| term).take_while(|[probability, _]| *probability > 0.0)
     }
 
     /// `e^{−d} E[T̂^{k−1}]`.
@@ -127,34 +124,16 @@ pub enum Heuristic {
 }
 
 impl Heuristic {
-    /// β.
-    pub fn exponent(self) -> f64 {
-        match self {
-            Self::Balance => 1.0,
-            Self::Power => 2.0,
-        }
-    }
-
-    /// `(1 − β) k − 1`.
-    fn power(self, k: usize) -> f64 {
-        (1.0 - self.exponent()) * k as f64 - 1.0
-    }
-
-    /// The k for which that is a number of its own.
-    fn own_powers(self) -> RangeInclusive<usize> {
-        match self {
-            Self::Balance => 1..=1,
-            Self::Power => 1..=HIGHEST,
-        }
+    /// A density to the power of β.
+    #[inline(always)]
+    fn raised(self, density: f64) -> f64 {
+        if self == Self::Power { density * density } else { density }
     }
 
     /// The share of technique s in a path of r scatterings, by `f/p` of each technique.
     #[inline(always)]
     pub fn share(self, s: usize, order: usize, quotient: impl Fn(usize) -> f64) -> f64 {
-        let density = |j: usize| {
-            let density = 1.0 / quotient(j);
-            if self == Self::Power { density * density } else { density }
-        };
+        let density = |j: usize| self.raised(1.0 / quotient(j));
         density(s) / (0..order + 3).map(density).sum::<f64>()
     }
 }
