@@ -49,6 +49,8 @@ const CASES: BuiltIn = cases![
     "rod/magnet",
     "spectral-rod/three-albedos",
     "spectral-rod/near-albedos",
+    "lit-rod/homogeneous",
+    "lit-rod/rising",
     "single-scattering/homogeneous",
     "single-scattering/magnet",
     "slab/magnet",

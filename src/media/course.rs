@@ -31,6 +31,9 @@ pub trait Course<S: Simd> {
 pub trait BothWays<S: Simd>: Course<S> {
     /// Each flies on or back through an optical depth; answers which are still between the ends.
     fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S>;
+
+    /// These stand where they stand on another course through the same field.
+    fn stand_as(&mut self, which: mask64x8<S>, other: &Self);
 }
 
 /// Through one value, but for gaps.
@@ -89,6 +92,11 @@ impl<S: Simd> BothWays<S> for Even<'_, S> {
     fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
         self.way = Lane::select(is_forward, depth, -depth).times_plus(self.path, self.way);
         (is_forward & self.way.below(self.end)) | (!is_forward & self.begin.below(self.way))
+    }
+
+    #[inline(always)]
+    fn stand_as(&mut self, which: mask64x8<S>, other: &Self) {
+        self.way = Lane::select(which, other.way, self.way);
     }
 }
 
@@ -238,5 +246,24 @@ impl<S: Simd> BothWays<S> for Pieces<'_, S> {
     #[inline(always)]
     fn fly_either_way(&mut self, depth: f64x8<S>, is_forward: mask64x8<S>) -> mask64x8<S> {
         self.go::<true>(depth, is_forward)
+    }
+
+    #[inline(always)]
+    fn stand_as(&mut self, which: mask64x8<S>, other: &Self) {
+        let bits = which.to_bitmask();
+        if bits == 0 {
+            return;
+        }
+        for (lane, (piece, &there)) in self.piece.iter_mut().zip(&other.piece).enumerate() {
+            if bits >> lane & 1 == 1 {
+                *piece = there;
+            }
+        }
+        self.knot = Lane::select(which, other.knot, self.knot);
+        self.end = Lane::select(which, other.end, self.end);
+        self.left = Lane::select(which, other.left, self.left);
+        self.right = Lane::select(which, other.right, self.right);
+        self.slope = Lane::select(which, other.slope, self.slope);
+        self.t = Lane::select(which, other.t, self.t);
     }
 }

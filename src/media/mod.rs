@@ -130,12 +130,17 @@ pub trait FreeFlight: OpticalDepth {
     /// The default brackets the root of the exact optical depth; pages with a closed form
     /// override it.
     fn free_flight(&self, span: Span, depth: f64) -> Option<f64> {
-        let depth_to = |s: f64| self.optical_depth(Span::new(span.from, s)).value;
-        if depth_to(span.to) <= depth {
-            return None;
-        }
-        Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, self.at(s))))
+        free_flight_by_root(self, span, depth)
     }
+}
+
+/// The default of [`FreeFlight::free_flight`].
+fn free_flight_by_root<F: OpticalDepth + ?Sized>(field: &F, span: Span, depth: f64) -> Option<f64> {
+    let depth_to = |s: f64| field.optical_depth(Span::new(span.from, s)).value;
+    if depth_to(span.to) <= depth {
+        return None;
+    }
+    Some(roots::rising(span.from, span.to, |s| (depth_to(s) - depth, field.at(s))))
 }
 
 /// How smooth σ_t is in space.

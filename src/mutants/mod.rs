@@ -20,6 +20,7 @@ pub mod decisions;
 pub mod fault;
 pub mod flight;
 pub mod free_flight;
+pub mod lit_rod;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
@@ -45,7 +46,7 @@ use crate::estimators::{Draw, Estimated, Experiment, Setup};
 use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
-    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, Problem, Rod,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, Problem, Rod,
     SingleScattering, Slab, SpectralRod, SpectralTransmittance, Sphere, Transmittance,
     TransmittanceCurve, each_problem,
 };
@@ -152,6 +153,7 @@ mutable! {
     SpectralTransmittance: spectral::mutants();
     SpectralRod: spectral_rod::mutants();
     Rod: rod::mutants();
+    LitRod: lit_rod::mutants();
     SingleScattering: single_scattering::mutants();
     Furnace: space::in_furnace();
     Lambertian: space::under_light();

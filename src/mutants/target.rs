@@ -82,6 +82,14 @@ pub const ROD_NON_TERMINATING: Target = on("rod/magnet", 3, "non-terminating");
 pub const ROD_ADAPTIVE: Target = on("rod/magnet", 4, "adaptive");
 /// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
 pub const ROD_ROULETTE: Target = on("rod/roulette", 0, "roulette (below 0.5)");
+/// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`.
+pub const LIT_NEXT_EVENT_DELTA: Target = on("lit-rod/rising", 2, "next-event (delta shadow)");
+/// The same.
+pub const LIT_NEXT_EVENT: Target = on("lit-rod/rising", 3, "next-event (ratio shadow)");
+/// The same.
+pub const LIT_DIRECTIONAL: Target = on("lit-rod/rising", 4, "directional-mis (delta shadow)");
+/// The same.
+pub const LIT_FULL: Target = on("lit-rod/rising", 6, "full-mis (ratio shadow)");
 /// Single scattering in a homogeneous ball, light outside, exact transmittances.
 pub const SINGLE_EXACT: Target =
     on("single-scattering/magnet", 0, "source-driven (exact camera, exact shadow)");

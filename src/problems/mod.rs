@@ -5,6 +5,7 @@ pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
 pub mod lambertian;
+pub mod lit_rod;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
@@ -29,6 +30,7 @@ pub use free_flight::FreeFlight;
 pub use furnace::Furnace;
 pub use infinite_medium::InfiniteMedium;
 pub use lambertian::Lambertian;
+pub use lit_rod::LitRod;
 pub use multiple_scattering::MultipleScattering;
 pub use rod::Rod;
 pub use scene::{Albedo, Scene};
@@ -52,6 +54,7 @@ macro_rules! each_problem {
             spectral_transmittance::SpectralTransmittance,
             rod::Rod,
             spectral_rod::SpectralRod,
+            lit_rod::LitRod,
             slab::Slab,
             single_scattering::SingleScattering,
             furnace::Furnace,

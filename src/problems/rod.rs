@@ -170,7 +170,11 @@ impl Problem for Rod {
 }
 
 /// Reads a share, a number or a field; `default` where the key is absent.
-fn share(settings: &Settings, key: &'static str, default: Option<f64>) -> Option<Piecewise> {
+pub(super) fn share(
+    settings: &Settings,
+    key: &'static str,
+    default: Option<f64>,
+) -> Option<Piecewise> {
     let value = settings.entry(key).map(|entry| &entry.node.value);
     if !matches!(value, Some(Value::Table(_))) {
         // It goes on to both sides.

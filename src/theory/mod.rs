@@ -8,6 +8,7 @@ pub mod count;
 pub mod curve;
 pub mod flight;
 pub mod h_function;
+pub mod lit_rod;
 pub mod lookups;
 pub mod memo;
 pub mod mesh;

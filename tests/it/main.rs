@@ -15,6 +15,7 @@ mod fuzz_corpus;
 mod golden;
 mod judge;
 mod junit;
+mod lit_rod;
 mod lookup_law;
 mod manual;
 mod media_laws;

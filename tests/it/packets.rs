@@ -164,6 +164,19 @@ fn cases(matrix: Matrix) -> Vec<Case> {
         cases.push(case(&format!("{name}-curve"), &curve));
         if matches!(name, "constant" | "lines" | "sines" | "eq21" | "gaps") {
             cases.push(case(&format!("{name}-rod"), &rod));
+            // The emitter is in the field.
+            let medium = medium.replace("length = 30", "length = 12");
+            let lit = format!(
+                "title = \"{name}, lit\"\n[problem.lit-rod]\n{medium}\nforward = 0.7
+                albedo.piecewise-linear = {{ knots = [0, 4], values = [0.9, 0.6] }}
+                sampling.constant.value = 1.6
+                estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
+                    {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
+                    {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }}, {{ full-mis.heuristic = \"power\" }},
+                    {{ full-mis.sampling.local-majorants.segments = 5 }},
+                    {{ directional-mis.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [1.5, 2.5, 1.5] }} }}]"
+            );
+            cases.push(case(&format!("{name}-lit"), &lit));
             let roulette = format!(
                 "title = \"{name}, roulette\"\n[problem.rod]\n{medium}\nforward = 0.7\nalbedo = 0.8\norders = 1
                 sampling.constant.value = 1.6

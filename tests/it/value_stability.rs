@@ -12,8 +12,8 @@ use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
-    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, Rod, Slab, SpectralRod,
-    SpectralTransmittance, Transmittance, TransmittanceCurve,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, Rod, Slab,
+    SpectralRod, SpectralTransmittance, Transmittance, TransmittanceCurve,
 };
 
 /// Draws of each experiment.
@@ -129,6 +129,19 @@ fn rods() -> Vec<Case> {
             albedo = 0.6
             sampling.constant.value = 2.2
             estimators = [{ roulette.below = 0.5 }]",
+        ),
+        case(
+            "lit-rod",
+            "title = \"a rod with an emitter\"
+            [problem.lit-rod]
+            medium.piecewise-linear = { knots = [0, 2, 4], values = [0.3, 1.2, 0.5] }
+            span = [0, 4]
+            albedo.piecewise-linear = { knots = [0, 4], values = [0.9, 0.6] }
+            forward = 0.7
+            sampling.constant.value = 1.3
+            estimators = [
+                { unidirectional = {} }, { next-event = {} }, { directional-mis = {} }, { full-mis = {} },
+            ]",
         ),
         case(
             "slab",
@@ -296,6 +309,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
         (Rod::CATALOGUE, ["rod", "roulette"]),
+        (LitRod::CATALOGUE, ["lit-rod", "lit-rod"]),
         (Slab::CATALOGUE, ["slab", "slab"]),
         (SpectralTransmittance::CATALOGUE, ["layers", "layers"]),
         (SpectralRod::CATALOGUE, ["colours", "colours"]),

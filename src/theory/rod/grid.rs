@@ -157,6 +157,24 @@ impl<'a> Walk<'a> {
         (panel.span.length() * fastest / COARSEST).ceil().max(2.0)
     }
 
+    /// The same with steps that resolve a transmittance, too: at most a quarter of an optical depth.
+    pub fn resolving_transmittance(mut self) -> Option<Self> {
+        let mut sum = 0.0;
+        for (span, steps) in &mut self.panels {
+            let places = [0.0, 0.25, 0.5, 0.75, 1.0].map(|share| span.from + share * span.length());
+            let densest = self.rod.medium().extinctions(&places).into_iter().fold(0.0, f64::max);
+            let wanted = (4.0 * span.length() * densest).ceil().max(*steps as f64);
+            sum += wanted;
+            if sum.is_nan() || sum > MOST {
+                return None;
+            }
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
+            let wanted = wanted as usize;
+            *steps = wanted;
+        }
+        Some(self)
+    }
+
     fn at(&self, t: f64, extinction: f64) -> Step {
         let (albedo, forward) = (self.rod.albedo.value(t), self.rod.forward.value(t));
         let sampling = self.sampling.map_or(extinction, |sampling| sampling.value(t));
@@ -260,6 +278,11 @@ impl Grid {
             ..*step
         };
         Self { steps: self.steps.iter().map(absolute).collect(), raised: by, ..*self }
+    }
+
+    /// The steps, from the beginning of the support to its end.
+    pub fn steps(&self) -> &[Step] {
+        &self.steps
     }
 
     /// By what everything that leaves a step is more.

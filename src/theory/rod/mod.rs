@@ -258,7 +258,7 @@ const FAINT: f64 = 1e-9;
 
 /// Central moments in units of the truth. Higher ones that grids do not resolve, for weights that grow too
 /// steeply, are infinite, as where they diverge.
-fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
+pub(super) fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
     let m = truth.value;
     let [_, [two, e2], [three, e3], [four, e4], _] = *raw;
     let off = (e2 + 2.0 * m * truth.error) / (m * m);
@@ -278,7 +278,7 @@ fn central(truth: Known, raw: &[[f64; 2]; POWERS.len()]) -> Moments {
 }
 
 /// The rare-event size is that of `D ≤ ln(E[X⁴]/E[X²]²)`, by Jensen's inequality.
-fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
+pub(super) fn tails(raw: &[[f64; 2]; POWERS.len()]) -> Tails {
     let [_, [two, _], _, fourth, eighth] = *raw;
     let or_infinite = |[moment, error]: [f64; 2], least: f64| {
         let is_resolved = error <= RESOLVED * moment && moment >= (1.0 - RESOLVED) * least;

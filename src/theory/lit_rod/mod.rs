@@ -1,0 +1,114 @@
+//! The rod with an emitter at its end: what a camera at its beginning sees, and all that theory says of walks that
+//! look for the emitter by hits and by shadow rays.
+//!
+//! The truth is the rod's transmittance, see [`super::rod`]. Four moments of every combination of techniques, at any
+//! σ̂(x) that is a majorant, solve two-stream equations ([`moments`]); real, null and shadow lookups too.
+//!
+//! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
+//! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 4 and 5.
+
+pub mod connections;
+pub mod moments;
+pub mod techniques;
+
+use self::connections::HIGHEST;
+pub use self::techniques::{Combination, Densities, Heuristic, Shadow, Techniques};
+use super::rod::grid::Walk;
+use super::rod::moments::{Precision, romberg};
+use super::rod::{central, tails, truth};
+use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
+use crate::media::Piecewise;
+use crate::numeric::Known;
+use crate::problems::LitRod;
+
+/// What rounding may take from sums of Poisson moments, relative to the number.
+const ROUNDING: f64 = 1e-14;
+/// The same of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the error of `q^k` on [0, 1],
+/// times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
+const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
+
+/// The delta-tracking walk on a rod; `None` where it has more steps than theory can do.
+fn walk<'a>(mesh: &Mesh, problem: &'a LitRod, sampling: &'a Piecewise) -> Option<Walk<'a>> {
+    let walk = Walk::new(mesh, &problem.rod, Some(sampling), ParticleRule::Analog)?;
+    walk.resolving_transmittance()
+}
+
+/// Whether theory can cut a rod into steps.
+pub fn is_within_reach(mesh: &Mesh, problem: &LitRod, sampling: &Piecewise) -> bool {
+    walk(mesh, problem, sampling).is_some()
+}
+
+/// What walks with techniques through σ̂ are predicted to do.
+///
+/// Without `laws`, as for lines in plots, only variances and mean lookups are good.
+pub fn predict(
+    mesh: &Mesh,
+    problem: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+    laws: bool,
+) -> Prediction {
+    let answer = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
+    let answer = answer.unwrap_or(Known::new(f64::NAN, f64::NAN));
+    let found = walk(mesh, problem, sampling).and_then(|walk| {
+        let highest = if laws { HIGHEST } else { 2 };
+        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
+        let numbers = romberg(&walk, precision, &|grid| {
+            let mut numbers = moments::lookups(grid, techniques)?.to_vec();
+            numbers.extend(moments::scattered(grid, techniques, highest)?);
+            Some(numbers)
+        })?;
+        Some(Found { lookups: numbers[..4].to_vec(), scattered: numbers[4..].to_vec() })
+    });
+    let unscattered = mesh.optical_depth().exp_neg();
+    let raw = found.as_ref().map(|found| found.raw(techniques, unscattered));
+    let central = raw.as_ref().map(|raw| central(answer, raw));
+    let tails = raw.as_ref().map_or(Tails::LIGHT, tails);
+    Prediction {
+        channels: vec![Channel::unbiased(answer, central, tails)],
+        lookups: found.map(|found| found.count()),
+        ..Prediction::default()
+    }
+}
+
+/// The mean numbers of real collisions, of null collisions and of shadow lookups of a draw.
+pub fn lookups(
+    mesh: &Mesh,
+    problem: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+) -> Option<[Known; 3]> {
+    let numbers = romberg(&walk(mesh, problem, sampling)?, Precision::FULL, &|grid| {
+        Some(moments::lookups_apart(grid, techniques)?.to_vec())
+    })?;
+    Some(std::array::from_fn(|i| Known::new(numbers[i][0], numbers[i][1])))
+}
+
+/// Numbers with their errors.
+struct Found {
+    /// Factorial moments, k = 1 … 4.
+    lookups: Vec<[f64; 2]>,
+    /// `U_k⁺(0)` from k = 1 on.
+    scattered: Vec<[f64; 2]>,
+}
+
+impl Found {
+    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it was not asked for.
+    fn raw(&self, techniques: Techniques, unscattered: Known) -> [[f64; 2]; 5] {
+        std::array::from_fn(|i| {
+            let k = super::rod::moments::POWERS[i].unsigned_abs() as usize;
+            let Some([scattered, error]) = self.scattered.get(k - 1) else {
+                return [f64::INFINITY; 2];
+            };
+            let value = unscattered.value + scattered;
+            let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[i] } else { 0.0 };
+            [value, error + unscattered.error + (ROUNDING + of_weights) * value]
+        })
+    }
+
+    fn count(&self) -> CountLaw {
+        let [mean, error] = self.lookups[0];
+        let law = CountLaw::of_factorial_moments(std::array::from_fn(|k| self.lookups[k][0]));
+        CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
+    }
+}

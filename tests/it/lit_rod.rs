@@ -1,0 +1,294 @@
+//! The rod with an emitter at its end against reference values that were computed by other means, and draws of
+//! every estimator.
+
+use serde::Deserialize;
+
+use crate::common::{medium, mistakes, none, predicted, row, rows};
+use trueflight::harness::record::{Row, Verdict};
+use trueflight::media::Piecewise;
+use trueflight::problems::LitRod;
+use trueflight::theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::{Mesh, Prediction};
+
+#[derive(Deserialize)]
+struct Reference {
+    case: String,
+    what: String,
+    #[serde(rename = "L")]
+    length: f64,
+    a: f64,
+    p_f: f64,
+    majorant: f64,
+    value: Vec<f64>,
+    error: f64,
+}
+
+impl Reference {
+    fn medium(&self) -> &'static str {
+        match self.case.as_str() {
+            "HOM" => "medium.constant.extinction = 1\nspan = [0, 2]",
+            "HET-A" => {
+                "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]"
+            }
+            _ => "medium.piecewise-linear = { knots = [0, 3], values = [0.5, 1] }\nspan = [0, 3]",
+        }
+    }
+
+    fn techniques(&self) -> Techniques {
+        use Combination::{Mis, NextEvent, Unidirectional};
+        let balanced = |densities| Mis(densities, Heuristic::Balance);
+        let (shadow, combination) = match self.what.as_str() {
+            "uni" | "mean" => (None, Unidirectional),
+            "nee-ratio" => (Some(Shadow::Ratio), NextEvent),
+            "nee-delta" => (Some(Shadow::Delta), NextEvent),
+            "nee-analytic" => (Some(Shadow::Exact), NextEvent),
+            "mis-directional" => (Some(Shadow::Delta), balanced(Densities::Directional)),
+            "mis-analytic" => (Some(Shadow::Exact), balanced(Densities::Full)),
+            "mis-full" => (Some(Shadow::Ratio), balanced(Densities::Full)),
+            other => panic!("{other}"),
+        };
+        Techniques { shadow, combination }
+    }
+}
+
+fn references() -> Vec<Reference> {
+    serde_json::from_str(include_str!("../data/lit-rod.json")).expect("the reference values")
+}
+
+/// A rod of reference values, with its σ̂.
+fn rod(reference: &Reference) -> (Mesh, LitRod, Piecewise) {
+    let medium = medium(reference.medium());
+    let span = medium.span();
+    assert_eq!(span.length(), reference.length);
+    let everywhere = |value| Piecewise::constant(value, span);
+    let problem = LitRod::new(medium.clone(), &everywhere(reference.a), &everywhere(reference.p_f));
+    (Mesh::new(medium), problem, everywhere(reference.majorant))
+}
+
+fn predict(reference: &Reference, techniques: Techniques) -> Prediction {
+    let (mesh, problem, sampling) = rod(reference);
+    lit_rod::predict(&mesh, &problem, &sampling, techniques, true)
+}
+
+#[test]
+fn means_and_variances_are_those_of_the_references() {
+    let all = references();
+    assert_eq!(all.len(), 20);
+    let mut wrong = Vec::new();
+    for reference in &all {
+        let Prediction { channels, .. } = predict(reference, reference.techniques());
+        let channel = &channels[0];
+        let (found, error) = if reference.what == "mean" {
+            (channel.truth.value, channel.truth.error)
+        } else {
+            let moments = channel.moments.expect("a variance");
+            (moments.variance(), moments.error * moments.variance())
+        };
+        let off = (found - reference.value[0]).abs();
+        if off > reference.error || off > error + reference.error || error > 1e-9 {
+            let Reference { case, what, value, .. } = reference;
+            wrong.push(format!("{case}, {what}: {found} ± {error:e} against {}", value[0]));
+        }
+    }
+    none(&wrong);
+}
+
+#[test]
+fn lookups_are_those_of_the_references() {
+    for reference in references().iter().filter(|reference| reference.what != "mean") {
+        let (mesh, problem, sampling) = rod(reference);
+        let techniques = reference.techniques();
+        let found = lit_rod::lookups(&mesh, &problem, &sampling, techniques).expect("lookups");
+        let [real, null, shadow] = found.map(|known| known.value);
+        let error: f64 = found.iter().map(|known| known.error).sum();
+        let (walk, cast) = (reference.value[1], reference.value[2]);
+        assert!((real + null - walk).abs() < reference.error, "{}: {real} {null}", reference.what);
+        assert!((shadow - cast).abs() < reference.error, "{}: {shadow}", reference.what);
+        assert!(error < 1e-11, "{error:e}");
+        let all = predict(reference, techniques).lookups.expect("a law").mean;
+        assert!((all - (walk + cast)).abs() < 2.0 * reference.error);
+    }
+}
+
+#[test]
+fn a_rod_without_a_way_back_has_moments_by_hand() {
+    // a = 1, p_f = 1, σ = 1, L = τ: every path arrives, after n ~ Poisson(τ) scatterings.
+    let tau = 1.3_f64;
+    let text = format!("medium.constant.extinction = {tau}\nspan = [0, 1]");
+    let medium = medium(&text);
+    let span = medium.span();
+    let one = Piecewise::constant(1.0, span);
+    let problem = LitRod::new(medium.clone(), &one, &one);
+    let (mesh, sampling) = (Mesh::new(medium), Piecewise::constant(2.0, span));
+    let predict = |shadow, combination| {
+        let techniques = Techniques { shadow: Some(shadow), combination };
+        let found = lit_rod::predict(&mesh, &problem, &sampling, techniques, true);
+        found.channels[0].moments.expect("moments")
+    };
+    // Directions: X = 1 unscattered, else Σ alive/2 + 1/2. Exact shadows: X = Σ T_i/2 + 1/2 with depths from the end
+    // a Poisson process of rate 1 on [0, τ], S = Σ e^{−u}.
+    let (first, square) = (1.0 - (-tau).exp(), 0.5 * (1.0 - (-2.0 * tau).exp()));
+    let directional = Combination::Mis(Densities::Directional, Heuristic::Balance);
+    let unscattered = (-tau).exp();
+    let mean_square =
+        unscattered + (1.0 - unscattered) * 0.25 + 0.5 * first + 0.25 * (square + first * first);
+    let exact = predict(Shadow::Exact, directional).variance();
+    assert!((exact - (mean_square - 1.0)).abs() < 1e-12, "{exact} {}", mean_square - 1.0);
+    // Next-event: X = Σ T_i, and 1 without any scattering.
+    let alone = predict(Shadow::Exact, Combination::NextEvent).variance();
+    assert!((alone - (unscattered + square + first * first - 1.0)).abs() < 1e-12);
+}
+
+/// What of some rows does not pass, or was not asked about mean, variance and lookups.
+fn failing(rows: &[Row]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for row in rows {
+        let unasked: Vec<&str> = ["mean", "variance", "lookups"]
+            .into_iter()
+            .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
+            .collect();
+        if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
+            wrong.push(format!("{}: {}, without {unasked:?}", row.estimator, row.reason));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn power_heuristics_and_majorants_in_steps_are_predicted_as_drawn() {
+    let text = "title = \"t\"\ndraws = 4_000_000\n[problem.lit-rod]
+        medium.piecewise-constant = { breaks = [0, 1, 1.5, 2.5, 3], values = [0.4, 0, 1.5, 0.7] }
+        span = [0, 3]
+        albedo.piecewise-linear = { knots = [0, 3], values = [0.95, 0.5] }
+        forward.piecewise-linear = { knots = [0, 3], values = [0.2, 1] }
+        sampling.piecewise-constant = { breaks = [0, 1, 1.6, 3], values = [0.6, 3, 2] }
+        estimators = [{ full-mis.heuristic = \"power\" },
+            { full-mis = { shadow = \"exact\", heuristic = \"power\" } },
+            { directional-mis = { shadow = \"exact\", heuristic = \"power\" } },
+            { directional-mis = { shadow = \"ratio\" } }, { next-event.shadow = \"delta\" }, { full-mis = {} }]";
+    none(&failing(&rows(text, 400_000)));
+}
+
+#[test]
+fn draws_agree_with_the_predictions() {
+    draws_agree(400_000);
+}
+
+#[test]
+#[ignore = "long: 4e6 draws of 24 experiments, 20 s of two cores"]
+fn many_draws_agree_with_the_predictions() {
+    draws_agree(4_000_000);
+}
+
+/// Every estimator of every reference: mean, variance and lookups.
+fn draws_agree(draws: u64) {
+    let all = references();
+    let means: Vec<&Reference> = all.iter().filter(|reference| reference.what == "mean").collect();
+    assert_eq!(means.len(), 3);
+    for reference in means {
+        let text = format!(
+            "title = \"t\"\n[problem.lit-rod]\n{}\nalbedo = {}\nforward = {}
+            sampling.constant.value = {}
+            estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
+                {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
+                {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }}, {{ full-mis.heuristic = \"power\" }}]",
+            reference.medium(), reference.a, reference.p_f, reference.majorant
+        );
+        let rows = rows(&text, draws);
+        assert_eq!(rows.len(), 8);
+        none(&failing(&rows));
+    }
+}
+
+#[test]
+fn an_estimator_is_best_per_draw_and_another_per_lookup() {
+    let text = "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]
+        albedo = 0.9\nforward = 0.75\nsampling.constant.value = 1.6
+        estimators = [{ unidirectional = {} }, { full-mis = {} }]";
+    let rows = predicted(text);
+    let of = |name| row(&rows, name);
+    let (hits, full) = (of("unidirectional"), of("full-mis"));
+    assert!(full.predicted_variance < hits.predicted_variance);
+    assert!(full.predicted_fom < hits.predicted_fom);
+    assert!((full.truth.expect("known") - 0.559_870_166_610_538_9).abs() < 1e-12);
+}
+
+#[test]
+fn extreme_rods_are_predicted_or_refused() {
+    let (mut predictions, mut wrong) = (0, Vec::new());
+    for depth in [1e-9, 1e-3, 1.0, 80.0] {
+        for (albedo, forward) in [(0.0, 0.5), (1.0, 0.0), (1.0, 1.0), (0.5, 0.5), (0.999, 0.01)] {
+            for factor in [1.0, 1.001, 20.0] {
+                let text = format!(
+                    "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
+                    albedo = {albedo}\nforward = {forward}\nsampling.constant.value = {:e}
+                    estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
+                        {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
+                        {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }},
+                        {{ full-mis.heuristic = \"power\" }}]",
+                    depth * factor
+                );
+                for row in predicted(&text) {
+                    let place = format!(
+                        "{}: τ = {depth}, a = {albedo}, p_f = {forward}, {factor}",
+                        row.estimator
+                    );
+                    if row.verdict == Some(Verdict::Refused) {
+                        wrong.extend((row.reason.len() < 10).then_some(place));
+                        continue;
+                    }
+                    predictions += 1;
+                    let truth = row.truth.unwrap_or(f64::NAN);
+                    let variance = row.predicted_variance.unwrap_or(0.0);
+                    let lookups = row.predicted_lookups.unwrap_or(f64::NAN);
+                    let is_fine = truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups >= 0.0;
+                    if !is_fine || (row.estimator == "unidirectional" && variance > 0.25 + 1e-12) {
+                        wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
+                    }
+                }
+            }
+        }
+    }
+    none(&wrong);
+    assert!(predictions > 400, "only {predictions}");
+}
+
+fn rod_of(medium: &str, sampling: f64) -> String {
+    format!(
+        "title = \"t\"\n[problem.lit-rod]\n{medium}\nalbedo = 0.5\nsampling.constant.value = {sampling}
+        estimators = [{{ full-mis = {{}} }}]"
+    )
+}
+
+#[test]
+fn an_emitter_in_or_behind_a_vacuum_is_one_mistake() {
+    let said = |medium: &str| {
+        let error = mistakes(&rod_of(medium, 1.0)).expect("a mistake").render(false);
+        assert_eq!(error.matches("error").count(), 1, "{error}");
+        error
+    };
+    let inside =
+        "volume.constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+        ray = { origin = [0, 0, -1], direction = [0, 0, 1], length = 3 }";
+    assert!(
+        said(inside).contains("the emitter, at 3, is in a vacuum: the field ends at 2.000000"),
+        "{}",
+        said(inside)
+    );
+    let behind = "medium.constant.extinction = 0\nspan = [0, 1]";
+    assert!(said(behind).contains("the emitter is behind a vacuum"), "{}", said(behind));
+    let fits = inside.replace("length = 3", "length = 2");
+    assert!(mistakes(&rod_of(&fits, 1.0)).is_none());
+}
+
+#[test]
+fn a_majorant_that_is_none_is_refused() {
+    let text = rod_of("medium.constant.extinction = 1\nspan = [0, 1]", 0.8);
+    let rows = predicted(&text);
+    assert_eq!(rows[0].verdict, Some(Verdict::Refused));
+    assert!(rows[0].reason.contains("needs 0 ≤ σ_t ≤ σ̂, but σ̂ = 0.8"), "{}", rows[0].reason);
+    let unknown = "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]
+        albedo = 0.5\nsampling.constant.value = 1\nestimators = [{ full-mis.shadow = \"delta\" }]";
+    let said = mistakes(unknown).expect("a mistake").render(false);
+    assert!(said.contains("one of `ratio`, `exact`"), "{said}");
+}
