@@ -20,7 +20,7 @@ pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
     let of = |name, bug, target, check, page: Page, wrong| {
         Mutant::new(About { name, bug, target, check }, with(Wrong { page, bug: wrong }, draw), with(page, draw))
     };
-    let full = Page { combination: Combination::Full(Heuristic::Balance), is_tracked: false };
+    let full = Page { combination: Combination::Full(Heuristic::Balance), is_tracked: false, is_shared: false };
     let tracked = Page { is_tracked: true, ..full };
     let directional = Page { combination: Combination::Directional(Heuristic::Balance), ..full };
     let technique = Page { combination: Combination::Technique(2), ..full };
@@ -86,6 +86,10 @@ impl Steps for Wrong {
 
     fn is_tracked(&self) -> bool {
         self.page.is_tracked
+    }
+
+    fn is_shared(&self) -> bool {
+        self.page.is_shared
     }
 
     fn begin(&self, rng: &mut Stream, beginning: &Stream) {

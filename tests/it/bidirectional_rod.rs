@@ -33,7 +33,7 @@ fn scene(sensor: &str, order: usize) -> Scene {
 }
 
 fn predicted(scene: &Scene, combination: Combination, connection: Connection) -> Prediction {
-    predict(scene, &Rules { combination, connection }, None, true)
+    predict(scene, &Rules { combination, connection, is_shared: false }, None, true)
 }
 
 const FULL: Combination = Combination::Full(Heuristic::Balance);
@@ -223,6 +223,36 @@ fn draws_meet_means_variances_covariances_and_lookups() {
         let asked = |check: &str| found.iter().flat_map(|r| &r.findings).any(|f| f.check == check);
         assert!(asked("lookups") && asked("covariance"));
         none(&wrong);
+    }
+}
+
+#[test]
+fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
+    let estimators = "{ full-mis = {} }, { full-mis.subpaths = \"shared\" },
+        { directional-mis = { subpaths = \"shared\", connection = \"ratio\" } }";
+    for sensor in ["transmitted", "reflected"] {
+        let found = rows(&rod(sensor, 3, 1, estimators), 300_000);
+        let of = |name: &str| found.iter().filter(|row| row.estimator == name).collect::<Vec<_>>();
+        let alone = of("full-mis (exact connection)");
+        let shared = of("full-mis (exact connection, shared subpaths)");
+        assert_eq!(alone.len(), shared.len());
+        for (alone, shared) in alone.iter().zip(&shared) {
+            let is_sum = shared.channel == "sum";
+            assert_eq!(alone.truth, shared.truth);
+            assert_eq!(shared.predicted_variance.is_none(), is_sum);
+            let asked = |check: &str| shared.findings.iter().any(|f| f.check == check);
+            assert!(asked("mean") && !asked("covariance") && asked("variance") != is_sum);
+        }
+        // Two walks, not two for each of the techniques.
+        assert!(shared[0].lookups_per_draw < alone[0].lookups_per_draw);
+        let wrong = found
+            .iter()
+            .filter(|row| matches!(row.verdict, Some(Verdict::Fail | Verdict::Refused) | None));
+        none(
+            &wrong
+                .map(|row| format!("{} {}: {}", row.estimator, row.channel, row.reason))
+                .collect::<Vec<_>>(),
+        );
     }
 }
 

@@ -8,11 +8,15 @@
 //! |---|---|---|
 //! | `heuristic` | `"balance"`: β = 1, `"power"`: β = 2 | `"balance"` |
 //! | `connection` | `"exact"`: `T̂ⱼ = exp(−∫σ_t)` of every segment, no lookups; `"ratio"`: the null-scattering path, `T̂ⱼ = ∏ (1 − σ_t/σ̂)` over the null vertices of every segment | `"exact"` |
+//! | `subpaths` | `"independent"`: each technique has two of its own; `"shared"`: one walk from the light and one from the sensor serve all techniques and orders | `"independent"` |
 //!
 //! On a segment that one technique tracks by ratio and another by delta tracking the densities of the null
 //! vertices are in the ratio `p_rt/p_dt = ∏ σ̂/(σ̂ − σ_t) = 1/T̂ⱼ`: no optical depth is needed. By the
 //! balance heuristic all techniques score the same function of the path, `1/Σⱼ cⱼ⁻¹ ≤ 1/2`. Unbiased for `σ̂ ≥ σ_t`;
 //! with `"ratio"`, `σ_t/σ̂` must be one number, for theory.
+//!
+//! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
+//! and nobody knows the variance of their sum: pilot draws stand in for it.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
 

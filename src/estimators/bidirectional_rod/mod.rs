@@ -2,6 +2,7 @@
 
 pub mod directional_mis;
 pub mod full_mis;
+pub mod subpath;
 pub mod technique;
 pub mod walk;
 
@@ -20,6 +21,8 @@ pub struct Page {
     pub combination: Combination,
     /// Whether connections are tracked.
     pub is_tracked: bool,
+    /// Whether all techniques share their subpaths.
+    pub is_shared: bool,
 }
 
 impl Steps for Page {
@@ -31,6 +34,11 @@ impl Steps for Page {
     #[inline(always)]
     fn is_tracked(&self) -> bool {
         self.is_tracked
+    }
+
+    #[inline(always)]
+    fn is_shared(&self) -> bool {
+        self.is_shared
     }
 }
 
@@ -53,7 +61,17 @@ impl Page {
     ) -> Option<Self> {
         let combination = combination(settings);
         let connection = settings.word_or("connection", &["exact", "ratio"], "exact");
-        Some(Self { combination: combination?, is_tracked: connection? == "ratio" })
+        let is_alone = matches!(combination, Some(Combination::Technique(_)));
+        let subpaths = if is_alone {
+            Some("independent")
+        } else {
+            settings.word_or("subpaths", &["independent", "shared"], "independent")
+        };
+        Some(Self {
+            combination: combination?,
+            is_tracked: connection? == "ratio",
+            is_shared: subpaths? == "shared",
+        })
     }
 
     /// In words, as in `power, ratio connection`.
@@ -66,7 +84,8 @@ impl Page {
             _ => String::new(),
         };
         let connection = if self.is_tracked { "ratio" } else { "exact" };
-        format!("{first}{connection} connection")
+        let subpaths = if self.is_shared { ", shared subpaths" } else { "" };
+        format!("{first}{connection} connection{subpaths}")
     }
 
     fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
@@ -112,7 +131,7 @@ impl Page {
         // Elsewhere it is refused, and forced draws have no prediction.
         let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
-        let rules = Rules { combination: self.combination, connection };
+        let rules = Rules { combination: self.combination, connection, is_shared: self.is_shared };
         bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
     }
 }

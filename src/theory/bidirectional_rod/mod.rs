@@ -19,9 +19,10 @@
 //! β = 1 is the balance heuristic, β = 2 the power heuristic. Everything depends on the medium by its optical
 //! depth only, as long as connections are exact or `σ_t/σ̂` is one number.
 //!
-//! A draw has an independent path for each technique, so that moments of sums follow from those of the
-//! techniques. Renderers connect every vertex of one light subpath with every vertex of one camera subpath; the
-//! covariances of techniques that share vertices are not known.
+//! Where a draw has an independent path for each technique, moments of sums follow from those of the techniques.
+//! Renderers connect every vertex of one light subpath with every vertex of one camera subpath: the contribution of
+//! a technique then has the same law, but the covariances of techniques that share vertices are not known, nor is the
+//! variance of their sum. As `0 ≤ X_s ≤ 1` its tails are light, and that of pilot draws stands in.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH
 //! 1995; B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*,
@@ -192,6 +193,8 @@ pub struct Rules {
     pub combination: Combination,
     /// How their connections are made.
     pub connection: Connection,
+    /// Whether all techniques share one walk from the light and one from the sensor.
+    pub is_shared: bool,
 }
 
 /// `E[X_s^k]` of every technique that is drawn, order by order.

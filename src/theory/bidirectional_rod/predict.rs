@@ -40,7 +40,8 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
     if channels.len() > 1 {
         let variances: Vec<f64> = channels.iter().map(variance).collect();
         // Independent paths: neighbours do not vary together.
-        covariances.extend((1..channels.len()).map(|i| Covariance {
+        let neighbours = if rules.is_shared { 0 } else { channels.len() };
+        covariances.extend((1..neighbours).map(|i| Covariance {
             pair: [i - 1, i],
             value: 0.0,
             variance: variances[i - 1] * variances[i],
@@ -51,7 +52,7 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
         let sum = channel(scene.depth, order, [&whole[0], &whole[1]], is_certain);
         let last = channels.len() - 1;
         // (X − C)(Σ − T) = Y(Y + Z) with independent Y and Z of mean 0.
-        if let Some(moments) = channels[last].moments {
+        if let Some(moments) = channels[last].moments.filter(|_| !rules.is_shared) {
             let square = variances[last] * variances[last];
             let fourth = moments.relative[2] * moments.scale.powi(4);
             let others = variance(&sum) - variances[last];
@@ -59,9 +60,12 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
             let value = variances[last];
             covariances.push(Covariance { pair: [last, last + 1], value, variance });
         }
-        channels.push(Channel { name: "sum".into(), ..sum });
+        let moments = sum.moments.filter(|_| !rules.is_shared);
+        channels.push(Channel { name: "sum".into(), moments, by_pilots: rules.is_shared, ..sum });
     }
-    let lookups = ratio.map(|ratio| lookups(scene, rules, ratio));
+    // Those of shared subpaths and of the connections between them vary together.
+    let is_known = !rules.is_shared || rules.connection == Connection::Exact;
+    let lookups = ratio.filter(|_| is_known).map(|ratio| lookups(scene, rules, ratio));
     Prediction { channels, lookups, covariances, ..Prediction::default() }
 }
 
@@ -149,6 +153,11 @@ fn lookups(scene: &Scene, rules: &Rules, ratio: f64) -> CountLaw {
             .orders
             .clone()
             .flat_map(|order| rules.combination.techniques(order).map(move |s| (order, s)));
+        if rules.is_shared {
+            let order = *scene.orders.end();
+            let walk = of_technique(&walks, order, 0);
+            return added(walk, walk);
+        }
         paths.fold([1.0, 0.0, 0.0, 0.0, 0.0], |sum, (order, s)| {
             added(sum, of_technique(&walks, order, s))
         })
