@@ -24,6 +24,10 @@ use crate::problems::{Problem, SingleScattering};
 use crate::rng::{LANES, PACKS};
 use crate::theory::single::{CameraTracking, Tracking};
 
+/// So many lanes of a pack cast their shadow rays together: to find where they lead costs more than a step. While
+/// fewer wait for it, others are on their way.
+const TOGETHER: u32 = 4;
+
 /// A technique.
 #[derive(Clone, Copy)]
 pub enum Kind {
@@ -191,6 +195,9 @@ struct Pack<S: Simd, P> {
     inside: mask64x8<S>,
     /// Who was on a shadow ray in this step.
     casts: mask64x8<S>,
+    /// Who is to cast a shadow ray, and from which distance.
+    aiming: mask64x8<S>,
+    from: f64x8<S>,
 }
 
 impl<S: Simd, P: Page<S>> Pack<S, P> {
@@ -200,14 +207,27 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         page.begin(&mut numbers, !none);
         let (sums, shadows) = (Sums { value: zero, lookups: zero }, Shadows::new(simd));
         let (origin, place) = ([zero; 3], [zero; 3]);
-        Self { page, numbers, slots, sums, shadows, origin, place, inside: none, casts: none }
+        let (inside, casts, aiming) = (none, none, none);
+        Self {
+            page,
+            numbers,
+            slots,
+            sums,
+            shadows,
+            origin,
+            place,
+            inside,
+            casts,
+            aiming,
+            from: zero,
+        }
     }
 
     /// All fly on; answers where they are on the ray, and writes where they are on their shadow rays.
     #[inline(always)]
     fn fly(&mut self, rays: &ShadowRays, number: usize, points: &mut [[f64; PAIR]; 3]) -> f64x8<S> {
         self.casts = self.shadows.on;
-        let flies = self.page.flies() & !self.casts;
+        let flies = self.page.flies() & !(self.casts | self.aiming);
         let depth = match (flies | self.casts).to_bitmask() {
             0 => self.sums.value.each(0.0),
             0xff => -self.numbers.ln_uniform(),
@@ -231,16 +251,21 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         (extinction, on_shadow): (f64x8<S>, f64x8<S>),
     ) {
         let (numbers, one) = (&mut self.numbers, extinction.each(1.0));
-        let (casts, from) = self.page.collide(numbers, !self.casts, extinction, &mut self.sums);
-        let nobody = casts & !casts;
+        let held = self.casts | self.aiming;
+        let (aims, from) = self.page.collide(numbers, !held, extinction, &mut self.sums);
+        let nobody = aims & !aims;
         let mut found: Found<S> = (nobody, one);
         if self.casts.to_bitmask() != 0 {
             let inside = self.casts & self.inside;
             self.sums.lookups = Lane::select(inside, self.sums.lookups + 1.0, self.sums.lookups);
             found = self.shadows.collide(rays, numbers, (self.place, inside), on_shadow);
         }
-        if casts.to_bitmask() != 0 {
-            let (origin, direction, distance) = world.setup.problem.to_light(from);
+        self.from = Lane::select(aims, from, self.from);
+        self.aiming |= aims;
+        if self.aiming.to_bitmask().count_ones() >= TOGETHER {
+            let casts = self.aiming;
+            self.aiming = nobody;
+            let (origin, direction, distance) = world.setup.problem.to_light(self.from);
             for (to, from) in self.origin.iter_mut().zip(origin) {
                 *to = Lane::select(casts, from, *to);
             }

@@ -102,6 +102,7 @@ impl<S: Simd> Page<S> for Shared<'_, S> {
         sums: &mut Sums<S>,
     ) -> (mask64x8<S>, f64x8<S>) {
         let (zero, one) = (extinction.each(0.0), extinction.each(1.0));
+        let active = active & self.walk.on;
         let (is_point, is_collision) = (active & self.is_point, active & self.is_collision);
         add_where(&mut sums.lookups, is_point | is_collision, one);
         let (world, s) = (&self.world, self.ahead[0]);
