@@ -261,7 +261,8 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let mut ends = Ends::default();
-        for (row, ratio) in ends.ratios.iter_mut().zip(&self.ratios) {
+        let count = self.setup.channels.len();
+        for (row, ratio) in ends.ratios.iter_mut().zip(&self.ratios[..count]) {
             ratio.store_slice(row);
         }
         self.hero.store_slice(&mut ends.hero);
@@ -273,7 +274,8 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
     fn restart(&mut self, numbers: &mut Numbers<S>) {
         let (alive, one) = (self.alive, self.from.each(1.0));
         self.way = Lane::select(alive, self.way, self.from);
-        for ratio in &mut self.ratios {
+        let count = self.setup.channels.len();
+        for ratio in &mut self.ratios[..count] {
             *ratio = Lane::select(alive, *ratio, one);
         }
         self.choose(!alive, numbers);
