@@ -12,7 +12,8 @@ use crate::estimators::bidirectional_rod::Page;
 use crate::estimators::bidirectional_rod::walk::{Path, Steps, draw};
 use crate::problems::BidirectionalRod;
 use crate::rng::Stream;
-use crate::theory::bidirectional_rod::{Combination, Heuristic, quotient};
+use crate::theory::Heuristic;
+use crate::theory::bidirectional_rod::{Combination, quotient};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

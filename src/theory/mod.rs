@@ -8,6 +8,7 @@ pub mod count;
 pub mod curve;
 pub mod flight;
 pub mod h_function;
+pub mod heuristic;
 pub mod lit_rod;
 pub mod lookups;
 pub mod memo;
@@ -29,6 +30,7 @@ pub mod sphere;
 pub mod volterra;
 
 pub use count::CountLaw;
+pub use heuristic::Heuristic;
 pub use mesh::Mesh;
 pub use moments::Moments;
 pub use particle::{Odds, ParticleRule};

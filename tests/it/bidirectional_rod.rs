@@ -6,10 +6,9 @@ use serde::Deserialize;
 use trueflight::harness::Plan;
 use trueflight::harness::record::Verdict;
 use trueflight::numeric::Known;
+use trueflight::theory::Heuristic;
 use trueflight::theory::Prediction;
-use trueflight::theory::bidirectional_rod::{
-    Combination, Connection, Heuristic, Rules, Scene, predict,
-};
+use trueflight::theory::bidirectional_rod::{Combination, Connection, Rules, Scene, predict};
 
 #[derive(Deserialize)]
 struct Reference {

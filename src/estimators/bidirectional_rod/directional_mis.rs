@@ -19,8 +19,9 @@
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
 
-use super::{Page, pages, read_heuristic};
+use super::{Page, pages};
 use crate::catalogue::Settings;
+use crate::theory::Heuristic;
 use crate::theory::bidirectional_rod::Combination;
 
 /// Directional weights; σ̂ is its input.
@@ -29,7 +30,7 @@ pub struct DirectionalMis(Page);
 
 impl DirectionalMis {
     fn combination(settings: &Settings) -> Option<Combination> {
-        read_heuristic(settings).map(Combination::Directional)
+        Heuristic::read(settings).map(Combination::Directional)
     }
 }
 

@@ -20,8 +20,9 @@
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
 
-use super::{Page, pages, read_heuristic};
+use super::{Page, pages};
 use crate::catalogue::Settings;
+use crate::theory::Heuristic;
 use crate::theory::bidirectional_rod::Combination;
 
 /// Weights by whole paths; σ̂ is its input.
@@ -30,7 +31,7 @@ pub struct FullMis(Page);
 
 impl FullMis {
     fn combination(settings: &Settings) -> Option<Combination> {
-        read_heuristic(settings).map(Combination::Full)
+        Heuristic::read(settings).map(Combination::Full)
     }
 }
 

@@ -11,8 +11,9 @@ use crate::catalogue::{Settings, rounded};
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::BidirectionalRod;
 use crate::problems::bidirectional_rod::Sensor;
+use crate::theory::Heuristic;
 use crate::theory::Prediction;
-use crate::theory::bidirectional_rod::{self, Combination, Connection, Heuristic, Rules, Scene};
+use crate::theory::bidirectional_rod::{self, Combination, Connection, Rules, Scene};
 
 /// What the settings of a page say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -48,11 +49,6 @@ const LONGEST: f64 = 12.0;
 const MOST_TRACKED: f64 = 500.0;
 /// Ratios that differ by less are one number.
 const SAME: f64 = 1e-12;
-
-fn read_heuristic(settings: &Settings) -> Option<Heuristic> {
-    let word = settings.word_or("heuristic", &["balance", "power"], "balance")?;
-    Some(if word == "power" { Heuristic::Power } else { Heuristic::Balance })
-}
 
 impl Page {
     fn read(

@@ -22,7 +22,7 @@
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
 
-use super::{label, read_heuristic, read_shadow, walks};
+use super::{label, read_shadow, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
 use crate::problems::LitRod;
@@ -45,7 +45,7 @@ impl DirectionalMis {
 impl Estimator<LitRod> for DirectionalMis {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "delta");
-        let heuristic = read_heuristic(settings);
+        let heuristic = Heuristic::read(settings);
         Some(Self { shadow: shadow?, heuristic: heuristic? })
     }
 

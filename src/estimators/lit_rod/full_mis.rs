@@ -22,7 +22,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
 
-use super::{label, read_heuristic, read_shadow, walks};
+use super::{label, read_shadow, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
 use crate::problems::LitRod;
@@ -45,7 +45,7 @@ impl FullMis {
 impl Estimator<LitRod> for FullMis {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["ratio", "exact"], "ratio");
-        let heuristic = read_heuristic(settings);
+        let heuristic = Heuristic::read(settings);
         Some(Self { shadow: shadow?, heuristic: heuristic? })
     }
 

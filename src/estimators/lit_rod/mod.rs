@@ -39,12 +39,6 @@ fn read_shadow(
     })
 }
 
-/// Reads `heuristic`.
-fn read_heuristic(settings: &Settings) -> Option<Heuristic> {
-    let word = settings.word_or("heuristic", &["balance", "power"], "balance");
-    word.map(|word| if word == "power" { Heuristic::Power } else { Heuristic::Balance })
-}
-
 /// Settings in words, as in `ratio shadow, power heuristic`.
 fn label(shadow: Shadow, heuristic: Heuristic) -> String {
     let shadow = match shadow {

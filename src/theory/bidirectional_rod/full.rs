@@ -9,7 +9,8 @@
 //! integral over z is the trapezoidal rule in ln z, whose error falls as `e^{−π²/h}`.
 
 use super::grid::{Grid, Operator};
-use super::{Connection, HIGHEST, Heuristic, Powers, Scene};
+use super::{Connection, HIGHEST, Powers, Scene};
+use crate::theory::Heuristic;
 
 /// Where the integral over ln z begins and ends.
 const RANGE: [f64; 2] = [-52.0, 3.5];

@@ -38,6 +38,7 @@ use std::ops::RangeInclusive;
 
 use self::grid::Grid;
 use crate::numeric::Known;
+use crate::theory::Heuristic;
 
 pub use predict::predict;
 
@@ -115,22 +116,7 @@ impl Connection {
     }
 }
 
-/// How techniques that could have made the same path share it.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heuristic {
-    /// In proportion to their densities.
-    Balance,
-    /// In proportion to the squares of their densities.
-    Power,
-}
-
 impl Heuristic {
-    /// A density to the power of β.
-    #[inline(always)]
-    fn raised(self, density: f64) -> f64 {
-        if self == Self::Power { density * density } else { density }
-    }
-
     /// The share of technique s in a path of r scatterings, by `f/p` of each technique.
     #[inline(always)]
     pub fn share(self, s: usize, order: usize, quotient: impl Fn(usize) -> f64) -> f64 {

@@ -26,8 +26,9 @@
 //! Source: derived; the polynomial is that of H. Cohen, F. Rodriguez Villegas, D. Zagier, *Convergence
 //! Acceleration of Alternating Series*, Experimental Mathematics 9 (2000), algorithm 1.
 
-use super::techniques::{Combination, Densities, Heuristic, Shadow, Techniques};
+use super::techniques::{Combination, Densities, Shadow, Techniques};
 use crate::numeric::sum::Sum;
+use crate::theory::Heuristic;
 use crate::theory::rod::grid::{Grid, Step};
 
 /// The highest power whose mean is found.

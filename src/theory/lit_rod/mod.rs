@@ -12,7 +12,8 @@ pub mod moments;
 pub mod techniques;
 
 use self::connections::HIGHEST;
-pub use self::techniques::{Combination, Densities, Heuristic, Shadow, Techniques};
+pub use self::techniques::{Combination, Densities, Shadow, Techniques};
+pub use super::Heuristic;
 use super::rod::grid::Walk;
 use super::rod::moments::{Precision, romberg};
 use super::rod::{central, tails, truth};

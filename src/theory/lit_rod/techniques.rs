@@ -28,6 +28,7 @@
 //! ACM Transactions on Graphics 38 (2019), section 5.3 and Algorithm 2.
 
 use crate::numeric::Lane;
+use crate::theory::Heuristic;
 
 /// How the transmittance of a shadow ray is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -38,15 +39,6 @@ pub enum Shadow {
     Delta,
     /// Ratio tracking: `Π (1 − r)`.
     Ratio,
-}
-
-/// How pdfs become weights.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Heuristic {
-    /// `p_i/Σ p`.
-    Balance,
-    /// `p_i²/Σ p²`.
-    Power,
 }
 
 /// Which part of a path's pdf a weight knows.
@@ -103,10 +95,9 @@ impl Techniques {
         match self.combination {
             Combination::Unidirectional => ratio.each(1.0),
             Combination::NextEvent => ratio.each(0.0),
-            Combination::Mis(_, Heuristic::Balance) => ratio / (ratio + 1.0),
-            Combination::Mis(_, Heuristic::Power) => {
-                let square = ratio * ratio;
-                square / (square + 1.0)
+            Combination::Mis(_, heuristic) => {
+                let raised = heuristic.raised(ratio);
+                raised / (raised + 1.0)
             }
         }
     }
@@ -119,8 +110,7 @@ impl Techniques {
         match self.combination {
             Combination::Unidirectional => found.each(0.0),
             Combination::NextEvent => found,
-            Combination::Mis(_, Heuristic::Balance) => found / (ratio + 1.0),
-            Combination::Mis(_, Heuristic::Power) => found / (ratio * ratio + 1.0),
+            Combination::Mis(_, heuristic) => found / (heuristic.raised(ratio) + 1.0),
         }
     }
 }
