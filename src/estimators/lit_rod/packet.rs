@@ -8,14 +8,14 @@
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::transmittance;
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slots};
+use crate::estimators::packet::bank::{Numbers, Particles, Slots};
+use crate::estimators::packet::{Request, line};
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::media::Lookups;
-use crate::media::course::{BothWays, Even, Pieces};
+use crate::media::course::BothWays;
 use crate::numeric::Lane;
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::WIDTH;
 use crate::problems::LitRod;
 use crate::theory::ParticleRule;
 use crate::theory::lit_rod::{Shadow, Techniques};
@@ -33,38 +33,28 @@ pub fn walks<'a>(
     if setup.sampling.even().is_none() && !medium.is_costly() {
         return Some(request);
     }
-    let task = Walks { setup, techniques, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    line::walks(level, &Walks { setup, techniques }, &setup.sampling, medium, request)
 }
 
-struct Walks<'a, 'r> {
+struct Walks<'a> {
     setup: &'a Setup<LitRod>,
     techniques: Techniques,
-    medium: &'a Lookups<'a>,
-    request: Request<'r>,
 }
 
-impl Task for Walks<'_, '_> {
-    type Output = ();
+impl<'a> line::Walks for Walks<'a> {
+    type Pack<S: Simd, C: BothWays<S> + Copy> = InLitRod<'a, S, C>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let sampling = &self.setup.sampling;
-        match sampling.even() {
-            Some(even) => self.through(simd, Even::new(simd, even)),
-            None => self.through(simd, Pieces::new(simd, sampling)),
-        }
-    }
-}
-
-impl Walks<'_, '_> {
-    #[inline(always)]
-    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
-        let Self { setup, techniques, medium, request } = self;
-        let from = f64x8::splat(simd, setup.sampling.begin().t);
+    fn begin<S: Simd, C: BothWays<S> + Copy>(
+        &self,
+        course: C,
+        from: f64x8<S>,
+        _: &mut Numbers<S>,
+    ) -> Self::Pack<S, C> {
+        let Self { setup, techniques } = *self;
         let (zero, one) = (from.each(0.0), from.each(1.0));
-        let all = mask64x8::splat(simd, true);
-        let fresh = InLitRod {
+        let all = mask64x8::splat(from.token(), true);
+        InLitRod {
             setup,
             techniques,
             from,
@@ -82,15 +72,7 @@ impl Walks<'_, '_> {
             found: one,
             score: zero,
             lookups: zero,
-        };
-        bank::run(
-            simd,
-            #[inline(always)]
-            |_| fresh,
-            #[inline(always)]
-            |places| bank::extinctions(simd, medium, places),
-            request,
-        );
+        }
     }
 }
 

@@ -7,16 +7,16 @@
 //! A step has no branches: who is scattered, turns round or ends is a mask. Numbers that only some need are
 //! drawn for all; the streams of the others stay where they were.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::Fate;
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
-use crate::estimators::packet::{Request, pays};
+use crate::estimators::packet::bank::{Numbers, Particles, Slot, Slots};
+use crate::estimators::packet::{Request, line};
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::course::{BothWays, Even, Pieces};
-use crate::media::{Control, Lookups};
+use crate::media::Lookups;
+use crate::media::course::BothWays;
 use crate::numeric::Lane;
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::WIDTH;
 use crate::problems::Rod;
 use crate::problems::rod::{MOST_PARTS, Quantity};
 use crate::theory::ParticleRule;
@@ -30,43 +30,30 @@ pub fn walks<'a>(
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays(medium, &setup.sampling, &Control::None) {
-        return Some(request);
-    }
-    let task = Walks { setup, rule, roulette, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    let walks = Walks { rod: &setup.problem, rule, roulette };
+    line::walks(level, &walks, &setup.sampling, medium, request)
 }
 
-struct Walks<'a, 'r> {
-    setup: &'a Setup<Rod>,
+struct Walks<'a> {
+    rod: &'a Rod,
     rule: ParticleRule,
     roulette: Option<f64>,
-    medium: &'a Lookups<'a>,
-    request: Request<'r>,
 }
 
-impl Task for Walks<'_, '_> {
-    type Output = ();
+impl<'a> line::Walks for Walks<'a> {
+    type Pack<S: Simd, C: BothWays<S> + Copy> = InRod<'a, S, C>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let sampling = &self.setup.sampling;
-        match sampling.even() {
-            Some(even) => self.through(simd, Even::new(simd, even)),
-            None => self.through(simd, Pieces::new(simd, sampling)),
-        }
-    }
-}
-
-impl Walks<'_, '_> {
-    #[inline(always)]
-    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
-        let Self { setup, rule, roulette, medium, request } = self;
-        let rod = &*setup.problem;
-        let from = f64x8::splat(simd, setup.sampling.begin().t);
+    fn begin<S: Simd, C: BothWays<S> + Copy>(
+        &self,
+        course: C,
+        from: f64x8<S>,
+        _: &mut Numbers<S>,
+    ) -> Self::Pack<S, C> {
+        let Self { rod, rule, roulette } = *self;
         let (zero, one) = (from.each(0.0), from.each(1.0));
-        let all = mask64x8::splat(simd, true);
-        let fresh = InRod {
+        let all = mask64x8::splat(from.token(), true);
+        InRod {
             rod,
             rule,
             roulette,
@@ -82,15 +69,7 @@ impl Walks<'_, '_> {
             order: zero,
             absorbed: zero,
             flux: [zero; MOST_PARTS],
-        };
-        bank::run(
-            simd,
-            #[inline(always)]
-            |_| fresh,
-            #[inline(always)]
-            |places| bank::extinctions(simd, medium, places),
-            request,
-        );
+        }
     }
 }
 

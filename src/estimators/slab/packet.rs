@@ -8,16 +8,16 @@
 
 use std::f64::consts::TAU;
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::turned;
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
-use crate::estimators::packet::{Request, pays};
+use crate::estimators::packet::bank::{Numbers, Particles, Slot, Slots};
+use crate::estimators::packet::{Request, line};
 use crate::estimators::{DrawBuffer, Setup};
-use crate::media::course::{BothWays, Even, Pieces};
-use crate::media::{Control, Lookups};
+use crate::media::Lookups;
+use crate::media::course::BothWays;
 use crate::numeric::Lane;
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::WIDTH;
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
 use crate::problems::Slab;
@@ -33,59 +33,39 @@ pub fn walks<'a>(
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    if !pays(medium, &setup.sampling, &Control::None) {
-        return Some(request);
-    }
-    let task = Walks { setup, rule, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    let walks = Walks { slab: &setup.problem, rule };
+    line::walks(level, &walks, &setup.sampling, medium, request)
 }
 
-struct Walks<'a, 'r> {
-    setup: &'a Setup<Slab>,
+struct Walks<'a> {
+    slab: &'a Slab,
     rule: ParticleRule,
-    medium: &'a Lookups<'a>,
-    request: Request<'r>,
 }
 
-impl Task for Walks<'_, '_> {
-    type Output = ();
+impl<'a> line::Walks for Walks<'a> {
+    type Pack<S: Simd, C: BothWays<S> + Copy> = InSlab<'a, S, C>;
 
     #[inline(always)]
-    fn run<S: Simd>(self, simd: S) {
-        let sampling = &self.setup.sampling;
-        match sampling.even() {
-            Some(even) => self.through(simd, Even::new(simd, even)),
-            None => self.through(simd, Pieces::new(simd, sampling)),
+    fn begin<S: Simd, C: BothWays<S> + Copy>(
+        &self,
+        course: C,
+        from: f64x8<S>,
+        numbers: &mut Numbers<S>,
+    ) -> Self::Pack<S, C> {
+        let all = mask64x8::splat(from.token(), true);
+        let one = from.each(1.0);
+        InSlab {
+            slab: self.slab,
+            rule: self.rule,
+            from,
+            course,
+            number: from,
+            inside: all,
+            is_down: all,
+            goes_on: all,
+            weight: one,
+            cosine: entering(self.slab.incidence.light, numbers, all, one),
         }
-    }
-}
-
-impl Walks<'_, '_> {
-    #[inline(always)]
-    fn through<S: Simd, C: BothWays<S> + Copy>(self, simd: S, course: C) {
-        let Self { setup, rule, medium, request } = self;
-        let slab = &*setup.problem;
-        let from = f64x8::splat(simd, setup.sampling.begin().t);
-        let all = mask64x8::splat(simd, true);
-        bank::run(
-            simd,
-            #[inline(always)]
-            |numbers| InSlab {
-                slab,
-                rule,
-                from,
-                course,
-                number: from,
-                inside: all,
-                is_down: all,
-                goes_on: all,
-                weight: from.each(1.0),
-                cosine: entering(slab.incidence.light, numbers, all, from.each(1.0)),
-            },
-            #[inline(always)]
-            |places| bank::extinctions(simd, medium, places),
-            request,
-        );
     }
 }
 
