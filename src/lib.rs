@@ -59,6 +59,8 @@ pub mod phase;
 #[cfg(feature = "library")]
 pub mod problems;
 #[cfg(feature = "library")]
+pub mod recipes;
+#[cfg(feature = "library")]
 pub mod render;
 #[cfg(feature = "cli")]
 pub mod report;

@@ -5,9 +5,10 @@ use std::io::IsTerminal;
 
 use clap::{Args, ValueEnum};
 use trueflight::catalogue::{Catalogue, Page};
-use trueflight::estimators::{self, Estimated, controls, sampling};
+use trueflight::estimators::{self, Estimated};
 use trueflight::harness::{self, case::Case, checks, suite};
 use trueflight::problems::{self, MultipleScattering};
+use trueflight::recipes::{controls, sampling};
 use trueflight::render::{self, Picture, gallery};
 use trueflight::{media, phase, report};
 

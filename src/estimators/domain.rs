@@ -1,6 +1,6 @@
 //! Where an estimator exists and is unbiased.
 
-use super::Setup;
+use super::{Refusal, Setup};
 use crate::catalogue::{number, rounded};
 use crate::media::Placement;
 use crate::numeric::Span;
@@ -10,37 +10,6 @@ use crate::theory::Rule;
 /// Inequalities are tested with this relative slack, so that `σ̂ = max σ_t` is not refused for
 /// rounding.
 const SLACK: f64 = 1e-12;
-
-/// Why an estimator is not run.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum Refusal {
-    /// An inequality that the estimator needs does not hold.
-    #[error("needs {needs}, but {found} at t = {}", rounded(*at))]
-    Inequality {
-        /// What must hold everywhere.
-        needs: &'static str,
-        /// What was found instead.
-        found: String,
-        /// Where on the ray.
-        at: f64,
-    },
-    /// The estimator does not fit what it was given.
-    #[error("needs {needs}, but {found}")]
-    Mismatch {
-        /// What it takes.
-        needs: &'static str,
-        /// What it was given.
-        found: String,
-    },
-}
-
-impl Refusal {
-    /// A mismatch in words.
-    pub fn mismatch(needs: &'static str, found: impl Into<String>) -> Self {
-        Self::Mismatch { needs, found: found.into() }
-    }
-}
 
 /// The logarithm of the largest weight that a draw may reach: a little below the largest double.
 const LARGEST_WEIGHT: f64 = 700.0;

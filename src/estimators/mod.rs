@@ -5,7 +5,6 @@
 //! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
 
 pub mod bidirectional_rod;
-pub mod controls;
 pub mod domain;
 pub mod free_flight;
 pub mod furnace;
@@ -18,7 +17,6 @@ pub mod order_free;
 pub mod packet;
 pub mod rod;
 pub mod rules;
-pub mod sampling;
 pub mod scoring;
 pub mod setup;
 pub mod single_scattering;
@@ -37,11 +35,12 @@ use fearless_simd::Level;
 use crate::catalogue::{Catalogue, Settings};
 use crate::media::Lookups;
 use crate::problems::{Problem, each_problem};
+use crate::recipes::controls;
 use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
 
-pub use domain::Refusal;
-pub use setup::{Setup, Site};
+pub use crate::recipes::{Refusal, Site};
+pub use setup::Setup;
 pub use transmittance_curve::RayView;
 pub use trial::{DrawBuffer, Experiment, Kernel, Order};
 
@@ -309,34 +308,3 @@ macro_rules! scored {
     };
 }
 use scored;
-
-/// Lists recipes that prepare a sampling extinction or a control from its settings.
-macro_rules! recipes {
-    ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
-        /// Every recipe, in the order of registration.
-        pub const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
-            name: $name,
-            pages: &[$($crate::page!($module)),*],
-        };
-
-        /// Reads `NAME = { … }`. Without a body, because that was wrong, what depends on it is not
-        /// asked.
-        pub fn read(
-            settings: &$crate::catalogue::Settings,
-            body: Option<&$crate::media::Body>,
-        ) -> Option<Box<dyn $Trait>> {
-            let names: Vec<String> =
-                CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
-            let (index, recipe) = settings.choice(&names)?;
-            let readers = [$(
-                |s: &$crate::catalogue::Settings, b: Option<&$crate::media::Body>| {
-                    $module::$Page::read(s, b).map(|page| Box::new(page) as Box<dyn $Trait>)
-                }
-            ),*];
-            let read = readers[index](&recipe, body);
-            recipe.close();
-            read
-        }
-    };
-}
-use recipes;

@@ -2,26 +2,14 @@
 
 use std::sync::Arc;
 
-use super::{Refusal, sampling};
-use crate::media::{Body, Control, Majorants, OpticalDepth, Piecewise};
+use crate::media::{Control, Majorants, OpticalDepth, Piecewise};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
-use crate::rng::Address;
+use crate::recipes::{Refusal, sampling};
 use crate::theory::{Mesh, Rule, product::Product};
 
 /// A gap shorter than this share of the support is flown through.
 const SHORTEST_GAP: f64 = 1.0 / 16.0;
-
-/// What a recipe sees when it prepares a sampling extinction or a control.
-#[derive(Clone, Copy)]
-pub struct Site<'a> {
-    /// The field as the case gives it.
-    pub body: &'a Body,
-    /// The medium, cut into panels.
-    pub mesh: &'a Mesh,
-    /// Where pilot rays find their random numbers.
-    pub address: Address,
-}
 
 /// A channel (wavelength) of a spectral problem.
 #[derive(Clone)]

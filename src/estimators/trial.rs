@@ -4,11 +4,12 @@ use fearless_simd::Level;
 
 use super::order_free::{self, OrderFree};
 use super::packet::Request;
-use super::{Draw, Estimator, Inputs, RayView, Refusal, Setup, controls};
+use super::{Draw, Estimator, Inputs, RayView, Refusal, Setup};
 use crate::media::even::Even;
 use crate::media::{Lookups, Placement};
 use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
+use crate::recipes::controls;
 use crate::rng::{Address, Lanes, Streams};
 use crate::theory::Prediction;
 

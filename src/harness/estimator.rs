@@ -2,10 +2,11 @@
 
 use super::sweep::What;
 use crate::catalogue::{Catalogue, Page, Settings, Value};
-use crate::estimators::sampling::spectral::Spectral;
 use crate::estimators::trial::Entry;
-use crate::estimators::{Estimated, Inputs, Order, controls, sampling};
+use crate::estimators::{Estimated, Inputs, Order};
 use crate::media::Body;
+use crate::recipes::sampling::spectral::Spectral;
+use crate::recipes::{controls, sampling};
 
 /// The estimators of one problem, whose type is no longer visible, while they are being read.
 pub trait EntryReader {

@@ -7,11 +7,12 @@ use super::estimator::ReadEstimators;
 use super::ready::{FAINTEST, Ready};
 use crate::catalogue::{Catalogue, Settings, rounded};
 use crate::estimators::trial::Entry;
-use crate::estimators::{Experiment, Order, RayView, Refusal, Setup, sampling};
+use crate::estimators::{Experiment, Order, RayView, Refusal, Setup};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Control, Medium, Piecewise};
 use crate::mutants::Mutable;
 use crate::problems::{self, each_problem};
+use crate::recipes::sampling;
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
 

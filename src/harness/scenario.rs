@@ -8,8 +8,9 @@ use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
 use crate::catalogue::Settings;
-use crate::estimators::{Experiment, Order, RayView, Refusal, Site, controls, sampling};
+use crate::estimators::{Experiment, Order, RayView, Refusal, Site};
 use crate::media::{Body, Medium, Piecewise};
+use crate::recipes::{controls, sampling};
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
 

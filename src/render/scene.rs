@@ -10,9 +10,9 @@ use super::reference::Reference;
 use super::subject::{RayOf, SubjectKind};
 use super::view::View;
 use crate::catalogue::Settings;
-use crate::estimators::sampling;
 use crate::harness::estimator::{Defaults, Estimators, ParsedEstimator};
 use crate::media::Body;
+use crate::recipes::sampling;
 use crate::rng::{Address, name_hash};
 
 /// What a rendering needs to know.

@@ -20,6 +20,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("stats", 1),
     ("problems", 2),
     ("theory", 3),
+    ("recipes", 4),
     ("estimators", 4),
     ("mutants", 4),
     ("harness", 5),
@@ -34,12 +35,14 @@ const FLOORS: &[(&str, u8)] = &[
     ("main", 8),
 ];
 
-/// The edges that are allowed on one floor: everything counts, mutants are twins of estimators, what
+/// The edges that are allowed on one floor: everything counts, recipes make what estimators work on, mutants are twins of estimators, what
 /// judges foreign draws is tested by itself, a bench is stored as a run is, and `main` is nothing but the door to `cli`.
 const SIDEWAYS: &[(&str, &str)] = &[
     ("geometry", "numeric"),
     ("rng", "numeric"),
     ("mutants", "estimators"),
+    ("estimators", "recipes"),
+    ("mutants", "recipes"),
     ("main", "cli"),
     ("self_test", "judge"),
     ("bench", "baseline"),

@@ -30,7 +30,7 @@ macro_rules! in_packets {
             medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
-            $crate::estimators::single_scattering::packet::draw(level, setup, $kind, medium, request)
+            $crate::estimators::single_scattering::packet::walks(level, setup, $kind, medium, request)
         }
     };
 }

@@ -21,10 +21,11 @@ use fearless_simd::Level;
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::estimators::packet::{self, Request};
 use crate::estimators::rules::Null;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup, controls};
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Control, Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
+use crate::recipes::controls;
 use crate::rng::Stream;
 use crate::theory::Prediction;
 

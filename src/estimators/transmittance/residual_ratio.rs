@@ -18,9 +18,10 @@
 
 use super::double::{predict_weighted, unbiased_where_covered};
 use crate::estimators::rules::Weight;
-use crate::estimators::{Estimator, Inputs, Refusal, Setup, controls, product_draws};
+use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::media::Control;
 use crate::problems::Transmittance;
+use crate::recipes::controls;
 use crate::theory::Prediction;
 
 /// Residual ratio tracking; σ̂ and a constant control are its inputs.

@@ -54,7 +54,7 @@ pub enum Kind {
 
 /// The draws of a technique, on the hardware of a level; a request is handed back where that is too narrow,
 /// where σ̂ has several values, and where one draw after the other is faster.
-pub fn draw<'a>(
+pub fn walks<'a>(
     level: Level,
     setup: &Setup<SingleScattering>,
     (kind, tracking): (Kind, Tracking),

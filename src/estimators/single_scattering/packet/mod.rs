@@ -18,7 +18,7 @@ mod points;
 mod shared;
 mod walk;
 
-pub use bank::{Kind, draw};
+pub use bank::{Kind, walks};
 
 use fearless_simd::{Simd, f64x8, mask64x8};
 

@@ -1,8 +1,8 @@
 //! A σ̂ for each channel of a spectral medium: `sampling = [{ constant.value = 1.6 }, …]`.
 
 use super::Recipe;
-use crate::estimators::{Refusal, Site};
 use crate::media::{Control, Piecewise};
+use crate::recipes::{Refusal, Site};
 
 /// One recipe for each channel.
 pub struct Spectral {

@@ -15,10 +15,10 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::geometry::{Aabb, Point, Ray};
 use crate::media::{Body, Control, Majorants, Piecewise, Volume};
 use crate::numeric::Span;
+use crate::recipes::{Refusal, Site};
 
 /// A segment's bound is raised by this factor over the largest value that the search found.
 const MARGIN: f64 = 1.0 + 1e-9;

@@ -11,8 +11,8 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
+use crate::recipes::{Refusal, Site};
 
 /// The minimum of σ_t.
 #[derive(Debug, Clone, Copy)]

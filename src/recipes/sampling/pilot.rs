@@ -15,8 +15,8 @@
 
 use super::Recipe;
 use crate::catalogue::{Domain, Settings};
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
+use crate::recipes::{Refusal, Site};
 use crate::rng::{Address, exponential};
 
 /// A pilot ray with more collisions than this is a mistake in the case.

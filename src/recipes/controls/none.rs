@@ -4,8 +4,8 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control};
+use crate::recipes::{Refusal, Site};
 
 /// No control.
 #[derive(Debug, Clone, Copy)]

@@ -10,9 +10,9 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Control, Piecewise};
+use crate::recipes::{Refusal, Site};
 
 /// A piecewise-linear σ̂.
 pub type PiecewiseLinear = Given<false>;

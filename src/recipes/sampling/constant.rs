@@ -8,8 +8,8 @@
 
 use super::Recipe;
 use crate::catalogue::{Domain, Settings};
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Majorants, Piecewise, Volume};
+use crate::recipes::{Refusal, Site};
 
 /// A constant σ̂.
 #[derive(Debug, Clone, Copy)]

@@ -9,8 +9,8 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control};
+use crate::recipes::{Refusal, Site};
 
 /// A catalogued field as a control.
 pub struct Field(Body);

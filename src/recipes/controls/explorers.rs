@@ -11,8 +11,8 @@
 
 use super::Recipe;
 use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Site};
 use crate::media::{Body, Control, Piecewise};
+use crate::recipes::{Refusal, Site};
 
 /// A control through explorer points.
 #[derive(Debug, Clone, Copy)]
