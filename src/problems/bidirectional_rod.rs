@@ -14,6 +14,7 @@
 //! | `sensor` | `"transmitted"`: at the end; `"reflected"`: at the beginning, beside the light | required |
 //! | `orders` | the highest number of scatterings r, up to 5 | required |
 //! | `lowest` | the lowest | 0, or 1 of reflected light |
+//! | `shares` | whether the contribution of each technique is a channel beside their sum | true |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
 //! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
 //! | `estimators` | what is tested | required |
@@ -64,17 +65,19 @@ pub struct BidirectionalRod {
     pub sensor: Sensor,
     /// Numbers of scatterings, up to [`HIGHEST_ORDER`].
     pub orders: RangeInclusive<usize>,
+    /// Whether the contribution of each technique is a channel beside their sum.
+    pub has_shares: bool,
 }
 
 impl BidirectionalRod {
-    /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`.
+    /// A rod with an albedo and a probability to scatter forward, both in `[0, 1]`; techniques are channels.
     pub fn new(
         medium: Medium,
         [albedo, forward]: [f64; 2],
         sensor: Sensor,
         orders: RangeInclusive<usize>,
     ) -> Self {
-        Self { medium, albedo, forward, sensor, orders }
+        Self { medium, albedo, forward, sensor, orders, has_shares: true }
     }
 }
 
@@ -95,9 +98,11 @@ impl Problem for BidirectionalRod {
         let highest = settings.count("orders", least..=HIGHEST_ORDER as u64);
         let lowest =
             settings.count_or("lowest", least..=highest.unwrap_or(HIGHEST_ORDER as u64), least);
-        let (medium, shares) = (body?.medium(), [albedo?, forward?]);
+        let has_shares = settings.flag_or("shares", true);
+        let (medium, scattered) = (body?.medium(), [albedo?, forward?]);
         let orders = lowest? as usize..=highest? as usize;
-        Some(Self::new(medium, shares, sensor?, orders))
+        let rod = Self::new(medium, scattered, sensor?, orders);
+        Some(Self { has_shares: has_shares?, ..rod })
     }
 
     fn medium(&self) -> &Medium {
@@ -105,7 +110,7 @@ impl Problem for BidirectionalRod {
     }
 
     fn with_albedo(&self, albedo: f64) -> Option<Self> {
-        let shares = [albedo, self.forward];
-        Some(Self::new(self.medium.clone(), shares, self.sensor, self.orders.clone()))
+        let (medium, orders) = (self.medium.clone(), self.orders.clone());
+        Some(Self { medium, albedo, orders, ..*self })
     }
 }

@@ -32,7 +32,12 @@ fn scene(sensor: &str, order: usize) -> Scene {
 }
 
 fn predicted(scene: &Scene, combination: Combination, connection: Connection) -> Prediction {
-    predict(scene, &Rules { combination, connection, is_shared: false }, None, true)
+    predict(
+        scene,
+        &Rules { combination, connection, is_shared: false, has_shares: true },
+        None,
+        true,
+    )
 }
 
 const FULL: Combination = Combination::Full(Heuristic::Balance);
@@ -252,6 +257,21 @@ fn shared_subpaths_have_the_same_shares_and_an_unknown_variance_of_their_sum() {
                 .map(|row| format!("{} {}: {}", row.estimator, row.channel, row.reason))
                 .collect::<Vec<_>>(),
         );
+    }
+}
+
+#[test]
+fn without_shares_the_sum_is_what_it_was() {
+    let estimators = "{ full-mis = {} }, { technique.light-vertices = 1 }, \
+        { directional-mis.subpaths = \"shared\" }";
+    let text = rod("transmitted", 2, 1, estimators);
+    let all = rows(&text, 50_000);
+    let sums = rows(&text.replace("lowest = 1", "lowest = 1\nshares = false"), 50_000);
+    let all: Vec<_> = all.iter().filter(|row| row.channel == "sum").collect();
+    assert_eq!((all.len(), sums.len()), (3, 3));
+    for (all, sum) in all.iter().zip(&sums) {
+        assert_eq!((all.truth, all.predicted_variance), (sum.truth, sum.predicted_variance));
+        assert!(sum.channel.is_empty() && sum.verdict == Some(Verdict::Pass), "{}", sum.reason);
     }
 }
 

@@ -127,7 +127,8 @@ impl Page {
         // Elsewhere it is refused, and forced draws have no prediction.
         let tracked = ratio.filter(|_| self.is_tracked).map(Connection::Ratio);
         let connection = tracked.unwrap_or(Connection::Exact);
-        let rules = Rules { combination: self.combination, connection, is_shared: self.is_shared };
+        let Self { combination, is_shared, .. } = self;
+        let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
         bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
     }
 }

@@ -124,8 +124,12 @@ pub fn draw(
             values.count += 1;
         }
     }
-    if values.count > 1 {
-        values.at[values.count] = steps.together(&values.at[..values.count]);
+    let sum = steps.together(&values.at[..values.count]);
+    if !setup.problem.has_shares {
+        values.count = 0;
+    }
+    if values.count != 1 {
+        values.at[values.count] = sum;
         values.count += 1;
     }
     Draw::free(values, lookups)

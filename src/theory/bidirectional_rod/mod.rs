@@ -181,6 +181,8 @@ pub struct Rules {
     pub connection: Connection,
     /// Whether all techniques share one walk from the light and one from the sensor.
     pub is_shared: bool,
+    /// Whether techniques are channels beside their sum.
+    pub has_shares: bool,
 }
 
 /// `E[X_s^k]` of every technique that is drawn, order by order.

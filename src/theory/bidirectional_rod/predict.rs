@@ -63,6 +63,11 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
         let moments = sum.moments.filter(|_| !rules.is_shared);
         channels.push(Channel { name: "sum".into(), moments, by_pilots: rules.is_shared, ..sum });
     }
+    if !rules.has_shares && channels.len() > 1 {
+        channels.drain(..channels.len() - 1);
+        channels[0].name.clear();
+        covariances.clear();
+    }
     // Those of shared subpaths and of the connections between them vary together.
     let is_known = !rules.is_shared || rules.connection == Connection::Exact;
     let lookups = ratio.filter(|_| is_known).map(|ratio| lookups(scene, rules, ratio));
