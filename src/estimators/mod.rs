@@ -16,7 +16,6 @@ pub mod multiple_scattering;
 pub mod order_free;
 pub mod packet;
 pub mod rod;
-pub mod rules;
 pub mod scoring;
 pub mod setup;
 pub mod single_scattering;
@@ -277,7 +276,7 @@ macro_rules! scored {
             ) -> Result<(), $crate::estimators::Refusal> {
                 setup.require_plain_unit("τ ≤ 300 (its draws are sums of terms of every size)")?;
                 setup.require_constant_sampling()?;
-                setup.require_finite_weights(&$crate::estimators::rules::Weight)
+                setup.require_finite_weights(&$crate::theory::rules::Weight)
             }
 
             fn predict(&self, setup: &Setup<Transmittance>) -> $crate::theory::Prediction {

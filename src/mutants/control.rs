@@ -11,10 +11,10 @@ use super::Mutant;
 use super::fault::{Fault, RIGHT};
 use super::target::{DEEP, EXPLORERS, NEGATIVE};
 use super::walk::product;
-use crate::estimators::rules::Weight;
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Lane, Span};
 use crate::problems::Transmittance;
+use crate::theory::rules::Weight;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

@@ -11,10 +11,10 @@ use super::Mutant;
 use super::fault::{Fault, Memory, RIGHT};
 use super::target::{TERMINATING, WOODCOCK};
 use super::walk::product;
-use crate::estimators::rules::{Null, Single};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
+use crate::theory::rules::{Null, Single};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

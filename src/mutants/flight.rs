@@ -11,11 +11,11 @@ use super::Mutant;
 use super::fault::{Fault, Memory, RIGHT};
 use super::target::{BELOW, DENSE, LINEAR, STEPS, WOODCOCK};
 use super::walk::product;
-use crate::estimators::rules::{Null, Weight};
 use crate::media::Piecewise;
 use crate::numeric::Span;
 use crate::problems::Transmittance;
 use crate::rng::exponential;
+use crate::theory::rules::{Null, Weight};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

@@ -12,9 +12,9 @@ use super::Mutant;
 use super::fault::{Fault, RIGHT};
 use super::target::{BELOW, DENSE, TERMINATING, WOODCOCK};
 use super::walk::product;
-use crate::estimators::rules::{Null, Single, Weight};
 use crate::media::Extinction;
 use crate::problems::Transmittance;
+use crate::theory::rules::{Null, Single, Weight};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

@@ -12,10 +12,10 @@ use super::Mutant;
 use super::fault::{Fault, RIGHT};
 use super::target::{DENSE, FLIGHT};
 use super::walk::{flight, product};
-use crate::estimators::rules::Weight;
 use crate::numeric::Lane;
 use crate::problems::{FreeFlight, Transmittance};
 use crate::rng::{Stream, exponential, unit};
+use crate::theory::rules::Weight;
 
 /// The family's members that estimate the transmittance.
 pub fn mutants() -> Vec<Mutant<Transmittance>> {

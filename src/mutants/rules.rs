@@ -12,8 +12,8 @@ use super::Mutant;
 use super::fault::{Fault, RIGHT};
 use super::target::{ADAPTIVE, CLAMPED, NON_TERMINATING, RATIO_ONE, TERMINATING, WOODCOCK};
 use super::walk::product;
-use crate::estimators::rules::{Null, Single};
 use crate::problems::Transmittance;
+use crate::theory::rules::{Null, Single};
 use crate::theory::{Outcome, Rule};
 
 /// The albedo of the experiments.

@@ -12,12 +12,12 @@ use super::fault::{Fault, RIGHT};
 use super::target::{BELOW, DENSE, MIS, NEXT_FLIGHT};
 use super::walk::draw_product;
 use super::{About, Mutant, with};
-use crate::estimators::rules::Weight;
 use crate::estimators::{Draw, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::{Stream, unit};
+use crate::theory::rules::Weight;
 
 const RATIO: (Weight, Fault) = (Weight, RIGHT);
 

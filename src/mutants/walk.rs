@@ -11,12 +11,12 @@
 
 use super::fault::{Fault, Memory, RIGHT};
 use super::{About, Mutant, Target, with};
-use crate::estimators::rules::Collision;
 use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Setup};
 use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem, Transmittance};
 use crate::rng::Stream;
+use crate::theory::rules::Collision;
 
 /// A draw of a product estimator with a fault.
 #[inline]

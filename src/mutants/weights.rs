@@ -11,11 +11,11 @@ use super::Mutant;
 use super::fault::{Fault, RIGHT};
 use super::target::{BELOW, DENSE, NEGATIVE, STEPS};
 use super::walk::product;
-use crate::estimators::rules::Weight;
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::unit;
 use crate::theory::Outcome;
+use crate::theory::rules::Weight;
 
 /// A function of `1 − r` for `1 − r`.
 macro_rules! replaced {

@@ -11,11 +11,11 @@ use super::rods::{Walked, leaving};
 use super::text::{self, homogeneous, one_line};
 use super::trial::Trial;
 use super::{Effort, Row, in_parts};
-use crate::estimators::rules::{Single, Weight};
 use crate::harness::checks::lookups::ERROR;
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Known, Span, Wide};
 use crate::theory::product::Product;
+use crate::theory::rules::{Single, Weight};
 use crate::theory::{CountLaw, Mesh, curve, flight, rod};
 
 /// All rows.

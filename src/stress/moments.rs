@@ -8,11 +8,11 @@
 use super::text::homogeneous;
 use super::trial::{Dice, Trial, off};
 use super::{Effort, Row, in_parts};
-use crate::estimators::rules::{Single, Weight};
 use crate::media::{Control, Piecewise};
 use crate::numeric::{Span, Wide};
 use crate::theory::prediction::transmittance;
 use crate::theory::product::Product;
+use crate::theory::rules::{Single, Weight};
 use crate::theory::{Mesh, Rule};
 
 /// All rows.

@@ -21,6 +21,7 @@ pub mod product;
 pub mod raw;
 pub mod rod;
 pub mod rule;
+pub mod rules;
 pub mod single;
 pub mod slab;
 pub mod space;

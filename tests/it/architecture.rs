@@ -403,7 +403,7 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
     let mut wrong = Vec::new();
     for file in File::all() {
         let whole = [
-            "estimators/rules.rs",
+            "theory/rules.rs",
             "estimators/scoring.rs",
             "estimators/walk.rs",
             "transmittance/next_flight.rs",

@@ -1,7 +1,6 @@
 //! What a prediction says of each channel, against numbers derived by hand.
 
 use crate::common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
-use trueflight::estimators::rules::Weight;
 use trueflight::harness::record::{Row, Verdict};
 use trueflight::harness::{Options, Plan, curves, verdict};
 use trueflight::media::{Control, Piecewise};
@@ -9,6 +8,7 @@ use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
 use trueflight::report::failures::experiment;
 use trueflight::theory::product::Product;
+use trueflight::theory::rules::Weight;
 use trueflight::theory::{Mesh, Prediction, curve};
 
 fn predictions(text: &str) -> Vec<Prediction> {

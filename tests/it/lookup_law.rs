@@ -1,9 +1,9 @@
 //! The probabilities of the numbers of lookups against closed forms.
 
 use crate::common::{differs, none};
-use trueflight::estimators::rules::{Null, Single, Weight};
 use trueflight::media::{Control, Piecewise};
 use trueflight::theory::product::Product;
+use trueflight::theory::rules::{Null, Single, Weight};
 use trueflight::theory::{CountLaw, Mesh, Rule};
 
 fn law(medium: &str, sampling: f64, killing: f64, rule: &dyn Rule) -> CountLaw {

@@ -1,10 +1,10 @@
 //! Predictions against numbers from another arithmetic: see `tests/data/README.md`.
 
 use crate::common::{differs, none, predicted, row};
-use trueflight::estimators::rules::{Single, Weight};
 use trueflight::media::{Control, Medium, Piecewise};
 use trueflight::numeric::Span;
 use trueflight::theory::product::Product;
+use trueflight::theory::rules::{Single, Weight};
 use trueflight::theory::{Mesh, Rule};
 
 /// A row of `transmittance-moments.csv`.

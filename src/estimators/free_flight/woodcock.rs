@@ -13,11 +13,11 @@
 use fearless_simd::Level;
 
 use crate::estimators::packet::{self, Request};
-use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::problems::{FreeFlight, Problem};
 use crate::rng::Stream;
+use crate::theory::rules::Null;
 use crate::theory::{Prediction, flight};
 
 /// Woodcock tracking; σ̂ is its only input.

@@ -4,9 +4,9 @@ use std::ops::Range;
 
 use fearless_simd::{Simd, f64x8};
 
-use crate::estimators::rules::{Collision, Met};
 use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
+use crate::theory::rules::{Collision, Met};
 
 /// The bits of a pair of packs.
 const ALL: u64 = (1 << PAIR) - 1;
@@ -153,8 +153,8 @@ mod tests {
     use fearless_simd::Level;
 
     use super::*;
-    use crate::estimators::rules::{Null, Single, Weight};
     use crate::numeric::pack::{Task, on};
+    use crate::theory::rules::{Null, Single, Weight};
 
     const COUNT: usize = 2 * PAIR + 5;
 

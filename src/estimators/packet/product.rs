@@ -11,12 +11,12 @@ use super::survival::Survivals;
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
 use crate::estimators::Setup;
 use crate::estimators::packet::event_queue::{Reader, Row};
-use crate::estimators::rules::{Collision, Met};
 use crate::estimators::walk::Invariant;
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Twin};
+use crate::theory::rules::{Collision, Met};
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or one draw after the other is faster.

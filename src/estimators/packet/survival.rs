@@ -12,10 +12,10 @@ use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 use super::product::{Site, met};
 use super::{Ends, Numbers, Walks, ends};
 use crate::estimators::packet::event_queue::{Reader, Row};
-use crate::estimators::rules::Collision;
 use crate::estimators::walk::Invariant;
 use crate::media::Course;
 use crate::numeric::Lane;
+use crate::theory::rules::Collision;
 
 /// The walks.
 pub(super) struct Survivals<'a, S: Simd, R, C> {

@@ -20,7 +20,6 @@ use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::estimators::packet::{self, Request};
-use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Control, Extinction, Lookups};
 use crate::numeric::Lane;
@@ -28,6 +27,7 @@ use crate::problems::Transmittance;
 use crate::recipes::controls;
 use crate::rng::Stream;
 use crate::theory::Prediction;
+use crate::theory::rules::Null;
 
 /// Decomposition tracking; σ̂ and a constant control are its inputs.
 #[derive(Debug, Clone)]

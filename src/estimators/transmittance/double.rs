@@ -17,10 +17,10 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! Eq. 8, section 4.2.
 
-use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
 use crate::theory::count::poisson;
+use crate::theory::rules::Weight;
 use crate::theory::{Law, Prediction};
 
 /// The double particle model; σ̂ and any control are its inputs.

@@ -20,13 +20,13 @@ use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
 use crate::estimators::packet::{self, Request};
-use crate::estimators::rules::Null;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::rng::Stream;
 use crate::theory::Prediction;
+use crate::theory::rules::Null;
 
 /// Local-majorant tracking; a piecewise-constant σ̂ is its only input.
 #[derive(Debug, Clone)]

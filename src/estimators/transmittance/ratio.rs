@@ -16,10 +16,10 @@
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 3.
 
 use super::double::{predict_weighted, unbiased_where_covered};
-use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
 use crate::theory::Prediction;
+use crate::theory::rules::Weight;
 
 /// Ratio tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]

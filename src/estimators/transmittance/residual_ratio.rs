@@ -17,12 +17,12 @@
 //! Participating Media*, ACM Transactions on Graphics 33 (2014), section 4.
 
 use super::double::{predict_weighted, unbiased_where_covered};
-use crate::estimators::rules::Weight;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::media::Control;
 use crate::problems::Transmittance;
 use crate::recipes::controls;
 use crate::theory::Prediction;
+use crate::theory::rules::Weight;
 
 /// Residual ratio tracking; σ̂ and a constant control are its inputs.
 #[derive(Debug, Clone)]

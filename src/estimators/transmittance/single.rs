@@ -28,10 +28,10 @@
 //! Eqs. 9, 12, 18–20 and `SimulateParticle`.
 
 use crate::catalogue::{Domain, Settings};
-use crate::estimators::rules::Single;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
 use crate::theory::Prediction;
+use crate::theory::rules::Single;
 
 const RULES: [&str; 4] = ["terminating", "clamped", "non-terminating", "adaptive"];
 

@@ -14,10 +14,10 @@
 //! D. Kotlyar, *Weighted-delta-tracking for Monte Carlo particle transport*, Annals of Nuclear
 //! Energy 85 (2015).
 
-use crate::estimators::rules::Single;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
 use crate::theory::Prediction;
+use crate::theory::rules::Single;
 
 const RULE: Single = Single::NonTerminating { albedo: 1.0 };
 

@@ -16,9 +16,9 @@
 //! ANL-7050 (1965); W. A. Coleman, *Mathematical verification of a certain Monte Carlo sampling
 //! technique*, Nuclear Science and Engineering 32 (1968).
 
-use crate::estimators::rules::Null;
 use crate::estimators::{Estimator, Inputs, Refusal, Setup, product_draws};
 use crate::problems::Transmittance;
+use crate::theory::rules::Null;
 use crate::theory::{Law, Prediction};
 
 /// Woodcock tracking; σ̂ is its only input.

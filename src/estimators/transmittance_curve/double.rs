@@ -22,13 +22,13 @@ use fearless_simd::Level;
 use super::packet;
 use super::ray_view::{self, RayView};
 use crate::estimators::packet::Request;
-use crate::estimators::rules::Weight;
 use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups, Medium};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};
 use crate::rng::{Address, Stream, exponential};
+use crate::theory::rules::Weight;
 use crate::theory::{Prediction, curve};
 
 /// The double particle model; σ̂ and any control are its inputs.

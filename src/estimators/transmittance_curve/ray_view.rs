@@ -2,11 +2,11 @@
 
 use super::double::walk;
 use crate::estimators::Setup;
-use crate::estimators::rules::Weight;
 use crate::numeric::Span;
 use crate::problems::{Problem, TransmittanceCurve};
 use crate::rng::Address;
 use crate::theory::Moments;
+use crate::theory::rules::Weight;
 
 /// Distances at which the ray is shown.
 const POINTS: usize = 400;

@@ -9,10 +9,10 @@ use super::precision::Precision;
 use super::scene::{CELLS, Scene};
 use super::trail::Trail;
 use super::{EVERY, NO_STEPS};
-use crate::estimators::rules::{Collision, Null, Single, Weight};
 use crate::estimators::transmittance::next_flight::NextFlight;
 use crate::estimators::transmittance::unidirectional_mis::UnidirectionalMis;
 use crate::media::Extinction;
+use crate::theory::rules::{Collision, Null, Single, Weight};
 
 /// All tentative collisions on the ray.
 #[inline(always)]

@@ -8,8 +8,8 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.1–3.3, Eqs. 7–12 and `SimulateParticle`.
 
+use super::{Outcome, Rule};
 use crate::numeric::Lane;
-use crate::theory::{Outcome, Rule};
 
 /// What a particle meets at a tentative collision.
 #[derive(Debug, Clone, Copy)]
