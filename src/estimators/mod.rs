@@ -12,6 +12,7 @@ pub mod heroes;
 pub mod infinite_medium;
 pub mod lambertian;
 pub mod lit_rod;
+pub mod lit_slab;
 pub mod multiple_scattering;
 pub mod order_free;
 pub mod packet;

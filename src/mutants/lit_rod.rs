@@ -16,29 +16,30 @@ use crate::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniqu
 
 /// The steps of a walk, of which a mutant has one wrong.
 #[derive(Clone, Copy)]
-struct Steps {
-    techniques: Techniques,
+pub(super) struct Steps {
+    pub(super) techniques: Techniques,
     /// The weight of a hit that was never scattered, from that of a hit with ρ = 1.
-    unscattered: fn(f64) -> f64,
+    pub(super) unscattered: fn(f64) -> f64,
     /// The weight of a hit, from what is right.
-    hit: fn(f64) -> f64,
+    pub(super) hit: fn(f64) -> f64,
     /// What a shadow ray scores, from what is right, p, t̂ and the albedo.
-    connected: fn(f64, [f64; 3]) -> f64,
+    pub(super) connected: fn(f64, [f64; 3]) -> f64,
     /// ρ after a null collision, from what is right and what it was.
-    after_null: fn(f64, f64) -> f64,
+    pub(super) after_null: fn(f64, f64) -> f64,
     /// ρ after a scattering, from what is right and what it was.
-    after_scattering: fn(f64, f64) -> f64,
+    pub(super) after_scattering: fn(f64, f64) -> f64,
     /// The probability that light which comes forward goes on to the emitter, and that of light which comes backward.
-    phase: fn(f64) -> [f64; 2],
+    pub(super) phase: fn(f64) -> [f64; 2],
     /// The chance that a delta-tracked shadow ray ends, from r and the albedo.
-    stops: fn(f64, f64) -> f64,
+    pub(super) stops: fn(f64, f64) -> f64,
     /// The factor of a shadow ray that arrives, from the optical depth of its last segment through σ̂.
-    last: fn(f64) -> f64,
+    pub(super) last: fn(f64) -> f64,
     /// Where the walk goes on, from where a shadow ray was cast and where it ended.
-    goes_on: fn(Cursor, Cursor) -> Cursor,
+    pub(super) goes_on: fn(Cursor, Cursor) -> Cursor,
 }
 
-fn right(techniques: Techniques) -> Steps {
+/// The right steps.
+pub(super) fn right(techniques: Techniques) -> Steps {
     Steps {
         techniques,
         unscattered: |_| 1.0,

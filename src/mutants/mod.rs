@@ -21,6 +21,7 @@ pub mod fault;
 pub mod flight;
 pub mod free_flight;
 pub mod lit_rod;
+pub mod lit_slab;
 pub mod lookups;
 pub mod precision;
 pub mod rod;
@@ -46,8 +47,8 @@ use crate::estimators::{Draw, Estimated, Experiment, Setup};
 use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
-    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, Problem, Rod,
-    SingleScattering, Slab, SpectralRod, SpectralTransmittance, Sphere, Transmittance,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Problem,
+    Rod, SingleScattering, Slab, SpectralRod, SpectralTransmittance, Sphere, Transmittance,
     TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
@@ -154,6 +155,7 @@ mutable! {
     SpectralRod: spectral_rod::mutants();
     Rod: rod::mutants();
     LitRod: lit_rod::mutants();
+    LitSlab: lit_slab::mutants();
     SingleScattering: single_scattering::mutants();
     Furnace: space::in_furnace();
     Lambertian: space::under_light();

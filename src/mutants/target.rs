@@ -90,6 +90,14 @@ pub const LIT_NEXT_EVENT: Target = on("lit-rod/rising", 3, "next-event (ratio sh
 pub const LIT_DIRECTIONAL: Target = on("lit-rod/rising", 4, "directional-mis (delta shadow)");
 /// The same.
 pub const LIT_FULL: Target = on("lit-rod/rising", 6, "full-mis (ratio shadow)");
+/// A wide disc close behind a slab whose extinction rises, g = 0.6, `σ̂ = 1.5`.
+pub const LIT_SLAB_NEXT_EVENT: Target = on("lit-slab/magnet", 3, "next-event (ratio shadow)");
+/// The same.
+pub const LIT_SLAB_DIRECTIONAL: Target = on("lit-slab/magnet", 4, "directional-mis (delta shadow)");
+/// The same.
+pub const LIT_SLAB_FULL: Target = on("lit-slab/magnet", 6, "full-mis (ratio shadow)");
+/// The same slab, a beam.
+pub const LIT_SLAB_DISTANT: Target = on("lit-slab/distant", 3, "full-mis (ratio shadow)");
 /// Single scattering in a homogeneous ball, light outside, exact transmittances.
 pub const SINGLE_EXACT: Target =
     on("single-scattering/magnet", 0, "source-driven (exact camera, exact shadow)");

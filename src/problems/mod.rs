@@ -6,6 +6,7 @@ pub mod furnace;
 pub mod infinite_medium;
 pub mod lambertian;
 pub mod lit_rod;
+pub mod lit_slab;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
@@ -31,6 +32,7 @@ pub use furnace::Furnace;
 pub use infinite_medium::InfiniteMedium;
 pub use lambertian::Lambertian;
 pub use lit_rod::LitRod;
+pub use lit_slab::LitSlab;
 pub use multiple_scattering::MultipleScattering;
 pub use rod::Rod;
 pub use scene::{Albedo, Scene};
@@ -55,6 +57,7 @@ macro_rules! each_problem {
             rod::Rod,
             spectral_rod::SpectralRod,
             lit_rod::LitRod,
+            lit_slab::LitSlab,
             slab::Slab,
             single_scattering::SingleScattering,
             furnace::Furnace,

@@ -237,6 +237,11 @@ impl Mesh {
         &self.rule.weights
     }
 
+    /// The weights of the integral from a panel's beginning to one of its nodes, of a panel of length 1.
+    pub(super) fn running_weights(&self, node: usize) -> &[f64] {
+        &self.rule.running[node]
+    }
+
     /// `∫ f` from the panel's beginning to each of its nodes.
     pub fn running(&self, panel: Panel<'_>, f: &[f64]) -> Vec<f64> {
         let length = panel.span.length();

@@ -10,6 +10,7 @@ pub mod flight;
 pub mod h_function;
 pub mod heuristic;
 pub mod lit_rod;
+pub mod lit_slab;
 pub mod lookups;
 pub mod memo;
 pub mod mesh;

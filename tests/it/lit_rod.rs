@@ -3,8 +3,8 @@
 
 use serde::Deserialize;
 
-use crate::common::{medium, mistakes, none, predicted, row, rows};
-use trueflight::harness::record::{Row, Verdict};
+use crate::common::{failing, medium, mistakes, none, predicted, row, rows};
+use trueflight::harness::record::Verdict;
 use trueflight::media::Piecewise;
 use trueflight::problems::LitRod;
 use trueflight::theory::lit_rod::{self, Combination, Densities, Heuristic, Shadow, Techniques};
@@ -137,21 +137,6 @@ fn a_rod_without_a_way_back_has_moments_by_hand() {
     // Next-event: X = Σ T_i, and 1 without any scattering.
     let alone = predict(Shadow::Exact, Combination::NextEvent).variance();
     assert!((alone - (unscattered + square + first * first - 1.0)).abs() < 1e-12);
-}
-
-/// What of some rows does not pass, or was not asked about mean, variance and lookups.
-fn failing(rows: &[Row]) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for row in rows {
-        let unasked: Vec<&str> = ["mean", "variance", "lookups"]
-            .into_iter()
-            .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
-            .collect();
-        if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
-            wrong.push(format!("{}: {}, without {unasked:?}", row.estimator, row.reason));
-        }
-    }
-    wrong
 }
 
 #[test]

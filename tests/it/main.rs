@@ -16,6 +16,7 @@ mod golden;
 mod judge;
 mod junit;
 mod lit_rod;
+mod lit_slab;
 mod lookup_law;
 mod manual;
 mod media_laws;

@@ -177,6 +177,7 @@ fn cases(matrix: Matrix) -> Vec<Case> {
                     {{ directional-mis.sampling.piecewise-linear = {{ knots = [0, 2, 30], values = [1.5, 2.5, 1.5] }} }}]"
             );
             cases.push(case(&format!("{name}-lit"), &lit));
+            cases.extend(lit_slabs(name, &medium));
             let roulette = format!(
                 "title = \"{name}, roulette\"\n[problem.rod]\n{medium}\nforward = 0.7\nalbedo = 0.8\norders = 1
                 sampling.constant.value = 1.6
@@ -203,6 +204,26 @@ fn cases(matrix: Matrix) -> Vec<Case> {
         cases.push(case(&format!("{name}-flight"), &flight));
     }
     cases
+}
+
+/// A field as a slab with each kind of light behind it.
+fn lit_slabs(name: &str, medium: &str) -> Vec<Case> {
+    let lights = [
+        ("cap.cosine = 0.6", ", { unidirectional = {} }, { full-mis.heuristic = \"power\" }"),
+        ("disc = { distance = 1, radius = 2 }", ", { unidirectional = {} }"),
+        ("distant.cosine = 0.7", ""),
+    ];
+    let of = |(light, hits)| {
+        let slab = format!(
+            "title = \"{name}, lit slab\"\n[problem.lit-slab]\n{medium}\nalbedo = 0.9
+            phase.henyey-greenstein = {{ g = 0.4 }}\nlight.{light}\nsampling.constant.value = 1.6
+            estimators = [{{ next-event.shadow = \"exact\" }}, {{ next-event.shadow = \"delta\" }},
+                {{ next-event = {{}} }}, {{ directional-mis = {{}} }}, {{ full-mis.shadow = \"exact\" }},
+                {{ full-mis = {{}} }}, {{ full-mis.sampling.local-majorants.segments = 5 }}{hits}]"
+        );
+        case(&format!("{name}-lit-slab"), &slab)
+    };
+    lights.map(of).into()
 }
 
 /// All that an experiment draws, as bits, and its streams afterwards.

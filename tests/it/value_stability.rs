@@ -12,7 +12,7 @@ use trueflight::catalogue::Catalogue;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
-    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, Rod, Slab,
+    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Rod, Slab,
     SpectralRod, SpectralTransmittance, Transmittance, TransmittanceCurve,
 };
 
@@ -138,6 +138,20 @@ fn rods() -> Vec<Case> {
             span = [0, 4]
             albedo.piecewise-linear = { knots = [0, 4], values = [0.9, 0.6] }
             forward = 0.7
+            sampling.constant.value = 1.3
+            estimators = [
+                { unidirectional = {} }, { next-event = {} }, { directional-mis = {} }, { full-mis = {} },
+            ]",
+        ),
+        case(
+            "lit-slab",
+            "title = \"a slab with a light\"
+            [problem.lit-slab]
+            medium.piecewise-linear = { knots = [0, 2, 4], values = [0.3, 1.2, 0.5] }
+            span = [0, 4]
+            albedo = 0.9
+            phase.henyey-greenstein = { g = 0.5 }
+            light.disc = { distance = 1, radius = 2 }
             sampling.constant.value = 1.3
             estimators = [
                 { unidirectional = {} }, { next-event = {} }, { directional-mis = {} }, { full-mis = {} },
@@ -310,6 +324,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),
         (Rod::CATALOGUE, ["rod", "roulette"]),
         (LitRod::CATALOGUE, ["lit-rod", "lit-rod"]),
+        (LitSlab::CATALOGUE, ["lit-slab", "lit-slab"]),
         (Slab::CATALOGUE, ["slab", "slab"]),
         (SpectralTransmittance::CATALOGUE, ["layers", "layers"]),
         (SpectralRod::CATALOGUE, ["colours", "colours"]),

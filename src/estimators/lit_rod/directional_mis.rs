@@ -22,10 +22,9 @@
 //! integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 6; the power
 //! heuristic: E. Veach, *Robust Monte Carlo Methods for Light Transport Simulation*, doctoral thesis, Stanford (1997).
 
-use super::{label, read_shadow, walks};
+use super::{Lit, label, read_shadow, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
-use crate::problems::LitRod;
 use crate::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 
 /// Multiple importance sampling over directions; σ̂ is its input.
@@ -42,7 +41,7 @@ impl DirectionalMis {
     }
 }
 
-impl Estimator<LitRod> for DirectionalMis {
+impl<P: Lit> Estimator<P> for DirectionalMis {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "delta");
         let heuristic = Heuristic::read(settings);

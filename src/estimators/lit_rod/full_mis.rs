@@ -22,10 +22,9 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3, Algorithms 1 and 2, Eq. 42.
 
-use super::{label, read_shadow, walks};
+use super::{Lit, label, read_shadow, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
-use crate::problems::LitRod;
 use crate::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
 
 /// Multiple importance sampling over null-scattering paths; σ̂ is its input.
@@ -42,7 +41,7 @@ impl FullMis {
     }
 }
 
-impl Estimator<LitRod> for FullMis {
+impl<P: Lit> Estimator<P> for FullMis {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["ratio", "exact"], "ratio");
         let heuristic = Heuristic::read(settings);

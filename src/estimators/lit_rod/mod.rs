@@ -7,23 +7,84 @@ pub mod packet;
 pub mod unidirectional;
 pub mod walk;
 
-use crate::catalogue::Settings;
-use crate::estimators::{Refusal, Setup, estimators};
-use crate::problems::LitRod;
-use crate::theory::ParticleRule;
-use crate::theory::lit_rod::{self, Heuristic, Shadow};
+use fearless_simd::Level;
 
-/// Whether a walk by delta tracking exists on a rod and theory reaches it.
-fn realisable(setup: &Setup<LitRod>) -> Result<(), Refusal> {
-    let (rule, albedo) = (ParticleRule::Analog, &setup.problem.rod.albedo);
-    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
-    let limit = |t: f64| rule.limits(albedo.value(t))[1];
-    setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
-    if lit_rod::is_within_reach(&setup.mesh, &setup.problem, &setup.sampling) {
-        return Ok(());
+use crate::catalogue::Settings;
+use crate::estimators::packet::Request;
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::media::Lookups;
+use crate::problems::{LitRod, Problem};
+use crate::rng::Stream;
+use crate::theory::lit_rod::{self, Heuristic, Shadow, Techniques};
+use crate::theory::{ParticleRule, Prediction};
+
+/// A problem whose light is found by hits and by shadow rays: the pages of its estimators are the same.
+pub trait Lit: Problem<Value = [f64; 1]> {
+    /// Whether a walk with techniques exists and theory reaches it.
+    ///
+    /// # Errors
+    ///
+    /// Why not.
+    fn realisable(setup: &Setup<Self>, techniques: Techniques) -> Result<(), Refusal>;
+
+    /// What theory says of its draws.
+    fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction;
+
+    /// One of them.
+    fn draw(
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]>;
+
+    /// The same in packets, see [`crate::estimators::Estimator::draw_packets`].
+    fn packets<'a>(
+        level: Level,
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>>;
+}
+
+impl Lit for LitRod {
+    fn realisable(setup: &Setup<Self>, _: Techniques) -> Result<(), Refusal> {
+        let (rule, albedo) = (ParticleRule::Analog, &setup.problem.rod.albedo);
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        let limit = |t: f64| rule.limits(albedo.value(t))[1];
+        setup.require_ratio_within(albedo.knots(), limit, rule.needs())?;
+        if lit_rod::is_within_reach(&setup.mesh, &setup.problem, &setup.sampling) {
+            return Ok(());
+        }
+        let needs = "a rod that theory can cut into 1e4 steps";
+        Err(Refusal::mismatch(needs, "σ̂ or σ_t is too large on it"))
     }
-    let needs = "a rod that theory can cut into 1e4 steps";
-    Err(Refusal::mismatch(needs, "σ̂ or σ_t is too large on it"))
+
+    fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction {
+        let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
+        lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
+    }
+
+    #[inline(always)]
+    fn draw(
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 1]> {
+        walk::draw(&techniques, setup, medium, rng)
+    }
+
+    fn packets<'a>(
+        level: Level,
+        techniques: Techniques,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks(level, setup, techniques, medium, request)
+    }
 }
 
 /// Reads `shadow`, one of some words.
@@ -60,39 +121,33 @@ macro_rules! walks {
 
         fn domain(
             &$this,
-            setup: &$crate::estimators::Setup<$crate::problems::LitRod>,
+            setup: &$crate::estimators::Setup<P>,
         ) -> Result<(), $crate::estimators::Refusal> {
-            $crate::estimators::lit_rod::realisable(setup)
+            P::realisable(setup, $techniques)
         }
 
-        fn predict(
-            &$this,
-            setup: &$crate::estimators::Setup<$crate::problems::LitRod>,
-        ) -> $crate::theory::Prediction {
-            let (mesh, problem, sampling) = (&setup.mesh, &setup.problem, &setup.sampling);
-            let techniques = $techniques;
-            $crate::theory::lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
+        fn predict(&$this, setup: &$crate::estimators::Setup<P>) -> $crate::theory::Prediction {
+            P::predict(setup, $techniques)
         }
 
         #[inline(always)]
         fn draw(
             &$this,
-            setup: &$crate::estimators::Setup<$crate::problems::LitRod>,
+            setup: &$crate::estimators::Setup<P>,
             medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<[f64; 1]> {
-            $crate::estimators::lit_rod::walk::draw(&$techniques, setup, medium, rng)
+            P::draw($techniques, setup, medium, rng)
         }
 
         fn draw_packets<'a>(
             &$this,
             level: fearless_simd::Level,
-            setup: &$crate::estimators::Setup<$crate::problems::LitRod>,
+            setup: &$crate::estimators::Setup<P>,
             medium: &$crate::media::Lookups,
             request: $crate::estimators::packet::Request<'a>,
         ) -> Option<$crate::estimators::packet::Request<'a>> {
-            let techniques = $techniques;
-            $crate::estimators::lit_rod::packet::walks(level, setup, techniques, medium, request)
+            P::packets(level, $techniques, setup, medium, request)
         }
     };
 }

@@ -20,10 +20,9 @@
 //! Science and Engineering 27 (1967); J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating
 //! Attenuation in Participating Media*, ACM Transactions on Graphics 33 (2014).
 
-use super::{label, read_shadow, walks};
+use super::{Lit, label, read_shadow, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
-use crate::problems::LitRod;
 use crate::theory::lit_rod::{Combination, Heuristic, Shadow, Techniques};
 
 /// Shadow rays alone; σ̂ is its input.
@@ -38,7 +37,7 @@ impl NextEvent {
     }
 }
 
-impl Estimator<LitRod> for NextEvent {
+impl<P: Lit> Estimator<P> for NextEvent {
     fn read(settings: &Settings) -> Option<Self> {
         let shadow = read_shadow(settings, &["exact", "delta", "ratio"], "ratio")?;
         Some(Self { shadow })

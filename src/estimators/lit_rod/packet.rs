@@ -114,7 +114,7 @@ impl<S: Simd, C: BothWays<S>> InLitRod<'_, S, C> {
         }
         self.t.store_slice(&mut row);
         for (lane, t) in row.iter_mut().enumerate() {
-            *t = if bits >> lane & 1 == 1 { transmittance(self.setup, *t) } else { 0.0 };
+            *t = if bits >> lane & 1 == 1 { transmittance(self.setup, *t, 1.0) } else { 0.0 };
         }
         f64x8::from_slice(self.t.token(), &row)
     }

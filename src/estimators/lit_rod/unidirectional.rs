@@ -11,10 +11,9 @@
 //! Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM Transactions on Graphics
 //! 38 (2019), section 5.2.
 
-use super::walks;
+use super::{Lit, walks};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
-use crate::problems::LitRod;
 use crate::theory::lit_rod::{Combination, Techniques};
 
 /// Hits alone; σ̂ is its only input.
@@ -24,7 +23,7 @@ pub struct Unidirectional;
 const TECHNIQUES: Techniques =
     Techniques { shadow: None, combination: Combination::Unidirectional };
 
-impl Estimator<LitRod> for Unidirectional {
+impl<P: Lit> Estimator<P> for Unidirectional {
     fn read(_: &Settings) -> Option<Self> {
         Some(Self)
     }

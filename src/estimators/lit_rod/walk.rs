@@ -93,11 +93,11 @@ impl Steps for Techniques {
     }
 }
 
-/// The transmittance from a distance to the emitter.
+/// The transmittance from a distance to the end of a medium, along a direction of a cosine with its line.
 #[inline(always)]
-pub fn transmittance(setup: &Setup<LitRod>, from: f64) -> f64 {
+pub fn transmittance<P: Problem>(setup: &Setup<P>, from: f64, cosine: f64) -> f64 {
     let rest = Span::new(from, setup.mesh.support().to);
-    Lane::exp(-setup.problem.medium().optical_depth(rest).value)
+    Lane::exp(-(setup.problem.medium().optical_depth(rest).value / cosine))
 }
 
 /// Makes one draw.
@@ -137,11 +137,15 @@ pub fn draw(
                 let phase = steps.phase(forward, is_forward);
                 let found = match techniques.shadow {
                     None => 0.0,
-                    Some(Shadow::Exact) => transmittance(setup, cursor.t),
+                    Some(Shadow::Exact) => transmittance(setup, cursor.t, 1.0),
                     Some(shadow) => {
                         let mut ray = cursor;
-                        let is_delta = shadow == Shadow::Delta;
-                        let (found, cast) = track(steps, is_delta, setup, medium, (&mut ray, rng));
+                        let way = Way {
+                            is_delta: shadow == Shadow::Delta,
+                            cosine: 1.0,
+                            albedo: |t| rod.albedo.value(t),
+                        };
+                        let (found, cast) = way.track(steps, setup, medium, (&mut ray, rng));
                         lookups += cast;
                         cursor = steps.goes_on(cursor, ray);
                         found
@@ -157,29 +161,44 @@ pub fn draw(
     Draw::free([score], lookups)
 }
 
-/// Tracks a shadow ray; answers its transmittance and its lookups.
-#[inline(always)]
-fn track(
-    steps: &impl Steps,
-    is_delta: bool,
-    setup: &Setup<LitRod>,
-    medium: &Lookups,
-    (ray, rng): (&mut Cursor, &mut Stream),
-) -> (f64, u32) {
-    let (mut found, mut lookups, mut from) = (1.0, 0, ray.t);
-    loop {
-        let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let Some(sampling) = setup.sampling.fly(ray, depth) else {
-            let last = Span::new(from, setup.mesh.support().to);
-            return (steps.arrived(found, || setup.sampling.optical_depth(last).value), lookups);
-        };
-        lookups += 1;
-        from = ray.t;
-        let real = medium.extinction(ray.t) * (1.0 / sampling);
-        if !is_delta {
-            found *= 1.0 - real;
-        } else if steps.stops(number, real, setup.problem.rod.albedo.value(ray.t)) {
-            return (0.0, lookups);
+/// How a shadow ray goes to the end of a medium.
+pub struct Way<A> {
+    /// By delta tracking, or else by ratio tracking.
+    pub is_delta: bool,
+    /// The cosine of its direction with the line of the medium.
+    pub cosine: f64,
+    /// The albedo at a distance.
+    pub albedo: A,
+}
+
+impl<A: Fn(f64) -> f64> Way<A> {
+    /// Tracks a shadow ray; answers its transmittance and its lookups.
+    #[inline(always)]
+    pub fn track<P: Problem>(
+        &self,
+        steps: &impl Steps,
+        setup: &Setup<P>,
+        medium: &Lookups,
+        (ray, rng): (&mut Cursor, &mut Stream),
+    ) -> (f64, u32) {
+        let (mut found, mut lookups, mut from) = (1.0, 0, ray.t);
+        loop {
+            let (depth, number) = (-rng.ln_uniform(), rng.uniform());
+            let Some(sampling) = setup.sampling.fly(ray, depth * self.cosine) else {
+                let last = || {
+                    let last = Span::new(from, setup.mesh.support().to);
+                    setup.sampling.optical_depth(last).value / self.cosine
+                };
+                return (steps.arrived(found, last), lookups);
+            };
+            lookups += 1;
+            from = ray.t;
+            let real = medium.extinction(ray.t) * (1.0 / sampling);
+            if !self.is_delta {
+                found *= 1.0 - real;
+            } else if steps.stops(number, real, (self.albedo)(ray.t)) {
+                return (0.0, lookups);
+            }
         }
     }
 }

@@ -91,17 +91,18 @@ impl Connections {
 }
 
 /// Techniques whose moments are asked for.
-struct Weights {
+pub struct Weights {
     techniques: Techniques,
     highest: usize,
-    /// The highest power of x that is needed.
-    products: usize,
+    /// The highest power of x that is needed, where ρ ≤ 1.
+    pub products: usize,
     /// `q^k` for k = 0 … highest, where weights depend on x.
     inverses: Vec<Vec<f64>>,
 }
 
 impl Weights {
-    fn new(techniques: Techniques, highest: usize) -> Self {
+    /// Of techniques, up to a power.
+    pub fn new(techniques: Techniques, highest: usize) -> Self {
         let (mut inverses, mut products) = (Vec::new(), highest);
         if techniques.has_nulls() {
             inverses = (0..=highest).map(inverse).collect();
@@ -112,7 +113,18 @@ impl Weights {
         Self { techniques, highest, products, inverses }
     }
 
-    fn vertex(&self, towards: f64, nulls: &[f64]) -> Vertex {
+    /// Given p(ω) ≤ 1 and `M_k`.
+    pub fn vertex(&self, towards: f64, nulls: &[f64]) -> Vertex {
+        self.vertex_by(towards, nulls, |heuristic, k| self.full(heuristic, k, towards, nulls))
+    }
+
+    /// The same of any p(ω), where other means are known for weights that depend on x: `[n_k, h_k]`.
+    pub fn vertex_by(
+        &self,
+        towards: f64,
+        nulls: &[f64],
+        full: impl Fn(Heuristic, usize) -> [f64; 2],
+    ) -> Vertex {
         let transmittance = nulls[1];
         let (mut connected, mut hit) = ([0.0; HIGHEST + 1], [0.0; HIGHEST + 1]);
         (connected[0], hit[0]) = (1.0, transmittance);
@@ -121,7 +133,7 @@ impl Weights {
             let order = i32::try_from(k).unwrap_or(i32::MAX);
             [connected[k], hit[k]] = match (combination, shadow) {
                 (Combination::Mis(Densities::Full, heuristic), Some(Shadow::Ratio)) => {
-                    self.full(heuristic, k, towards, nulls)
+                    full(heuristic, k)
                 }
                 (Combination::Mis(Densities::Full, _), Some(Shadow::Exact)) => {
                     let ratio = self.techniques.ratio(towards, transmittance);

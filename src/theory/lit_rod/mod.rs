@@ -23,10 +23,10 @@ use crate::numeric::Known;
 use crate::problems::LitRod;
 
 /// What rounding may take from sums of Poisson moments, relative to the number.
-const ROUNDING: f64 = 1e-14;
+pub(super) const ROUNDING: f64 = 1e-14;
 /// The same of weights that are polynomials, see [`connections`], k = 1, 2, 3, 4 and 8: the error of `q^k` on [0, 1],
 /// times 2^k, as `1/(1 + z)^k ≥ 2⁻ᵏ` there.
-const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
+pub(super) const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
 
 /// The delta-tracking walk on a rod; `None` where it has more steps than theory can do.
 fn walk<'a>(mesh: &Mesh, problem: &'a LitRod, sampling: &'a Piecewise) -> Option<Walk<'a>> {

@@ -61,7 +61,7 @@ fn future(vertex: &Vertex, futures: &[Importance], m: usize, step: usize) -> f64
 }
 
 /// `k over j` for j = 0 … k.
-fn binomials(k: usize) -> [f64; HIGHEST + 1] {
+pub fn binomials(k: usize) -> [f64; HIGHEST + 1] {
     let mut row = [0.0; HIGHEST + 1];
     row[0] = 1.0;
     for n in 1..=k {

@@ -84,8 +84,15 @@ impl Techniques {
         self.shadow == Some(Shadow::Ratio) && self.is_full()
     }
 
+    /// Whether hits after a scattering score.
     #[inline(always)]
-    fn is_full(self) -> bool {
+    pub fn has_hits(self) -> bool {
+        self.combination != Combination::NextEvent
+    }
+
+    /// Whether weights know the densities of the whole path.
+    #[inline(always)]
+    pub fn is_full(self) -> bool {
         matches!(self.combination, Combination::Mis(Densities::Full, _))
     }
 

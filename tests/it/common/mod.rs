@@ -64,6 +64,21 @@ pub fn row<'a>(rows: &'a [Row], estimator: &str) -> &'a Row {
     found.next().unwrap_or_else(|| panic!("no row of {estimator}"))
 }
 
+/// What of some rows does not pass, or was not asked about mean, variance and lookups.
+pub fn failing(rows: &[Row]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for row in rows {
+        let unasked: Vec<&str> = ["mean", "variance", "lookups"]
+            .into_iter()
+            .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
+            .collect();
+        if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
+            wrong.push(format!("{}: {}, without {unasked:?}", row.estimator, row.reason));
+        }
+    }
+    wrong
+}
+
 /// What a check found in a row.
 pub fn finding<'a>(row: &'a Row, check: &str) -> &'a Finding {
     let mut found = row.findings.iter().filter(|finding| finding.check == check);

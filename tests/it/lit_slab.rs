@@ -1,0 +1,392 @@
+//! The slab with a light behind it against reference values that were computed by other means, and draws of every
+//! estimator.
+
+use serde::Deserialize;
+
+use crate::common::{failing, medium, mistakes, none, predicted, rows};
+use trueflight::harness::record::Verdict;
+use trueflight::media::Piecewise;
+use trueflight::numeric::quadrature::GaussLegendre;
+use trueflight::phase::Phase;
+use trueflight::phase::henyey_greenstein::HenyeyGreenstein;
+use trueflight::problems::LitSlab;
+use trueflight::problems::lit_slab::Light;
+use trueflight::theory::lit_rod::{Combination, Densities, Heuristic, Shadow, Techniques};
+use trueflight::theory::lit_slab::{self, contour::Contour};
+use trueflight::theory::{Mesh, Prediction};
+
+#[derive(Deserialize)]
+struct Reference {
+    case: String,
+    what: String,
+    sigma: f64,
+    a: f64,
+    g: f64,
+    thickness: f64,
+    majorant: f64,
+    light: Shape,
+    value: f64,
+    error: f64,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum Shape {
+    Cap(String, f64),
+    Disc(String, f64, f64),
+}
+
+impl Reference {
+    fn light(&self) -> Light {
+        match &self.light {
+            Shape::Cap(_, cosine) => Light::Cap(*cosine),
+            Shape::Disc(_, distance, radius) => {
+                Light::Disc { distance: *distance, radius: *radius }
+            }
+        }
+    }
+
+    /// As in a case file.
+    fn light_in_words(&self) -> String {
+        match &self.light {
+            Shape::Cap(name, cosine) => format!("{name}.cosine = {cosine}"),
+            Shape::Disc(name, distance, radius) => {
+                format!("{name} = {{ distance = {distance}, radius = {radius} }}")
+            }
+        }
+    }
+
+    fn medium(&self) -> String {
+        format!("medium.constant.extinction = {}\nspan = [0, {}]", self.sigma, self.thickness)
+    }
+
+    fn techniques(&self) -> Techniques {
+        use Combination::{Mis, NextEvent, Unidirectional};
+        let balanced = |densities| Mis(densities, Heuristic::Balance);
+        let (shadow, combination) = match self.what.as_str() {
+            "uni" | "mean" => (None, Unidirectional),
+            "nee-ratio" => (Some(Shadow::Ratio), NextEvent),
+            "nee-delta" => (Some(Shadow::Delta), NextEvent),
+            "nee-analytic" => (Some(Shadow::Exact), NextEvent),
+            "mis-directional" => (Some(Shadow::Delta), balanced(Densities::Directional)),
+            "mis-analytic" => (Some(Shadow::Exact), balanced(Densities::Full)),
+            "mis-full" => (Some(Shadow::Ratio), balanced(Densities::Full)),
+            other => panic!("{other}"),
+        };
+        Techniques { shadow, combination }
+    }
+
+    fn predict(&self) -> Prediction {
+        let text = self.medium();
+        predict(&text, (self.a, self.g), self.light(), self.majorant, self.techniques())
+    }
+}
+
+fn references() -> Vec<Reference> {
+    serde_json::from_str(include_str!("../data/lit-slab.json")).expect("the reference values")
+}
+
+fn predict(
+    text: &str,
+    (albedo, g): (f64, f64),
+    light: Light,
+    majorant: f64,
+    techniques: Techniques,
+) -> Prediction {
+    let medium = medium(text);
+    let sampling = Piecewise::constant(majorant, medium.span());
+    let phase = Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("|g| < 1"));
+    let problem = LitSlab::new(medium.clone(), albedo, phase, light);
+    lit_slab::predict(&Mesh::new(medium), &problem, &sampling, techniques, true)
+}
+
+#[test]
+fn means_and_variances_are_those_of_the_references() {
+    let all = references();
+    assert_eq!(all.len(), 24);
+    let mut wrong = Vec::new();
+    for reference in &all {
+        let Prediction { channels, .. } = reference.predict();
+        let channel = &channels[0];
+        let (found, error) = if reference.what == "mean" {
+            (channel.truth.value, channel.truth.error)
+        } else {
+            let moments = channel.moments.expect("a variance");
+            (moments.variance(), moments.error * moments.variance())
+        };
+        let off = (found - reference.value).abs();
+        println!(
+            "{} {}: {found:e}, off {off:.1e}, bound {error:.1e}",
+            reference.case, reference.what
+        );
+        if off > reference.error || off > error + reference.error || error > 1e-10 {
+            let Reference { case, what, value, .. } = reference;
+            wrong.push(format!("{case}, {what}: {found} ± {error:e} against {value}"));
+        }
+    }
+    none(&wrong);
+}
+
+/// Of a Poisson number of null collisions that each leave 1 − r.
+fn poisson(mean: f64, left: f64, f: impl Fn(f64) -> f64) -> f64 {
+    let (mut sum, mut chance, mut x) = (0.0, (-mean).exp(), 1.0);
+    for n in 1..150 {
+        sum += chance * f(x);
+        chance *= mean / f64::from(n);
+        x *= left;
+    }
+    sum
+}
+
+#[test]
+fn fourth_moments_are_those_of_sums_over_null_collisions() {
+    // Homogeneous: E[X⁴] by a plain rule over depths and directions, and Poisson sums.
+    let (sigma, majorant, albedo, g, length, lowest) = (1.0, 1.6, 0.9, 0.8, 1.5, 0.8);
+    let phase = HenyeyGreenstein::new(g).expect("in range");
+    let rule = GaussLegendre::new(60);
+    for heuristic in [Heuristic::Balance, Heuristic::Power] {
+        let combination = Combination::Mis(Densities::Full, heuristic);
+        let techniques = Techniques { shadow: Some(Shadow::Ratio), combination };
+        let moment = |k: i32| {
+            rule.integrate(0.0, length, |z| {
+                // Means of the j-th powers of both scores over directions.
+                let means = |j: i32, is_hit: bool| {
+                    if j == 0 {
+                        return 1.0;
+                    }
+                    rule.integrate(lowest, 1.0, |cosine| {
+                        let solid = std::f64::consts::TAU * (1.0 - lowest);
+                        let q = trueflight::phase::PhaseFunction::value(&phase, cosine) * solid;
+                        let along = majorant * (length - z) / cosine;
+                        let share = if is_hit { q } else { 1.0 } / (1.0 - lowest);
+                        share
+                            * poisson(along, 1.0 - sigma / majorant, |x| {
+                                let raised = heuristic.raised(q * x);
+                                if is_hit {
+                                    x * (raised / (1.0 + raised)).powi(j)
+                                } else {
+                                    (q * x / (1.0 + raised)).powi(j)
+                                }
+                            })
+                    })
+                };
+                let mut ways = 1.0;
+                let mut sum = 0.0;
+                for j in 0..=k {
+                    sum += ways * means(j, false) * means(k - j, true);
+                    ways *= f64::from(k - j) / f64::from(j + 1);
+                }
+                albedo * sigma * (-sigma * z).exp() * sum
+            })
+        };
+        let [one, two, three, four] = [1, 2, 3, 4].map(moment);
+        let text = format!("medium.constant.extinction = {sigma}\nspan = [0, {length}]");
+        let found = predict(&text, (albedo, g), Light::Cap(lowest), majorant, techniques);
+        let channel = &found.channels[0];
+        let moments = channel.moments.expect("known");
+        let variance = two - one * one;
+        let central = four - 4.0 * one * three + 6.0 * one * one * two - 3.0 * one.powi(4);
+        assert!((channel.truth.value - one).abs() < 1e-13, "{one}");
+        assert!((moments.variance() - variance).abs() < 1e-13, "{variance}");
+        let kurtosis = moments.kurtosis().expect("spread");
+        assert!((kurtosis / (central / variance.powi(2)) - 1.0).abs() < 1e-10, "{kurtosis}");
+    }
+}
+
+#[test]
+fn all_combinations_have_one_mean() {
+    // Extinction varies, σ̂ touches it: the means of shadow rays and of hits, weighted, are the truth.
+    let text = "medium.exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }\nspan = [0, 3]";
+    let disc = Light::Disc { distance: 0.3, radius: 0.5 };
+    let field = medium(text);
+    for light in [Light::Cap(0.6), disc] {
+        for heuristic in [Heuristic::Balance, Heuristic::Power] {
+            for (shadow, densities) in [
+                (Shadow::Delta, Densities::Directional),
+                (Shadow::Ratio, Densities::Full),
+                (Shadow::Exact, Densities::Full),
+            ] {
+                let combination = Combination::Mis(densities, heuristic);
+                let techniques = Techniques { shadow: Some(shadow), combination };
+                let phase = HenyeyGreenstein::new(0.9).expect("in range");
+                let problem =
+                    LitSlab::new(field.clone(), 0.7, Phase::HenyeyGreenstein(phase), light);
+                let (mesh, sampling) =
+                    (Mesh::new(field.clone()), Piecewise::constant(1.4, field.span()));
+                let truth = lit_slab::truth(&mesh, &problem, &sampling);
+                let mean = lit_slab::mean(&mesh, &problem, &sampling, techniques);
+                let off = (mean.value - truth.value).abs();
+                assert!(off < 1e-12, "{techniques:?}, {light:?}: {off:e}");
+                assert!(off <= mean.error + truth.error && mean.error < 1e-9, "{:e}", mean.error);
+            }
+        }
+    }
+    assert!(Contour::new(Heuristic::Balance, 2).frequencies.len() > 100);
+}
+
+#[test]
+fn draws_agree_with_the_predictions() {
+    draws_agree(400_000);
+}
+
+#[test]
+#[ignore = "long: 4e6 draws of 24 experiments"]
+fn many_draws_agree_with_the_predictions() {
+    draws_agree(4_000_000);
+}
+
+/// Every estimator of every reference: mean, variance and lookups. A narrow cap is hardly ever hit: with wide tolerances.
+fn draws_agree(draws: u64) {
+    let all = references();
+    let means: Vec<&Reference> = all.iter().filter(|reference| reference.what == "mean").collect();
+    assert_eq!(means.len(), 3);
+    for reference in means {
+        let text = format!(
+            "title = \"t\"\n[problem.lit-slab]\n{}\nalbedo = {}\nphase.henyey-greenstein = {{ g = {} }}
+            light.{}\nsampling.constant.value = {}
+            estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
+                {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
+                {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }}, {{ full-mis.heuristic = \"power\" }}]
+            [tolerance]\nmean = {}\nvariance = {}",
+            reference.medium(), reference.a, reference.g, reference.light_in_words(), reference.majorant,
+            if reference.case == "CAP-NARROW" { 0.5 } else { 0.05 },
+            if reference.case == "CAP-NARROW" { 0.5 } else { 0.2 },
+        );
+        let rows = rows(&text, draws);
+        assert_eq!(rows.len(), 8);
+        none(&failing(&rows));
+    }
+}
+
+#[test]
+fn varying_media_and_majorants_in_steps_are_predicted_as_drawn() {
+    for (light, more) in [
+        ("disc = { distance = 0.1, radius = 0.5 }", ", { unidirectional = {} }"),
+        ("cap.cosine = 0.2", ", { unidirectional = {} }"),
+        ("distant.cosine = 0.5", ""),
+        ("point.distance = 0.5", ""),
+    ] {
+        let text = format!(
+            "title = \"t\"\n[problem.lit-slab]
+            medium.piecewise-constant = {{ breaks = [0, 1, 1.5, 2.5, 3], values = [0.4, 0, 1.5, 0.7] }}
+            span = [0, 3]\nalbedo = 0.8\nphase.henyey-greenstein = {{ g = 0.5 }}\nlight.{light}
+            sampling.piecewise-constant = {{ breaks = [0, 1, 1.6, 3], values = [0.6, 3, 2] }}
+            estimators = [{{ full-mis.heuristic = \"power\" }},
+                {{ full-mis = {{ shadow = \"exact\", heuristic = \"power\" }} }},
+                {{ directional-mis = {{ shadow = \"exact\", heuristic = \"power\" }} }},
+                {{ directional-mis = {{ shadow = \"ratio\" }} }}, {{ next-event.shadow = \"delta\" }},
+                {{ next-event = {{}} }}, {{ full-mis = {{}} }}{more}]
+            [tolerance]\nmean = 0.05\nvariance = 0.3"
+        );
+        none(&failing(&rows(&text, 1_200_000)));
+    }
+}
+
+/// A slab with other lines under its problem.
+fn slab(light: &str, more: &str, estimators: &str) -> String {
+    format!(
+        "title = \"t\"\n[problem.lit-slab]\nspan = [0, 1]\nphase.isotropic = {{}}\nlight.{light}
+        sampling.constant.value = 1.5\n{more}\nestimators = [{estimators}]"
+    )
+}
+
+#[test]
+fn lights_that_are_not_behind_the_slab_are_one_mistake_each() {
+    let usual = "medium.constant.extinction = 1\nalbedo = 0.5";
+    for (light, said) in [
+        ("cap.cosine = 1", "`cosine` is 1"),
+        ("cap.cosine = -1.5", "`cosine` is -1.5"),
+        ("cap.cosine = 0", "`cosine` is 0"),
+        ("disc = { distance = -0.5, radius = 1 }", "`distance` is -0.5"),
+        ("disc = { distance = 0, radius = 1 }", "`distance` is 0"),
+        ("disc = { distance = 1, radius = 0 }", "`radius` is 0"),
+        ("disc = { distance = 1 }", "`radius` is missing"),
+        ("distant.cosine = 0", "`cosine` is 0"),
+        ("distant.cosine = 1.01", "`cosine` is 1.01"),
+        ("point.distance = 0", "`distance` is 0"),
+        ("lamp = {}", "`lamp`"),
+        ("cap = { cosine = 0.5, radius = 1 }", "`radius` is not known here"),
+    ] {
+        let error = mistakes(&slab(light, usual, "{ full-mis = {} }")).expect("a mistake");
+        let error = error.render(false);
+        assert_eq!(error.matches("error").count(), 1, "{error}");
+        assert!(error.contains(said), "{error}");
+    }
+    let cap = "cap.cosine = 0.5";
+    for (more, said) in [
+        ("medium.constant.extinction = 0\nalbedo = 0.5", "σ_t = 0"),
+        ("medium.constant.extinction = 1\nalbedo = 0", "`albedo` is 0"),
+        ("medium.constant.extinction = 1\nalbedo = 1.5", "`albedo` is 1.5"),
+    ] {
+        let error = mistakes(&slab(cap, more, "{ full-mis = {} }")).expect("a mistake");
+        let error = error.render(false);
+        assert_eq!(error.matches("error").count(), 1, "{error}");
+        assert!(error.contains(said), "{error}");
+    }
+    assert!(mistakes(&slab(cap, usual, "{ full-mis = {} }")).is_none());
+}
+
+#[test]
+fn what_cannot_be_is_refused_by_name() {
+    let refused = |text: &str, needs: &str, found: &str| {
+        let rows = predicted(text);
+        assert_eq!(rows[0].verdict, Some(Verdict::Refused), "{}", rows[0].reason);
+        assert!(rows[0].reason.contains(needs), "{}", rows[0].reason);
+        assert!(rows[0].reason.contains(found), "{}", rows[0].reason);
+    };
+    let usual = "medium.constant.extinction = 1\nalbedo = 0.5";
+    for light in ["distant.cosine = 0.5", "point.distance = 1"] {
+        let text = slab(light, usual, "{ unidirectional = {} }");
+        refused(&text, "needs a light with a size", "unidirectional tracking finds nothing");
+    }
+    let dense = "medium.constant.extinction = 2\nalbedo = 0.5";
+    let text = slab("cap.cosine = 0.5", dense, "{ full-mis = {} }");
+    refused(&text, "needs 0 ≤ σ_t ≤ σ̂", "σ̂ = 1.5");
+    let text = slab("cap.cosine = 0.01", usual, "{ full-mis = {} }");
+    refused(&text, "needs τ/μ ≤ 64", "1e2");
+}
+
+#[test]
+fn extreme_slabs_are_predicted_or_refused() {
+    let (mut predictions, mut wrong) = (0, Vec::new());
+    for depth in [1e-6, 0.3, 30.0] {
+        for g in [-0.9, 0.0, 0.99] {
+            for light in [
+                "cap.cosine = 0.05",
+                "cap.cosine = 0.999999",
+                "disc = { distance = 0.01, radius = 1 }",
+            ] {
+                for factor in [1.0, 20.0] {
+                    let text = format!(
+                        "title = \"t\"\n[problem.lit-slab]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
+                        albedo = 0.9\nphase.henyey-greenstein = {{ g = {g} }}\nlight.{light}
+                        sampling.constant.value = {:e}
+                        estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"delta\" }},
+                            {{ next-event = {{}} }}, {{ directional-mis = {{}} }}, {{ full-mis = {{}} }}]",
+                        depth * factor
+                    );
+                    for row in predicted(&text) {
+                        let place =
+                            format!("{}: τ = {depth}, g = {g}, {light}, {factor}", row.estimator);
+                        if row.verdict == Some(Verdict::Refused) {
+                            wrong.extend((row.reason.len() < 10).then_some(place));
+                            continue;
+                        }
+                        predictions += 1;
+                        let truth = row.truth.unwrap_or(f64::NAN);
+                        let variance = row.predicted_variance.unwrap_or(0.0);
+                        let lookups = row.predicted_lookups.unwrap_or(f64::NAN);
+                        let is_fine =
+                            truth > 0.0 && truth <= 1.0 && variance >= 0.0 && lookups > 0.0;
+                        let is_bit = (variance - truth * (1.0 - truth)).abs() < 1e-12;
+                        if !is_fine || (row.estimator == "unidirectional" && !is_bit) {
+                            wrong.push(format!("{place}: {truth:e}, {variance:e}, {lookups:e}"));
+                        }
+                    }
+                }
+            }
+        }
+    }
+    none(&wrong);
+    assert!(predictions > 200, "only {predictions}");
+}
