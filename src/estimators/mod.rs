@@ -23,6 +23,7 @@ pub mod single_scattering;
 pub mod slab;
 pub mod space;
 pub mod spectral_rod;
+pub mod spectral_slab;
 pub mod spectral_transmittance;
 pub mod sphere;
 pub mod transmittance;

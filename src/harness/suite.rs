@@ -58,6 +58,7 @@ const CASES: BuiltIn = cases![
     "single-scattering/magnet",
     "slab/magnet",
     "slab/magnet-diffuse",
+    "spectral-slab/magnet",
     "furnace/eq21",
     "furnace/magnet",
     "lambertian/magnet",

@@ -48,8 +48,8 @@ use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Problem,
-    Rod, SingleScattering, Slab, SpectralRod, SpectralTransmittance, Sphere, Transmittance,
-    TransmittanceCurve, each_problem,
+    Rod, SingleScattering, Slab, SpectralRod, SpectralSlab, SpectralTransmittance, Sphere,
+    Transmittance, TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -161,6 +161,7 @@ mutable! {
     Lambertian: space::under_light();
     InfiniteMedium: space::in_infinite_medium();
     Slab: slab::mutants();
+    SpectralSlab: spectral_rod::in_slab();
     Sphere: sphere::mutants();
     BidirectionalRod: bidirectional_rod::mutants();
 }

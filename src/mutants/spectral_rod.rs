@@ -1,23 +1,35 @@
-//! Wrong walks through rods of coloured scatterers.
+//! Wrong walks through rods and slabs of coloured scatterers.
 
-use super::target::{SPECTRAL_ROD_MIS, SPECTRAL_ROD_TRACKING};
-use super::{About, Mutant, with};
+use super::target::{
+    SPECTRAL_ROD_MIS, SPECTRAL_ROD_TRACKING, SPECTRAL_SLAB_MIS, SPECTRAL_SLAB_TRACKING,
+};
+use super::{About, Mutant, Target, with};
 use crate::estimators::heroes::Heroes;
-use crate::estimators::spectral_rod::walk::walk;
+use crate::estimators::spectral_rod::Coloured;
 use crate::estimators::{Draw, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::SpectralRod;
 use crate::problems::spectral_rod::Values;
+use crate::problems::{SpectralRod, SpectralSlab};
 use crate::rng::Stream;
+
+/// A bug in draws of a body.
+fn of<P: Coloured>(
+    name: &'static str,
+    bug: &'static str,
+    target: Target,
+    draw: Draws<P>,
+    slip: Slip,
+) -> Mutant<P> {
+    let by = |slip| {
+        with((draw, slip), |&(draw, slip), setup, medium, rng| draw(slip, setup, medium, rng))
+    };
+    Mutant::new(About { name, bug, target, check: "mean" }, by(slip), by(Slip::None))
+}
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SpectralRod>> {
-    let of = |name, bug, target, draw: Draws, slip| {
-        let by = |slip| with((draw, slip), |&(draw, slip), setup, medium, rng| draw(slip, setup, medium, rng));
-        Mutant::new(About { name, bug, target, check: "mean" }, by(slip), by(Slip::None))
-    };
     vec![
         of("spectral-rod-dropped", "the last channel is missing from the denominator", SPECTRAL_ROD_MIS, balanced, Slip::Dropped),
         of("spectral-rod-albedo-twice", "the hero's albedo is a chance and stays in the weight", SPECTRAL_ROD_MIS, balanced, Slip::AlbedoTwice),
@@ -27,8 +39,19 @@ pub fn mutants() -> Vec<Mutant<SpectralRod>> {
     ]
 }
 
+/// The same in slabs.
+#[rustfmt::skip] // one mutant, one entry
+pub fn in_slab() -> Vec<Mutant<SpectralSlab>> {
+    vec![
+        of("spectral-slab-dropped", "the last channel is missing from the denominator", SPECTRAL_SLAB_MIS, balanced, Slip::Dropped),
+        of("spectral-slab-hero-anew", "every scattering has the density of a hero of its own: the mean albedo", SPECTRAL_SLAB_MIS, balanced, Slip::Anew),
+        of("spectral-slab-chance-kept", "the weight is not divided by the chance to be scattered", SPECTRAL_SLAB_TRACKING, tracked, Slip::ChanceKept),
+        of("spectral-slab-largest-albedo", "weights are divided by the largest albedo, not by the chance", SPECTRAL_SLAB_TRACKING, tracked, Slip::Largest),
+    ]
+}
+
 /// Draws with a slip.
-type Draws = fn(Slip, &Setup<SpectralRod>, &Lookups, &mut Stream) -> Draw<Values>;
+type Draws<P> = fn(Slip, &Setup<P>, &Lookups, &mut Stream) -> Draw<Values>;
 
 /// What goes wrong.
 #[derive(Clone, Copy, PartialEq)]
@@ -42,20 +65,20 @@ enum Slip {
 }
 
 /// The balance heuristic, see `estimators/spectral_rod/spectral_mis.rs`.
-fn balanced(
+fn balanced<P: Coloured>(
     slip: Slip,
-    setup: &Setup<SpectralRod>,
+    setup: &Setup<P>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    let (rod, heroes) = (&setup.problem, Heroes::Uniform);
-    let count = rod.albedos.len();
+    let (colours, heroes) = (setup.problem.colours(), Heroes::Uniform);
+    let count = colours.albedos.len();
     let hero = heroes.choose(count, rng.uniform());
-    let left = walk(setup, medium, rng, rod.albedos[hero]);
+    let left = P::walk(setup, medium, rng, colours.albedos[hero]);
     let mut weights = [1.0; MOST_CHANNELS];
     for _ in 0..left.order {
-        for (weight, albedo) in weights.iter_mut().zip(&rod.albedos) {
-            *weight *= albedo / rod.albedos[hero];
+        for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
+            *weight *= albedo / colours.albedos[hero];
         }
     }
     let mut density = 0.0;
@@ -65,36 +88,36 @@ fn balanced(
         }
     }
     if slip == Slip::Anew {
-        let mean = rod.albedos.iter().sum::<f64>() / count as f64;
-        density = (0..left.order).fold(1.0, |density, _| density * mean / rod.albedos[hero]);
+        let mean = colours.albedos.iter().sum::<f64>() / count as f64;
+        density = (0..left.order).fold(1.0, |density, _| density * mean / colours.albedos[hero]);
     }
-    let twice = if slip == Slip::AlbedoTwice { rod.albedos[hero] } else { 1.0 };
+    let twice = if slip == Slip::AlbedoTwice { colours.albedos[hero] } else { 1.0 };
     for weight in &mut weights[..count] {
         *weight = *weight / density * twice;
     }
-    Draw::free(rod.values(left.end, &weights), left.lookups)
+    Draw::free(colours.values(left.end, &weights), left.lookups)
 }
 
 /// Spectral tracking by the mean albedo, see `estimators/spectral_rod/spectral_tracking.rs`.
-fn tracked(
+fn tracked<P: Coloured>(
     slip: Slip,
-    setup: &Setup<SpectralRod>,
+    setup: &Setup<P>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
-    let rod = &setup.problem;
-    let scatter = rod.albedos.iter().sum::<f64>() / rod.albedos.len() as f64;
-    let left = walk(setup, medium, rng, scatter);
+    let colours = setup.problem.colours();
+    let scatter = colours.albedos.iter().sum::<f64>() / colours.albedos.len() as f64;
+    let left = P::walk(setup, medium, rng, scatter);
     let divisor = match slip {
         Slip::ChanceKept => 1.0,
-        Slip::Largest => rod.albedos.iter().fold(0.0f64, |most, &a| most.max(a)),
+        Slip::Largest => colours.albedos.iter().fold(0.0f64, |most, &a| most.max(a)),
         _ => scatter,
     };
     let mut weights = [1.0; MOST_CHANNELS];
     for _ in 0..left.order {
-        for (weight, albedo) in weights.iter_mut().zip(&rod.albedos) {
+        for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
             *weight *= albedo / divisor;
         }
     }
-    Draw::free(rod.values(left.end, &weights), left.lookups)
+    Draw::free(colours.values(left.end, &weights), left.lookups)
 }

@@ -161,6 +161,11 @@ pub const SPECTRAL_ROD_MIS: Target = on("spectral-rod/three-albedos", 1, "spectr
 /// The same with a thin rod of albedos .6, .5 and .4.
 pub const SPECTRAL_ROD_TRACKING: Target =
     on("spectral-rod/near-albedos", 1, "spectral-tracking (average)");
+/// A slab of albedos .9, .5 and .2, σ̂ above σ_t.
+pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/magnet", 3, "spectral-mis");
+/// The same.
+pub const SPECTRAL_SLAB_TRACKING: Target =
+    on("spectral-slab/magnet", 1, "spectral-tracking (average)");
 /// Both orders of a rod by all techniques, exact connections.
 pub const BIDIRECTIONAL_FULL: Target =
     on("bidirectional-rod/magnet", 0, "full-mis (exact connection)");

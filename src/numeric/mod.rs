@@ -4,6 +4,7 @@
 
 pub mod double_double;
 pub mod elementary;
+pub mod exponential_integral;
 pub mod known;
 pub mod lane;
 pub mod matrix;
@@ -16,6 +17,7 @@ pub mod twin;
 pub mod words;
 
 pub use double_double::Wide;
+pub use exponential_integral::exponential_integrals;
 pub use known::{Known, Span};
 pub use lane::{Lane, Row};
 pub use single::Narrow;

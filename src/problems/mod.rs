@@ -11,6 +11,7 @@ pub mod rod;
 pub mod single_scattering;
 pub mod slab;
 pub mod spectral_rod;
+pub mod spectral_slab;
 pub mod spectral_transmittance;
 pub mod sphere;
 pub mod transmittance;
@@ -40,6 +41,7 @@ pub use single_scattering::SingleScattering;
 pub use sky::Sky;
 pub use slab::Slab;
 pub use spectral_rod::SpectralRod;
+pub use spectral_slab::SpectralSlab;
 pub use spectral_transmittance::SpectralTransmittance;
 pub use sphere::Sphere;
 pub use transmittance::Transmittance;
@@ -59,6 +61,7 @@ macro_rules! each_problem {
             lit_rod::LitRod,
             lit_slab::LitSlab,
             slab::Slab,
+            spectral_slab::SpectralSlab,
             single_scattering::SingleScattering,
             furnace::Furnace,
             lambertian::Lambertian,

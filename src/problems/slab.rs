@@ -96,7 +96,8 @@ impl Problem for Slab {
     }
 }
 
-fn read_light(settings: &Settings) -> Option<Light> {
+/// Reads `incidence`.
+pub(super) fn read_light(settings: &Settings) -> Option<Light> {
     let (index, light) = settings.chosen("incidence", &["collimated".into(), "diffuse".into()])?;
     let read = if index == 0 {
         light.number("cosine", Domain::Positive).and_then(|cosine| {

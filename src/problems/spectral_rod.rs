@@ -41,26 +41,34 @@ pub enum End {
     Transmitted,
 }
 
-/// A rod with one albedo for each channel.
-#[derive(Clone)]
-pub struct SpectralRod {
-    medium: Medium,
+/// One albedo for each channel, and what is seen of the body that has them.
+#[derive(Debug, Clone)]
+pub struct Colours {
     /// The albedo of each channel.
     pub albedos: Vec<f64>,
-    /// `p_f`.
-    pub forward: f64,
     /// The end and the channel of each value of a draw.
     pub seen: Vec<(End, usize)>,
 }
 
-impl SpectralRod {
-    /// A rod with albedos and a probability to scatter forward, all in `[0, 1]`.
-    pub fn new(medium: Medium, albedos: Vec<f64>, forward: f64) -> Self {
+impl Colours {
+    /// Albedos in `[0, 1]` of a body that may send light back, or never does.
+    pub fn new(albedos: Vec<f64>, may_come_back: bool) -> Self {
         let all = 0..albedos.len();
-        let comes_back = |&channel: &usize| albedos[channel] > 0.0 && forward < 1.0;
+        let comes_back = |&channel: &usize| albedos[channel] > 0.0 && may_come_back;
         let reflected = all.clone().filter(comes_back).map(|channel| (End::Reflected, channel));
         let seen = reflected.chain(all.map(|channel| (End::Transmitted, channel))).collect();
-        Self { medium, albedos, forward, seen }
+        Self { albedos, seen }
+    }
+
+    /// Reads `albedos`.
+    pub fn read_albedos(settings: &Settings) -> Option<Vec<f64>> {
+        let albedos = settings.numbers("albedos", Domain::Unit, 1)?;
+        if albedos.len() > MOST_CHANNELS {
+            let message = format!("`albedos` lists {} channels", albedos.len());
+            settings.fault("albedos", message, format!("it takes 1 to {MOST_CHANNELS}"));
+            return None;
+        }
+        Some(albedos)
     }
 
     /// The values of a draw that left at an end with a weight for each channel.
@@ -74,19 +82,30 @@ impl SpectralRod {
     }
 }
 
+/// A rod with one albedo for each channel.
+#[derive(Clone)]
+pub struct SpectralRod {
+    medium: Medium,
+    /// The albedos.
+    pub colours: Colours,
+    /// `p_f`.
+    pub forward: f64,
+}
+
+impl SpectralRod {
+    /// A rod with albedos and a probability to scatter forward, all in `[0, 1]`.
+    pub fn new(medium: Medium, albedos: Vec<f64>, forward: f64) -> Self {
+        Self { medium, colours: Colours::new(albedos, forward < 1.0), forward }
+    }
+}
+
 impl Problem for SpectralRod {
     type Value = Values;
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
-        let albedos = settings.numbers("albedos", Domain::Unit, 1);
+        let albedos = Colours::read_albedos(settings);
         let forward = number(settings, "forward", Some(0.5));
-        let albedos = albedos?;
-        if albedos.len() > MOST_CHANNELS {
-            let message = format!("`albedos` lists {} channels", albedos.len());
-            settings.fault("albedos", message, format!("it takes 1 to {MOST_CHANNELS}"));
-            return None;
-        }
-        Some(Self::new(body?.medium(), albedos, forward?))
+        Some(Self::new(body?.medium(), albedos?, forward?))
     }
 
     fn medium(&self) -> &Medium {

@@ -10,8 +10,8 @@
 //! ```
 
 use super::series::solved;
-use crate::numeric::Span;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::{Span, exponential_integrals as exponentials};
 use crate::problems::slab::Light;
 
 /// Nodes of a panel.
@@ -41,31 +41,6 @@ pub struct Peierls<'a> {
     /// One over the products of a node's distances from the others.
     barycentric: Vec<f64>,
     depth: f64,
-}
-
-/// `E₁` and `E₂`, by a series or a continued fraction.
-fn exponentials(x: f64) -> [f64; 2] {
-    const EULER: f64 = 0.577_215_664_901_532_9;
-    if x <= 0.0 {
-        return [0.0, 1.0];
-    }
-    let decay = (-x).exp();
-    let first = if x < 1.5 {
-        let (mut sum, mut term) = (-EULER - x.ln(), -1.0);
-        for n in 1..26 {
-            term *= -x / f64::from(n);
-            sum += term / f64::from(n);
-        }
-        sum
-    } else {
-        let last = if x < 4.0 { 60 } else { 30 };
-        let below = |below: f64, n: i32| {
-            let n = f64::from(n);
-            x + 2.0 * n - 1.0 - n * n / below
-        };
-        decay / (1..=last).rev().fold(x + 2.0 * f64::from(last) + 1.0, below)
-    };
-    [first, decay - x * first]
 }
 
 impl<'a> Peierls<'a> {

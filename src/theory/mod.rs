@@ -28,6 +28,7 @@ pub mod slab;
 pub mod space;
 pub mod spectral;
 pub mod spectral_rod;
+pub mod spectral_slab;
 pub mod sphere;
 pub mod volterra;
 

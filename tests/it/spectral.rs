@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use serde::Deserialize;
-use trueflight::harness::record::Row;
+use trueflight::harness::record::{Row, Verdict};
 use trueflight::theory::spectral_rod::critical;
 
-use crate::common::{mistakes, predicted, rows};
+use crate::common::{failing, mistakes, none, predicted, rows};
 
 #[derive(Deserialize)]
 struct Reference {
@@ -252,4 +252,84 @@ fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importan
         fine.clone().count() == 3 && fine.clone().all(|row| row.reason.is_empty()),
         "{reasons:?}"
     );
+}
+
+#[derive(Deserialize)]
+struct SlabReference {
+    id: String,
+    params: SlabParams,
+    value: Vec<f64>,
+    error: f64,
+}
+
+#[derive(Deserialize)]
+struct SlabParams {
+    mu0: f64,
+    albedos: Vec<f64>,
+}
+
+/// A slab of that optical depth, the same whatever its fields; `more` are its phase function and its estimators.
+fn slab(depth: f64, cosine: f64, albedos: &[f64], more: &str) -> String {
+    format!(
+        "title = \"slab\"\n[problem.spectral-slab]\nmedium.constant = {{ extinction = 0.5 }}\nspan = [0, {}]\n\
+         albedos = {albedos:?}\nincidence.collimated = {{ cosine = {cosine} }}\nsampling.constant = {{ value = 0.8 }}\n{more}",
+        2.0 * depth
+    )
+}
+
+const TRACKED: &str = "phase.isotropic = {}\nestimators = [
+    { spectral-tracking = { probabilities = \"average\" } },
+    { spectral-tracking = { probabilities = \"maximum\" } }, { spectral-mis = {} } ]\n";
+
+#[test]
+fn slabs_of_coloured_scatterers_have_the_variances_of_the_references() {
+    let references: Vec<SlabReference> =
+        serde_json::from_str(include_str!("../data/spectral-slab.json"))
+            .expect("the reference values");
+    assert_eq!(references.len(), 8);
+    let (mut count, mut wrong) = (0, Vec::new());
+    for SlabReference { id, params, value, error } in references {
+        let parts: Vec<&str> = id.split('/').collect();
+        let depth = parts[1]["slab".len()..].parse().expect("a depth");
+        let rows = predicted(&slab(depth, params.mu0, &params.albedos, TRACKED));
+        let estimator = match parts[3] {
+            "spectral-avg" => "spectral-tracking (average)",
+            "spectral-max" => "spectral-tracking (maximum)",
+            _ => "spectral-mis",
+        };
+        if value.contains(&-1.0) {
+            let row = rows.iter().find(|row| row.estimator == estimator).expect("a row");
+            let needed = "E[X²] of channel 1 is infinite from the albedo 1.4074";
+            assert!(row.reason.contains(needed), "{}", row.reason);
+            count += 1;
+            continue;
+        }
+        for (channel, expected) in value.iter().enumerate() {
+            let name = format!("transmittance, channel {}", channel + 1);
+            let is_asked = |row: &&Row| row.estimator == estimator && row.channel == name;
+            let row = rows.iter().find(is_asked).expect("a row");
+            let found = if parts[3] == "mean" { row.truth } else { row.predicted_variance };
+            let off = (found.expect("known") - expected).abs();
+            println!("{id}, {name}: off {off:.1e}, printed error {error:.1e}");
+            count += 1;
+            if off > error {
+                wrong.push(format!("{id}, {name}: {found:?} for {expected}"));
+            }
+        }
+    }
+    none(&wrong);
+    assert_eq!(count, 22);
+}
+
+#[test]
+fn slabs_of_coloured_scatterers_are_drawn_as_predicted() {
+    let more = "phase.isotropic = {}\nestimators = [ { independent = {} }, { spectral-mis = {} },
+        { spectral-tracking = { probabilities = \"average\" } },
+        { spectral-tracking = { probabilities = \"maximum\" } } ]\n";
+    none(&failing(&rows(&slab(0.6, 0.5, &[0.6, 0.5, 0.4], more), 400_000)));
+    // Of other phase functions the variance of multiple importance sampling is that of pilots.
+    let sharp = more.replace("isotropic = {}", "henyey-greenstein = { g = 0.6 }");
+    for row in rows(&slab(0.6, 0.5, &[0.6, 0.5, 0.4], &sharp), 800_000) {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+    }
 }

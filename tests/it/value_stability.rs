@@ -13,7 +13,7 @@ use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Rod, Slab,
-    SpectralRod, SpectralTransmittance, Transmittance, TransmittanceCurve,
+    SpectralRod, SpectralSlab, SpectralTransmittance, Transmittance, TransmittanceCurve,
 };
 
 /// Draws of each experiment.
@@ -241,6 +241,7 @@ fn spectral() -> Vec<Case> {
     vec![
         case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")),
         case("colours", include_str!("../../cases/spectral-rod/near-albedos.toml")),
+        case("coloured-slab", include_str!("../../cases/spectral-slab/magnet.toml")),
     ]
 }
 
@@ -328,6 +329,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Slab::CATALOGUE, ["slab", "slab"]),
         (SpectralTransmittance::CATALOGUE, ["layers", "layers"]),
         (SpectralRod::CATALOGUE, ["colours", "colours"]),
+        (SpectralSlab::CATALOGUE, ["coloured-slab", "coloured-slab"]),
         (Furnace::CATALOGUE, ["furnace", "furnace"]),
         (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
         (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),

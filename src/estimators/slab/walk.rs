@@ -16,8 +16,8 @@ use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
-use crate::problems::Slab;
-use crate::problems::slab::Light;
+use crate::problems::slab::{Incidence, Light};
+use crate::problems::{Problem, Slab};
 use crate::rng::Stream;
 use crate::theory::particle::{Event, Odds, ParticleRule};
 
@@ -62,23 +62,34 @@ pub fn turned<L: Lane>(cosine: L, deflection: L, azimuth: L) -> L {
     turned.or_less(one).or_more(-one)
 }
 
-/// Makes one draw: reflectance and transmittance.
+/// What became of a particle.
+pub struct Left {
+    /// Whether it left at the bottom, or at the top; `None` if it was absorbed.
+    pub below: Option<bool>,
+    /// Its weight.
+    pub weight: f64,
+    /// How often it was scattered.
+    pub order: u32,
+    /// The tentative collisions.
+    pub lookups: u32,
+}
+
+/// Walks through a slab of an albedo.
 #[inline(always)]
-pub fn draw(
+pub fn walk<P: Problem>(
     steps: &impl Steps,
-    setup: &Setup<Slab>,
+    (incidence, albedo): (&Incidence, f64),
+    setup: &Setup<P>,
     medium: &Lookups,
     rng: &mut Stream,
-) -> Draw<[f64; 2]> {
-    let slab = &*setup.problem;
-    let incidence = &slab.incidence;
+) -> Left {
     let mut cosine = match incidence.light {
         Light::Collimated(cosine) => cosine,
         Light::Diffuse => steps.diffuse(rng),
     };
     let mut cursor = setup.sampling.begin();
     let mut weight = 1.0;
-    let mut lookups = 0;
+    let (mut order, mut lookups) = (0, 0);
     loop {
         let (length, number) = (-rng.ln_uniform(), rng.uniform());
         let depth = steps.descent(length, cosine);
@@ -89,15 +100,15 @@ pub fn draw(
             setup.sampling.fly_back(&mut cursor, depth)
         };
         let Some(sampling) = flown else {
-            let value = if is_down { [0.0, weight] } else { [weight, 0.0] };
-            return Draw::free(value, lookups);
+            return Left { below: Some(is_down), weight, order, lookups };
         };
         lookups += 1;
-        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), slab.albedo);
+        let odds = steps.odds_at(medium.extinction(cursor.t) * (1.0 / sampling), albedo);
         match odds.decide(number) {
             Event::Transmitted => weight *= odds.transmit_weight,
             Event::Scattered => {
                 weight *= odds.scatter_weight;
+                order += 1;
                 let deflection = steps.deflection(&incidence.phase, rng);
                 cosine = if incidence.phase == Phase::Isotropic(Isotropic) {
                     deflection
@@ -106,9 +117,27 @@ pub fn draw(
                     turned(cosine, deflection, azimuth)
                 };
             }
-            Event::Absorbed => return Draw::free([0.0; 2], lookups),
+            Event::Absorbed => return Left { below: None, weight, order, lookups },
         }
     }
+}
+
+/// Makes one draw: reflectance and transmittance.
+#[inline(always)]
+pub fn draw(
+    steps: &impl Steps,
+    setup: &Setup<Slab>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 2]> {
+    let slab = &*setup.problem;
+    let left = walk(steps, (&slab.incidence, slab.albedo), setup, medium, rng);
+    let value = match left.below {
+        Some(true) => [0.0, left.weight],
+        Some(false) => [left.weight, 0.0],
+        None => [0.0; 2],
+    };
+    Draw::free(value, left.lookups)
 }
 
 #[cfg(test)]

@@ -12,17 +12,16 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::walk;
+use super::{Coloured, spectrum, walk};
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::SpectralRod;
 use crate::problems::spectral_rod::Values;
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::spectral_rod::{Spectrum, Tracker};
+use crate::theory::spectral_rod::Tracker;
 
 /// Independent tracking.
 #[derive(Debug, Clone)]
@@ -30,7 +29,7 @@ pub struct Independent {
     heroes: Heroes,
 }
 
-impl Estimator<SpectralRod> for Independent {
+impl<P: Coloured> Estimator<P> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
@@ -41,23 +40,22 @@ impl Estimator<SpectralRod> for Independent {
         self.heroes.label()
     }
 
-    fn domain(&self, setup: &Setup<SpectralRod>) -> Result<(), Refusal> {
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
         walk::require(setup, &self.heroes)
     }
 
-    fn predict(&self, setup: &Setup<SpectralRod>) -> Prediction {
-        let heroes = self.heroes.of(setup.problem.albedos.len());
-        let spectrum = Spectrum::new(&setup.problem, heroes, Tracker::Independent);
-        spectrum.predict(&setup.mesh, &setup.sampling)
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        let heroes = self.heroes.of(setup.problem.colours().albedos.len());
+        spectrum(setup, heroes, Tracker::Independent).predict()
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let rod = &setup.problem;
-        let hero = self.heroes.choose(rod.albedos.len(), rng.uniform());
-        let left = walk::walk(setup, medium, rng, rod.albedos[hero]);
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
+        let colours = setup.problem.colours();
+        let hero = self.heroes.choose(colours.albedos.len(), rng.uniform());
+        let left = P::walk(setup, medium, rng, colours.albedos[hero]);
         let mut weights = [0.0; MOST_CHANNELS];
-        weights[hero] = 1.0 / self.heroes.probability(rod.albedos.len(), hero);
-        Draw::free(rod.values(left.end, &weights), left.lookups)
+        weights[hero] = 1.0 / self.heroes.probability(colours.albedos.len(), hero);
+        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

@@ -5,8 +5,55 @@ pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
 
-use crate::estimators::estimators;
-use crate::problems::SpectralRod;
+use crate::estimators::{Refusal, Setup, estimators};
+use crate::media::Lookups;
+use crate::problems::spectral_rod::{Colours, Values};
+use crate::problems::{Problem, SpectralRod};
+use crate::rng::Stream;
+use crate::theory::spectral_rod::{Body, Rods, Spectrum, Tracker};
+
+/// A body of coloured scatterers: the pages of its estimators are the same.
+pub trait Coloured: Problem<Value = Values> {
+    /// Its albedos.
+    fn colours(&self) -> &Colours;
+
+    /// Whether theory knows the body.
+    ///
+    /// # Errors
+    ///
+    /// Why not.
+    fn require_answer(setup: &Setup<Self>) -> Result<(), Refusal>;
+
+    /// What theory knows of it.
+    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
+
+    /// Walks with a chance to be scattered at a real collision.
+    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left;
+}
+
+impl Coloured for SpectralRod {
+    fn colours(&self) -> &Colours {
+        &self.colours
+    }
+
+    fn require_answer(_: &Setup<Self>) -> Result<(), Refusal> {
+        Ok(())
+    }
+
+    fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
+        Box::new(Rods::new(&setup.problem, &setup.mesh, &setup.sampling))
+    }
+
+    #[inline(always)]
+    fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left {
+        walk::walk(setup, medium, rng, scatter)
+    }
+}
+
+/// What theory says of a tracker.
+fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -> Spectrum<'_> {
+    Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
+}
 
 estimators! {
     SpectralRod:

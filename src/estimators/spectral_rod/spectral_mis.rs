@@ -15,17 +15,16 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::walk;
+use super::{Coloured, spectrum, walk};
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::SpectralRod;
 use crate::problems::spectral_rod::Values;
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::spectral_rod::{Spectrum, Tracker};
+use crate::theory::spectral_rod::Tracker;
 
 /// The balance heuristic over heroes.
 #[derive(Debug, Clone)]
@@ -33,7 +32,7 @@ pub struct SpectralMis {
     heroes: Heroes,
 }
 
-impl Estimator<SpectralRod> for SpectralMis {
+impl<P: Coloured> Estimator<P> for SpectralMis {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
@@ -44,27 +43,26 @@ impl Estimator<SpectralRod> for SpectralMis {
         self.heroes.label()
     }
 
-    fn domain(&self, setup: &Setup<SpectralRod>) -> Result<(), Refusal> {
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
         walk::require(setup, &self.heroes)
     }
 
-    fn predict(&self, setup: &Setup<SpectralRod>) -> Prediction {
-        let heroes = self.heroes.of(setup.problem.albedos.len());
-        let spectrum = Spectrum::new(&setup.problem, heroes, Tracker::Mis);
-        spectrum.predict(&setup.mesh, &setup.sampling)
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        let heroes = self.heroes.of(setup.problem.colours().albedos.len());
+        spectrum(setup, heroes, Tracker::Mis).predict()
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let rod = &setup.problem;
-        let count = rod.albedos.len();
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
+        let colours = setup.problem.colours();
+        let count = colours.albedos.len();
         let hero = self.heroes.choose(count, rng.uniform());
-        let left = walk::walk(setup, medium, rng, rod.albedos[hero]);
+        let left = P::walk(setup, medium, rng, colours.albedos[hero]);
         let mut weights = [1.0; MOST_CHANNELS];
         for _ in 0..left.order {
             // Relative to the hero's, which was scattered so often.
-            for (weight, albedo) in weights.iter_mut().zip(&rod.albedos) {
-                *weight *= albedo / rod.albedos[hero];
+            for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
+                *weight *= albedo / colours.albedos[hero];
             }
         }
         let mut density = 0.0;
@@ -74,6 +72,6 @@ impl Estimator<SpectralRod> for SpectralMis {
         for weight in &mut weights[..count] {
             *weight /= density;
         }
-        Draw::free(rod.values(left.end, &weights), left.lookups)
+        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

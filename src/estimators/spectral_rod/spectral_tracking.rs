@@ -17,13 +17,12 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
 
-use super::walk;
+use super::{Coloured, spectrum, walk};
 use crate::catalogue::Settings;
 use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::SpectralRod;
 use crate::problems::spectral_rod::Values;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -48,14 +47,14 @@ impl SpectralTracking {
         }
     }
 
-    fn spectrum<'a>(&self, setup: &'a Setup<SpectralRod>) -> Spectrum<'a> {
-        let albedos = &setup.problem.albedos;
+    fn spectrum<'a, P: Coloured>(&self, setup: &'a Setup<P>) -> Spectrum<'a> {
+        let albedos = &setup.problem.colours().albedos;
         let tracker = Tracker::Tracking { scatter: self.scatter(albedos) };
-        Spectrum::new(&setup.problem, Heroes::Uniform.of(albedos.len()), tracker)
+        spectrum(setup, Heroes::Uniform.of(albedos.len()), tracker)
     }
 }
 
-impl Estimator<SpectralRod> for SpectralTracking {
+impl<P: Coloured> Estimator<P> for SpectralTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
 
     fn read(settings: &Settings) -> Option<Self> {
@@ -67,26 +66,26 @@ impl Estimator<SpectralRod> for SpectralTracking {
         if self.maximum { "maximum".into() } else { "average".into() }
     }
 
-    fn domain(&self, setup: &Setup<SpectralRod>) -> Result<(), Refusal> {
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
         walk::require(setup, &Heroes::Uniform)?;
         walk::require_variance(self.spectrum(setup).diverges())
     }
 
-    fn predict(&self, setup: &Setup<SpectralRod>) -> Prediction {
-        self.spectrum(setup).predict(&setup.mesh, &setup.sampling)
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        self.spectrum(setup).predict()
     }
 
     #[inline(always)]
-    fn draw(&self, setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let rod = &setup.problem;
-        let scatter = self.scatter(&rod.albedos);
-        let left = walk::walk(setup, medium, rng, scatter);
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
+        let colours = setup.problem.colours();
+        let scatter = self.scatter(&colours.albedos);
+        let left = P::walk(setup, medium, rng, scatter);
         let mut weights = [1.0; MOST_CHANNELS];
         for _ in 0..left.order {
-            for (weight, albedo) in weights.iter_mut().zip(&rod.albedos) {
+            for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
                 *weight *= albedo / scatter;
             }
         }
-        Draw::free(rod.values(left.end, &weights), left.lookups)
+        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

@@ -7,7 +7,7 @@
 //!
 //! A flight and what happens at its end take a random number each; a scattering takes a third.
 
-use crate::catalogue::rounded;
+use super::Coloured;
 use crate::estimators::heroes::Heroes;
 use crate::estimators::{Refusal, Setup};
 use crate::media::{Extinction, Lookups};
@@ -55,27 +55,26 @@ pub fn walk(setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream, scat
     }
 }
 
-/// σ̂ ≥ σ_t, few collisions, and one hero probability for each channel.
+/// σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and an answer.
 ///
 /// # Errors
 ///
 /// What is violated.
-pub fn require(setup: &Setup<SpectralRod>, heroes: &Heroes) -> Result<(), Refusal> {
-    heroes.require(setup.problem.albedos.len())?;
+pub fn require<P: Coloured>(setup: &Setup<P>, heroes: &Heroes) -> Result<(), Refusal> {
+    heroes.require(setup.problem.colours().albedos.len())?;
     setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
-    setup.require_few_collisions("∫σ̂ ≤ 1e6")
+    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+    P::require_answer(setup)
 }
 
 /// A variance of each channel.
 ///
 /// # Errors
 ///
-/// The channel and the optical length from which on it has none.
-pub fn require_variance(diverges: Option<(usize, f64)>) -> Result<(), Refusal> {
-    diverges.map_or(Ok(()), |(channel, length)| {
-        let length = rounded(length);
-        let found =
-            format!("E[X²] of channel {} is infinite from optical length {length} on", channel + 1);
+/// The channel, and what its body would have to be.
+pub fn require_variance(diverges: Option<(usize, String)>) -> Result<(), Refusal> {
+    diverges.map_or(Ok(()), |(channel, why)| {
+        let found = format!("E[X²] of channel {} is infinite {why}", channel + 1);
         Err(Refusal::mismatch("a finite variance", found))
     })
 }

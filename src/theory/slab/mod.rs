@@ -20,6 +20,7 @@
 pub mod cache;
 pub mod directions;
 pub mod layer;
+pub mod orders;
 pub mod pieces;
 pub mod walk;
 

@@ -204,38 +204,71 @@ impl Walk {
     /// The law of the number of collisions in each light, without its probabilities; `None` where it is not
     /// known, or has an infinite variance.
     fn lookups(&self, lights: &[Light]) -> Vec<Option<CountLaw>> {
-        let Pieces::Exact(pieces) = &self.pieces else { return Vec::new() };
-        // Along a layer of null collisions only there is no end to them.
-        let odds = |ratio: f64| self.odds(ratio);
-        if pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds)) {
-            return Vec::new();
-        }
-        let slices = |z: f64, score: fn(&Odds) -> f64| -> Vec<Slice> {
-            let at = |ratio: f64| {
-                let odds = self.odds(ratio);
-                [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
-            };
-            pieces.iter().map(|piece| piece.slice(at)).collect()
-        };
-        let phase = &self.incidence.phase;
-        let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
+        let Some(scored) = self.scored() else { return Vec::new() };
         let law = |(light, answer): (&Light, Answer)| {
-            let Known { value: mean, error } = answer.score;
-            let f = |theta: f64| -> Option<f64> {
-                let slices = slices(theta.exp(), ends);
-                let lights = std::slice::from_ref(light);
-                let found = energies(phase, lights, &slices, Resolution::LAYERED)?.pop()?;
-                Some((found.reflected + found.transmitted + found.score).ln())
-            };
-            let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
-            let kurtosis = 3.0 + fourth / (variance * variance);
-            let error = error / mean;
-            Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
+            self.count(answer.score, |theta| self.ln_generating(light, theta))
         };
-        let scored = slices(1.0, |_| 1.0);
-        let answers = solve(phase, lights, &scored, Resolution::COARSE);
+        let answers = solve(&self.incidence.phase, lights, &scored, Resolution::COARSE);
         lights.iter().zip(answers.into_iter().flatten()).map(law).collect()
     }
+
+    /// Layers that score every collision; `None` where the law of their number is not known.
+    fn scored(&self) -> Option<Vec<Slice>> {
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
+        // Along a layer of null collisions only there is no end to them.
+        let odds = |ratio: f64| self.odds(ratio);
+        let is_idle = pieces.is_empty() || pieces.iter().any(|piece| piece.is_idle(odds));
+        (!is_idle).then(|| self.slices(pieces, 1.0, |_| 1.0))
+    }
+
+    fn slices(&self, pieces: &[Piece], z: f64, score: fn(&Odds) -> f64) -> Vec<Slice> {
+        let at = |ratio: f64| {
+            let odds = self.odds(ratio);
+            [odds.transmit, odds.scatter, score(&odds)].map(|x| z * x)
+        };
+        pieces.iter().map(|piece| piece.slice(at)).collect()
+    }
+
+    /// `ln G(e^θ)`.
+    fn ln_generating(&self, light: &Light, theta: f64) -> Option<f64> {
+        let Pieces::Exact(pieces) = &self.pieces else { return None };
+        let ends = |odds: &Odds| 1.0 - odds.transmit - odds.scatter;
+        let slices = self.slices(pieces, theta.exp(), ends);
+        let lights = std::slice::from_ref(light);
+        let found = energies(&self.incidence.phase, lights, &slices, Resolution::LAYERED)?.pop()?;
+        Some((found.reflected + found.transmitted + found.score).ln())
+    }
+
+    /// The law of a mean and of `ln G(e^θ)`.
+    fn count(
+        &self,
+        Known { value: mean, error }: Known,
+        f: impl Fn(f64) -> Option<f64>,
+    ) -> Option<CountLaw> {
+        let [variance, fourth] = if self.laws { cumulants(mean, f)? } else { [mean, 0.0] };
+        let kurtosis = 3.0 + fourth / (variance * variance);
+        let error = error / mean;
+        Some(CountLaw { mean, variance, error, kurtosis, poisson: false, pmf: Vec::new() })
+    }
+}
+
+/// The law of the number of collisions of one of several walks, by their probabilities, in their first light; `None` where
+/// it is not known.
+pub fn mixed_lookups(walks: &[(f64, Walk)]) -> Option<CountLaw> {
+    let mut mean = Known::new(0.0, 0.0);
+    for (weight, walk) in walks {
+        let (phase, lights) = (&walk.incidence.phase, [walk.incidence.light]);
+        let score = solve(phase, &lights, &walk.scored()?, Resolution::COARSE)?[0].score;
+        mean = mean + Known::new(weight * score.value, weight * score.error);
+    }
+    let (_, first) = walks.first()?;
+    first.count(mean, |theta| {
+        let mut sum = 0.0;
+        for (weight, walk) in walks {
+            sum += weight * walk.ln_generating(&walk.incidence.light, theta)?.exp();
+        }
+        Some(sum.ln())
+    })
 }
 
 /// What raw moments say.
