@@ -1,13 +1,13 @@
 //! Which experiments of the cases are meant.
 
-use globset::{GlobBuilder, GlobMatcher};
+use glob::{Pattern, PatternError};
 
 /// A pattern that selects experiments by name.
 ///
 /// It is matched against the case's name, against the estimator's name without its settings, and
 /// against both as `case:estimator`; `*` also crosses slashes.
 #[derive(Debug, Clone)]
-pub struct Filter(GlobMatcher);
+pub struct Filter(Pattern);
 
 impl Filter {
     /// A pattern such as `*eq21*`, `ratio` or `transmittance/*:single`.
@@ -15,15 +15,14 @@ impl Filter {
     /// # Errors
     ///
     /// The pattern is malformed.
-    pub fn new(pattern: &str) -> Result<Self, globset::Error> {
-        let glob = GlobBuilder::new(pattern).literal_separator(false).build()?;
-        Ok(Self(glob.compile_matcher()))
+    pub fn new(pattern: &str) -> Result<Self, PatternError> {
+        Pattern::new(pattern).map(Self)
     }
 
     /// Whether an experiment is meant; `estimator` is its label, settings included.
     pub fn keeps(&self, case: &str, estimator: &str) -> bool {
         let name = estimator.split(' ').next().unwrap_or_default();
-        let matches = |text: &str| self.0.is_match(text);
+        let matches = |text: &str| self.0.matches(text);
         matches(case)
             || matches(name)
             || matches(estimator)

@@ -113,55 +113,52 @@ fn read_vol(file: File) -> Result<Samples, Unreadable> {
     let size = sizes([1, 2, 3].map(|n| u64::try_from(integer(n)).unwrap_or(0)))?;
     let corner = |n: usize| Point([0, 1, 2].map(|i| f64::from(f32::from_le_bytes(word(n + i)))));
     let bounds = Aabb { low: corner(5), high: corner(8) };
-    let wanted = 4 * size.iter().product::<usize>();
-    let mut bytes = Vec::new();
-    // One byte more than wanted shows that a file is too long.
-    let rest = reader.take(wanted as u64 + 1).read_to_end(&mut bytes);
-    if rest.is_err() || bytes.len() != wanted {
-        let than = if bytes.len() < wanted { "shorter" } else { "longer" };
-        let message = format!("the file is {than} than its {wanted} bytes of samples");
-        return wrong(
-            message,
-            "write the file anew, with nothing but the samples after the header",
-        );
-    }
+    let bytes = samples(reader, 4 * size.iter().product::<usize>())?;
     let (words, _) = bytes.as_chunks::<4>();
     let values = words.iter().map(|&word| f64::from(f32::from_le_bytes(word))).collect();
     Ok(Samples { size, values, bounds: Some(bounds) })
 }
 
+/// The bytes after a header, if there are as many as wanted and no more.
+fn samples(file: impl Read, wanted: usize) -> Result<Vec<u8>, Unreadable> {
+    let mut bytes = Vec::new();
+    // One byte more than wanted shows that a file is too long.
+    let rest = file.take(wanted as u64 + 1).read_to_end(&mut bytes);
+    if rest.is_ok() && bytes.len() == wanted {
+        return Ok(bytes);
+    }
+    let than = if bytes.len() < wanted { "shorter" } else { "longer" };
+    let message = format!("the file is {than} than its {wanted} bytes of samples");
+    wrong(message, "write the file anew, with nothing but the samples after the header")
+}
+
 fn read_npy(file: File) -> Result<Samples, Unreadable> {
     let cure = "save a float32 or float64 array of shape (nz, ny, nx) by numpy.save";
     let mut file = BufReader::new(file);
-    let npy = match npy::bytes(&mut file).and_then(|header| npy::parse(&header)) {
-        Ok(header) => npyz::NpyFile::with_header(header, file),
+    let header = match npy::bytes(&mut file).and_then(|header| npy::parse(&header)) {
+        Ok(header) => header,
         Err(error) => return wrong(format!("the header cannot be read: {error}"), cure),
     };
-    let &[nz, ny, nx] = npy.shape() else {
-        return wrong(format!("the array has {} dimensions, not 3", npy.shape().len()), cure);
+    let &[nz, ny, nx] = header.shape.as_slice() else {
+        return wrong(format!("the array has {} dimensions, not 3", header.shape.len()), cure);
     };
-    if npy.order() != npyz::Order::C {
+    if header.fortran_order {
         return wrong("the array is in Fortran order", "save numpy.ascontiguousarray of it");
     }
     let size = sizes([nx, ny, nz])?;
-    let kind = npy.dtype().descr();
-    let values = match npy.try_data::<f64>() {
-        Ok(data) => data.collect::<Result<Vec<f64>, _>>(),
-        Err(npy) => match npy.try_data::<f32>() {
-            Ok(data) => data.map(|x| x.map(f64::from)).collect(),
-            Err(_) => return wrong(format!("the samples have the type {kind}"), cure),
-        },
+    let Some(word) = npy::Word::named(&header.kind) else {
+        return wrong(format!("the samples have the type {}", header.kind), cure);
     };
-    match values {
-        Ok(values) => Ok(Samples { size, values, bounds: None }),
-        Err(error) => wrong(format!("the samples end too early: {error}"), cure),
-    }
+    let bytes = samples(file, word.width() * size.iter().product::<usize>())?;
+    let mut values = Vec::new();
+    word.convert(&bytes, &mut values);
+    Ok(Samples { size, values, bounds: None })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use npyz::WriterBuilder;
+    use crate::files::npy::tests::header;
 
     fn vol(size: [i32; 3], kind: i32, channels: i32, values: &[f32]) -> Vec<u8> {
         let mut bytes = b"VOL\x03".to_vec();
@@ -208,18 +205,14 @@ mod tests {
         }
     }
 
-    fn npy(shape: &[u64], order: npyz::Order, values: &[f32]) -> Vec<u8> {
-        let mut bytes = Vec::new();
-        let options = npyz::WriteOptions::new().default_dtype().shape(shape).order(order);
-        let mut writer = options.writer(&mut bytes).begin_nd().expect("a header");
-        writer.extend(values.iter().copied()).expect("room");
-        writer.finish().expect("written");
-        bytes
+    fn npy(shape: &str, order: &str, values: &[f32]) -> Vec<u8> {
+        let words = values.iter().flat_map(|x| x.to_le_bytes());
+        header("'<f4'", order, shape).into_iter().chain(words).collect()
     }
 
     #[test]
     fn an_npy_file_is_read_with_x_fastest() {
-        let bytes = npy(&[1, 2, 3], npyz::Order::C, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
+        let bytes = npy("(1, 2, 3)", "False", &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         let samples = written("a.npy", &bytes).expect("a grid");
         assert_eq!(samples.size, [3, 2, 1]);
         assert_eq!(samples.values, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
@@ -228,18 +221,21 @@ mod tests {
     #[test]
     fn bad_npy_files_are_refused() {
         let cases = [
-            (npy(&[4], npyz::Order::C, &[1.0; 4]), "1 dimensions"),
-            (npy(&[1, 2, 2], npyz::Order::Fortran, &[1.0; 4]), "Fortran"),
-            (npy(&[1, 2, 2], npyz::Order::C, &[f32::INFINITY; 4]), "(0, 0, 0) is inf"),
+            (npy("(4,)", "False", &[1.0; 4]), "1 dimensions"),
+            (npy("(1, 2, 2)", "True", &[1.0; 4]), "Fortran"),
+            (npy("(1, 2, 2)", "False", &[f32::INFINITY; 4]), "(0, 0, 0) is inf"),
+            ([header("'<i4'", "False", "(1, 1, 1)"), vec![0; 4]].concat(), "<i4"),
             (b"no such thing".to_vec(), "header"),
         ];
         for (bytes, words) in cases {
             let error = written("a.npy", &bytes).expect_err(words);
             assert!(error.message.contains(words), "{error:?} lacks {words}");
         }
-        let whole = npy(&[1, 2, 2], npyz::Order::C, &[1.0; 4]);
+        let whole = npy("(1, 2, 2)", "False", &[1.0; 4]);
         let error = written("a.npy", &whole[..whole.len() - 3]).expect_err("truncated");
-        assert!(error.message.contains("too early"));
+        assert!(error.message.contains("shorter"));
+        let longer = [&whole[..], &[0]].concat();
+        assert!(written("a.npy", &longer).expect_err("longer").message.contains("longer"));
         assert!(written("a.raw", &whole).is_err());
         assert!(read(Path::new("nowhere.vol")).is_err());
     }

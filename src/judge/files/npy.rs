@@ -1,8 +1,8 @@
-//! `NumPy`'s array file: a header that npyz reads, then words.
+//! `NumPy`'s array file: a header, then words.
 
-use super::raw::{Word, Words};
+use super::raw::Words;
 use super::{Bytes, ForeignError};
-use crate::files::npy;
+use crate::files::npy::{self, Word};
 
 /// Opens an array; `length` counts the bytes of the file.
 pub(super) fn open(
@@ -14,31 +14,22 @@ pub(super) fn open(
     if header.is_empty() {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
-    if let Some(shape) = npy::uncountable(&header) {
-        return Err(ForeignError::Shape { file: file.to_owned(), shape });
-    }
     let array = npy::parse(&header)
         .map_err(|cause| ForeignError::NotNpy { file: file.to_owned(), cause })?;
-    let header = header.len() as u64;
-    let word = match array.dtype().descr().trim_matches('\'') {
-        "<f8" => Word::LittleDouble,
-        ">f8" => Word::BigDouble,
-        "<f4" => Word::LittleSingle,
-        ">f4" => Word::BigSingle,
-        found => {
-            return Err(ForeignError::ElementType { file: file.to_owned(), found: found.into() });
-        }
-    };
+    let shape = || ForeignError::Shape { file: file.to_owned(), shape: array.written_shape() };
+    let expected = array.count().ok_or_else(shape)?;
+    let word = Word::named(&array.kind).ok_or_else(|| ForeignError::ElementType {
+        file: file.to_owned(),
+        found: array.kind.clone(),
+    })?;
     // With one axis the order of C and that of Fortran are the same.
-    if array.shape().iter().filter(|&&size| size != 1).count() > 1 {
-        let sizes: Vec<String> = array.shape().iter().map(u64::to_string).collect();
-        let shape = format!("({})", sizes.join(", "));
-        return Err(ForeignError::Shape { file: file.to_owned(), shape });
+    if array.shape.iter().filter(|&&size| size != 1).count() > 1 {
+        return Err(shape());
     }
-    let expected = array.shape().iter().product::<u64>();
     if expected == 0 {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
+    let header = header.len() as u64;
     if let Some(length) = length {
         let found = length.saturating_sub(header) / word.width() as u64;
         if found < expected {
@@ -55,22 +46,21 @@ pub(super) fn open(
 mod tests {
     use std::io::{Cursor, Write};
 
-    use npyz::{AutoSerialize, DType, Order, Serialize, TypeStr, WriteOptions, WriterBuilder};
-
     use super::super::{Draws, Format, all};
     use super::*;
+    use crate::files::npy::tests::header as whole_header;
 
-    fn array<T>(kind: &str, shape: &[u64], order: Order, values: &[T]) -> Vec<u8>
-    where
-        T: Serialize + AutoSerialize + Copy,
-    {
-        let mut bytes = Vec::new();
-        let kind: TypeStr = kind.parse().expect("a type");
-        let options = WriteOptions::new().dtype(DType::Plain(kind)).shape(shape).order(order);
-        let mut writer = options.writer(&mut bytes).begin_nd().expect("a header");
-        writer.extend(values.iter().copied()).expect("written");
-        writer.finish().expect("written");
-        bytes
+    fn array<const N: usize>(
+        kind: &str,
+        shape: &str,
+        words: impl Iterator<Item = [u8; N]>,
+    ) -> Vec<u8> {
+        let header = whole_header(&format!("'{kind}'"), "False", shape);
+        header.into_iter().chain(words.flatten()).collect()
+    }
+
+    fn doubles(shape: &str, values: &[f64]) -> Vec<u8> {
+        array("<f8", shape, values.iter().map(|x| x.to_le_bytes()))
     }
 
     fn pipe(bytes: Vec<u8>) -> Result<Draws, ForeignError> {
@@ -87,41 +77,38 @@ mod tests {
     fn every_width_and_byte_order_comes_back() {
         let values: Vec<f64> = (0..40_000).map(|i| f64::from(i) / 64.0 - 3.0).collect();
         let singles: Vec<f32> = (0..40_000u16).map(|i| f32::from(i) / 64.0 - 3.0).collect();
-        let shape = [40_000];
+        let shape = "(40000,)";
+        let fortran = whole_header("'<f8'", "True", "(1, 40000, 1)").into_iter();
         for bytes in [
-            array("<f8", &shape, Order::C, &values),
-            array(">f8", &shape, Order::C, &values),
-            array("<f4", &shape, Order::C, &singles),
-            array(">f4", &shape, Order::C, &singles),
-            array("<f8", &[1, 40_000, 1], Order::Fortran, &values),
+            doubles(shape, &values),
+            array(">f8", shape, values.iter().map(|x| x.to_be_bytes())),
+            array("<f4", shape, singles.iter().map(|x| x.to_le_bytes())),
+            array(">f4", shape, singles.iter().map(|x| x.to_be_bytes())),
+            fortran.chain(values.iter().flat_map(|x| x.to_le_bytes())).collect(),
         ] {
             let draws = open(&bytes).expect("draws");
             assert_eq!(draws.known_length(), Some(40_000));
             assert_eq!(all(draws).expect("draws"), values);
             assert_eq!(all(pipe(bytes).expect("draws")).expect("draws"), values);
         }
-        let one = array("<f8", &[], Order::C, &[2.5]);
+        let one = doubles("()", &[2.5]);
         assert_eq!(all(pipe(one).expect("a draw")).expect("a draw"), [2.5]);
     }
 
     #[test]
     fn several_axes_are_refused() {
-        let bytes = array("<f8", &[2, 1, 3], Order::C, &[0.0; 6]);
+        let bytes = doubles("(2, 1, 3)", &[0.0; 6]);
         assert_eq!(
             pipe(bytes).expect_err("a shape").to_string(),
             "x.npy: an array of shape (2, 1, 3), whose order of draws is not known; \
              save one axis, by x.ravel() or x[:, k]"
         );
-        let bytes = array("<f8", &[2, 3], Order::Fortran, &[0.0; 6]);
+        let bytes = whole_header("'<f8'", "True", "(2, 3)");
         assert!(matches!(pipe(bytes), Err(ForeignError::Shape { .. })));
     }
 
     fn header(kind: &str, shape: &str) -> Vec<u8> {
-        let text = format!("{{'descr': {kind}, 'fortran_order': False, 'shape': {shape}, }}\n");
-        let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
-        bytes.extend(u16::try_from(text.len()).expect("short").to_le_bytes());
-        bytes.extend(text.bytes());
-        bytes
+        whole_header(kind, "False", shape)
     }
 
     #[test]
@@ -144,7 +131,7 @@ mod tests {
 
     #[test]
     fn other_types_are_refused() {
-        let bytes = array("<i4", &[3], Order::C, &[1i32, 2, 3]);
+        let bytes = array("<i4", "(3,)", [1i32, 2, 3].map(i32::to_le_bytes).into_iter());
         assert_eq!(
             pipe(bytes).expect_err("a type").to_string(),
             "x.npy: an array of type <i4; save it as float64 or float32, by x.astype('<f8')"
@@ -157,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_file_cut_off_is_refused() {
-        let whole = array("<f8", &[5], Order::C, &[0.5; 5]);
+        let whole = doubles("(5,)", &[0.5; 5]);
         let cut = whole[..whole.len() - 9].to_vec();
         let message = ": ends after 3 of 5 draws; write it to the end";
         assert!(open(&cut).expect_err("cut").to_string().ends_with(message));
@@ -169,7 +156,7 @@ mod tests {
 
     #[test]
     fn a_file_that_goes_on_is_refused() {
-        let whole = array("<f8", &[5], Order::C, &[0.5; 5]);
+        let whole = doubles("(5,)", &[0.5; 5]);
         let twice = [whole.clone(), whole].concat();
         let message = ": goes on after its 5 draws; write one array a file";
         assert!(open(&twice).expect_err("two arrays").to_string().ends_with(message));
@@ -180,7 +167,7 @@ mod tests {
     #[test]
     fn what_is_no_array_is_refused() {
         assert!(matches!(pipe(Vec::new()), Err(ForeignError::Empty { .. })));
-        let none = array::<f64>("<f8", &[0], Order::C, &[]);
+        let none = doubles("(0,)", &[]);
         assert!(matches!(pipe(none), Err(ForeignError::Empty { .. })));
         let error = pipe(b"T,X\n0.5,0.25\n".to_vec()).expect_err("a table");
         assert!(matches!(error, ForeignError::NotNpy { .. }), "{error}");

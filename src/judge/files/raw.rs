@@ -1,47 +1,10 @@
 //! Numbers of a fixed width, one after the other.
 
 use super::{Bytes, ForeignError};
+use crate::files::npy::Word;
 
 /// How many bytes are asked for at a time: they stay in the second-level cache until converted.
 const CHUNK: usize = 1 << 17;
-
-/// A number's width and byte order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Word {
-    /// float64, low byte first.
-    LittleDouble,
-    /// float64, high byte first.
-    BigDouble,
-    /// float32, low byte first.
-    LittleSingle,
-    /// float32, high byte first.
-    BigSingle,
-}
-
-impl Word {
-    pub(super) fn width(self) -> usize {
-        match self {
-            Self::LittleDouble | Self::BigDouble => 8,
-            Self::LittleSingle | Self::BigSingle => 4,
-        }
-    }
-
-    /// Appends the numbers in whole words of bytes.
-    fn convert(self, bytes: &[u8], numbers: &mut Vec<f64>) {
-        let doubles = bytes.as_chunks::<8>().0.iter();
-        let singles = bytes.as_chunks::<4>().0.iter();
-        match self {
-            Self::LittleDouble => numbers.extend(doubles.map(|&word| f64::from_le_bytes(word))),
-            Self::BigDouble => numbers.extend(doubles.map(|&word| f64::from_be_bytes(word))),
-            Self::LittleSingle => {
-                numbers.extend(singles.map(|&word| f64::from(f32::from_le_bytes(word))));
-            }
-            Self::BigSingle => {
-                numbers.extend(singles.map(|&word| f64::from(f32::from_be_bytes(word))));
-            }
-        }
-    }
-}
 
 /// A stream of words.
 pub(super) struct Words {
