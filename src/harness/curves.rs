@@ -1,13 +1,12 @@
 //! The theory's lines along a sweep, and the best constant σ̂ of each estimator.
 
-use rayon::prelude::*;
-
 use super::case::Case;
 use super::names::Names;
 use super::options::Options;
 use super::plan::{Planned, PlannedCase};
 use super::record::{Curve, CurvePoint, Sweep};
 use super::sweep::{SweepAxis, Variation, What};
+use crate::numeric::parallel;
 use crate::theory::Channel;
 use crate::theory::optimum::{Optimum, best_constants};
 
@@ -22,43 +21,37 @@ pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Swe
     let swept: Vec<usize> = swept.collect();
     let x = abscissae(axis);
     let (low, high) = ends(&x);
-    let curves = swept
-        .par_iter()
-        .flat_map_iter(|&estimator| {
-            let predicted: Vec<Vec<(String, Option<CurvePoint>)>> = x
-                .par_iter()
-                .map(|&x| points(case, seed, estimator, Some((axis.what, x)), x))
-                .collect();
-            let names =
-                case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
-            let is_sought = options.optima && axis.what == What::Sampling;
-            let best = is_sought.then(|| best(case, seed, estimator, None));
-            let optimum = |channel: usize| {
-                let at = best.as_ref()?.get(channel).copied().flatten()?.sampling;
-                let mut points = (low..=high)
-                    .contains(&at)
-                    .then(|| points(case, seed, estimator, Some((What::Sampling, at)), at))?;
-                (channel < points.len()).then(|| points.swap_remove(channel).1)?
-            };
-            let named = predicted.iter().max_by_key(|channels| channels.len());
-            let named = named.map_or(&[][..], Vec::as_slice);
-            let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
-                estimator: names.estimator.clone(),
-                control: names.control.clone(),
-                channel: channel.clone(),
-                points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
-                optimum: optimum(index),
-            };
-            let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
-            if curves.is_empty() { vec![refused(names)] } else { curves }
-        })
-        .collect();
+    let curves: Vec<Vec<Curve>> = parallel::map(&swept, |&estimator| {
+        let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
+            parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
+        let names = case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
+        let is_sought = options.optima && axis.what == What::Sampling;
+        let best = is_sought.then(|| best(case, seed, estimator, None));
+        let optimum = |channel: usize| {
+            let at = best.as_ref()?.get(channel).copied().flatten()?.sampling;
+            let mut points = (low..=high)
+                .contains(&at)
+                .then(|| points(case, seed, estimator, Some((What::Sampling, at)), at))?;
+            (channel < points.len()).then(|| points.swap_remove(channel).1)?
+        };
+        let named = predicted.iter().max_by_key(|channels| channels.len());
+        let named = named.map_or(&[][..], Vec::as_slice);
+        let curve = |(index, (channel, _)): (usize, &(String, Option<CurvePoint>))| Curve {
+            estimator: names.estimator.clone(),
+            control: names.control.clone(),
+            channel: channel.clone(),
+            points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
+            optimum: optimum(index),
+        };
+        let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
+        if curves.is_empty() { vec![refused(names)] } else { curves }
+    });
     Some(Sweep {
         what: axis.what.key().to_owned(),
         axis: axis.what.axis().to_owned(),
         log: axis.log,
         z_limit,
-        curves,
+        curves: curves.into_iter().flatten().collect(),
     })
 }
 
@@ -73,10 +66,9 @@ pub fn best_of_each(case: &PlannedCase, seed: u64) -> Vec<Vec<Option<Optimum>>> 
     };
     let mut questions: Vec<_> = case.experiments.iter().map(asked).collect();
     questions.dedup();
-    let found: Vec<_> = questions
-        .par_iter()
-        .map(|&(estimator, variation)| best(case.case, seed, estimator, variation))
-        .collect();
+    let found = parallel::map(&questions, |&(estimator, variation)| {
+        best(case.case, seed, estimator, variation)
+    });
     let answer = |planned: &Planned| {
         let place = questions.iter().position(|question| *question == asked(planned));
         place.map(|place| found[place].clone()).unwrap_or_default()

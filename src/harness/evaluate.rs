@@ -10,13 +10,12 @@
 //! `variance assumed`, where it fails or is undecided the mean is inconclusive. A mean that is underpowered makes its experiment inconclusive unless the
 //! case allows it.
 
-use rayon::prelude::*;
-
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
 use super::drawn::{Drawn, Draws, GateState, Total};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::qualify::{qualify_means, show_anywhere};
 use super::record::{Finding, GateFinding, Verdict};
+use crate::numeric::parallel;
 use crate::numeric::sum::Sum;
 use crate::stats::gate::Decision;
 use crate::stats::multiplicity;
@@ -24,14 +23,12 @@ use crate::stats::multiplicity;
 /// What is found of a run: per case, per experiment, per question.
 pub fn run(plan: &Plan, draws: &Draws) -> Vec<Vec<Vec<Finding>>> {
     let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
-    let mut findings: Vec<Vec<Vec<Finding>>> = pairs
-        .par_iter()
-        .map(|(case, drawn)| {
-            let both = case.experiments.par_iter().zip(drawn.par_iter());
-            both.map(|(planned, drawn)| Experiment { plan, case, planned, drawn }.findings())
-                .collect()
+    let mut findings: Vec<Vec<Vec<Finding>>> = parallel::map(&pairs, |&(case, drawn)| {
+        let both: Vec<_> = case.experiments.iter().zip(drawn).collect();
+        parallel::map(&both, |&(planned, drawn)| {
+            Experiment { plan, case, planned, drawn }.findings()
         })
-        .collect();
+    });
     judge_laws(plan, &mut findings.iter_mut().flatten().flatten().collect::<Vec<_>>());
     findings
 }

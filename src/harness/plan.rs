@@ -8,8 +8,6 @@
 //! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm
 //! ```
 
-use rayon::prelude::*;
-
 pub use crate::stats::verdict::MISS;
 
 use super::addresses;
@@ -22,6 +20,7 @@ use super::ready::Ready;
 use super::sweep::Variation;
 use crate::estimators::{DrawBuffer, Order, Refusal};
 use crate::numeric::pack::WIDTH;
+use crate::numeric::parallel;
 use crate::rng::{Address, PILOT, Streams};
 use crate::stats::gate;
 
@@ -127,11 +126,8 @@ impl Planned {
 impl<'a> Plan<'a> {
     /// Prepares every experiment of the cases.
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
-        let mut cases: Vec<PlannedCase> = cases
-            .par_iter()
-            .map(|case| plan_case(case, options))
-            .filter(|case| !case.experiments.is_empty())
-            .collect();
+        let mut cases = parallel::map(cases, |case| plan_case(case, options));
+        cases.retain(|case| !case.experiments.is_empty());
         let ready =
             |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
         let ready: usize = cases.iter().map(ready).sum();
@@ -141,7 +137,7 @@ impl<'a> Plan<'a> {
             // In whole blocks, since looks come at their ends.
             if share < BLOCK { share } else { share / BLOCK * BLOCK }
         });
-        cases.par_iter_mut().for_each(|planned_case| {
+        parallel::change(&mut cases, |planned_case| {
             let case = planned_case.case;
             for planned in &mut planned_case.experiments {
                 planned.draws = share.map_or(planned.draws, |share| planned.draws.min(share));
@@ -217,8 +213,7 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
             filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
         });
     }
-    let experiments =
-        points.par_iter().map(|&point| plan_experiment(case, options, point)).collect();
+    let experiments = parallel::map(&points, |&point| plan_experiment(case, options, point));
     PlannedCase { case, experiments }
 }
 

@@ -12,13 +12,12 @@
 use std::collections::VecDeque;
 use std::time::Instant;
 
-use rayon::prelude::*;
-
 use super::cache::Cache;
 use super::checks::Kind;
 use super::draw::{self, Block};
 use super::drawn::{Drawn, Draws, Total};
 use super::plan::{BLOCK, Plan, Planned};
+use crate::numeric::parallel;
 use crate::stats::gate::Decision;
 
 /// Blocks drawn between two merges; results do not depend on it.
@@ -64,14 +63,11 @@ pub fn draw_uncached(plan: &Plan, cache: &Cache, progress: &(dyn Fn(u64) + Sync)
             }
         }
         for units in units(&running).chunks(BATCH) {
-            let drawn: Vec<Vec<Option<Block>>> = units
-                .par_iter()
-                .map(|unit| {
-                    let drawn = if expired() { Vec::new() } else { unit.draw(&running) };
-                    progress(drawn.iter().flatten().map(|block| block.draws).sum());
-                    drawn
-                })
-                .collect();
+            let drawn: Vec<Vec<Option<Block>>> = parallel::map(units, |unit| {
+                let drawn = if expired() { Vec::new() } else { unit.draw(&running) };
+                progress(drawn.iter().flatten().map(|block| block.draws).sum());
+                drawn
+            });
             let drawn = units.iter().zip(drawn).flat_map(|(unit, blocks)| {
                 let blocks = blocks.into_iter().chain(std::iter::repeat_with(|| None));
                 unit.running.iter().copied().zip(blocks)

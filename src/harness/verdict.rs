@@ -1,8 +1,5 @@
 //! From a plan, or from what a plan drew, to a record.
 
-use fearless_simd::Level;
-use rayon::prelude::*;
-
 use super::anatomy::anatomy;
 use super::drawn::{Drawn, Draws};
 use super::measured::{measure, measure_lookups, not_normal};
@@ -14,6 +11,8 @@ use super::repeat::command;
 use super::theory_rows::theory_rows;
 use super::{curves, evaluate, summary};
 use crate::numeric::pack;
+use crate::numeric::parallel;
+use fearless_simd::Level;
 
 /// What a plan would do: one row per experiment and channel, nothing drawn.
 pub fn planned(plan: &Plan) -> Record {
@@ -51,8 +50,7 @@ pub fn predicted(plan: &Plan) -> Record {
 /// The same with the best constant σ̂ of each experiment and channel, which takes a hundred predictions.
 pub fn predicted_with_optima(plan: &Plan) -> Record {
     let mut record = predicted(plan);
-    let cases = plan.cases.par_iter().map(|case| curves::best_of_each(case, plan.options.seed));
-    let best: Vec<_> = cases.collect();
+    let best = parallel::map(&plan.cases, |case| curves::best_of_each(case, plan.options.seed));
     for (found, (case, best)) in record.results.cases.iter_mut().zip(plan.cases.iter().zip(best)) {
         let of_rows = case.experiments.iter().zip(best).flat_map(|(planned, best)| {
             let channels = planned.channels();
@@ -69,28 +67,24 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
 
 /// What a plan drew, judged.
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
-    let pairs: Vec<_> = plan.cases.iter().zip(&draws.cases).collect();
     let findings = evaluate::run(plan, draws);
-    let parts: Vec<_> = pairs
-        .par_iter()
-        .zip(&findings)
-        .map(|((case, drawn), findings)| {
-            let both = case.experiments.iter().zip(drawn.iter());
-            let rows = both.clone().zip(findings).flat_map(|((planned, drawn), findings)| {
-                drawn_rows(plan, case, planned, drawn, findings)
-            });
-            let rows: Vec<Row> = rows.collect();
-            let sweep = curves::sweep(case.case, &plan.options, Some(plan.levels.z));
-            let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
-            (rows, sweep, anatomy)
-        })
-        .collect();
+    let found: Vec<_> = plan.cases.iter().zip(&draws.cases).zip(&findings).collect();
+    let parts = parallel::map(&found, |&((case, drawn), findings)| {
+        let both = case.experiments.iter().zip(drawn.iter());
+        let rows = both.clone().zip(findings).flat_map(|((planned, drawn), findings)| {
+            drawn_rows(plan, case, planned, drawn, findings)
+        });
+        let rows: Vec<Row> = rows.collect();
+        let sweep = curves::sweep(case.case, &plan.options, Some(plan.levels.z));
+        let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
+        (rows, sweep, anatomy)
+    });
     let mut record = record(plan, parts.into_iter());
     record.results.cut_by_time = draws.cut_by_time;
     record.results.cut_by_budget = draws.cut_by_budget;
     summary::complete(&mut record.results);
     record.timing.seconds = seconds;
-    for ((case, drawn), timing) in pairs.iter().zip(0..) {
+    for ((case, drawn), timing) in plan.cases.iter().zip(&draws.cases).zip(0..) {
         let both = case.experiments.iter().zip(drawn.iter());
         let rows = both.flat_map(|(planned, drawn)| {
             let time = planned.outcome.is_ok().then_some(drawn.seconds);

@@ -9,6 +9,8 @@ pub mod known;
 pub mod lane;
 pub mod matrix;
 pub mod pack;
+#[cfg(feature = "library")]
+pub(crate) mod parallel;
 pub mod quadrature;
 pub mod roots;
 pub mod single;

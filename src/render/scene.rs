@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use rayon::prelude::*;
-
 use super::budget::{PixelDraws, PixelValues, Plan};
 use super::pixel::{Label, Listed, Pixel};
 use super::reference::Reference;
@@ -12,6 +10,7 @@ use super::view::View;
 use crate::catalogue::Settings;
 use crate::harness::estimator::{Defaults, Estimators, ParsedEstimator};
 use crate::media::Body;
+use crate::numeric::parallel;
 use crate::recipes::sampling;
 use crate::rng::{Address, name_hash};
 
@@ -108,8 +107,7 @@ impl Scene {
             progress();
             answers
         };
-        let rows: Vec<Vec<T>> = (0..height).into_par_iter().map(row).collect();
-        rows.into_iter().flatten().collect()
+        parallel::range(height, row).into_iter().flatten().collect()
     }
 
     /// The estimators, and after them that of the reference if it is drawn.

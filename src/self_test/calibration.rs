@@ -13,13 +13,12 @@
 
 use std::collections::BTreeMap;
 
-use rayon::prelude::*;
-
 use crate::harness::checks::{self, Kind};
 use crate::harness::options::Options;
 use crate::harness::plan::{MISS, Plan};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
+use crate::numeric::parallel;
 use crate::stats::{anderson_darling, binomial};
 
 /// The run-level α of the calibration.
@@ -119,24 +118,20 @@ pub fn calibrate(runs: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Calibrati
     let cases: Vec<Case> = suite::calibration().iter().map(Case::read).collect::<Result<_, _>>()?;
     let options = Options { alpha: ALPHA, ..Options::default() };
     let levels = Plan::new(&cases, &options).levels;
-    let chunks: Vec<u64> = (0..runs.div_ceil(CHUNK)).collect();
-    let counted: Vec<Counts> = chunks
-        .par_iter()
-        .map(|&chunk| {
-            let seeds = 1 + chunk * CHUNK..1 + ((chunk + 1) * CHUNK).min(runs);
-            let mut counts = Counts::default();
-            let mut fair = Plan::new(&cases, &options);
-            let mut biased = Plan::new(&cases, &options);
-            // Half of the chunks are biased upwards, half downwards.
-            shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
-            for seed in seeds {
-                counts.add_fair(&mut fair, seed);
-                counts.add_biased(&mut biased, seed);
-                progress(1);
-            }
-            counts
-        })
-        .collect();
+    let counted: Vec<Counts> = parallel::numbered(runs.div_ceil(CHUNK), |chunk| {
+        let seeds = 1 + chunk * CHUNK..1 + ((chunk + 1) * CHUNK).min(runs);
+        let mut counts = Counts::default();
+        let mut fair = Plan::new(&cases, &options);
+        let mut biased = Plan::new(&cases, &options);
+        // Half of the chunks are biased upwards, half downwards.
+        shift(&mut biased, if chunk % 2 == 0 { 1.0 } else { -1.0 });
+        for seed in seeds {
+            counts.add_fair(&mut fair, seed);
+            counts.add_biased(&mut biased, seed);
+            progress(1);
+        }
+        counts
+    });
     let mut total = Counts::default();
     for counts in counted {
         total.merge(counts);

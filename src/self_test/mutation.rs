@@ -6,8 +6,6 @@
 
 use std::collections::HashMap;
 
-use rayon::prelude::*;
-
 use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::levels::Levels;
 use crate::harness::mutation::{self, Walk};
@@ -16,6 +14,7 @@ use crate::harness::plan::{BLOCK, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
 use crate::mutants::{self, About, StreamMutant, Target, streams};
+use crate::numeric::parallel;
 
 /// What became of one mutant.
 #[derive(Debug, Clone)]
@@ -82,15 +81,15 @@ pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, Ca
     for target in abouts.iter().map(|about| about.target).chain([streams::TARGET]) {
         targets.insert((target.case, target.index), target);
     }
-    let honest: HashMap<(&str, usize), bool> =
-        targets.into_par_iter().map(|(key, target)| (key, bench.passes(&target))).collect();
+    let targets: Vec<_> = targets.into_iter().collect();
+    let honest = parallel::map(&targets, |(key, target)| (*key, bench.passes(target)));
+    let honest: HashMap<(&str, usize), bool> = honest.into_iter().collect();
     let passes = |target: &Target| honest.get(&(target.case, target.index)).copied();
-    let mut caught: Vec<Caught> = abouts
-        .par_iter()
-        .map(|about| bench.estimator(about, passes(&about.target).unwrap_or(false)))
-        .collect();
+    let mut caught = parallel::map(&abouts, |about| {
+        bench.estimator(about, passes(&about.target).unwrap_or(false))
+    });
     let twin = passes(&streams::TARGET).unwrap_or(false);
-    caught.par_extend(of_streams.into_par_iter().map(|mutant| bench.streams(mutant, twin)));
+    caught.extend(parallel::map(&of_streams, |mutant| bench.streams(mutant, twin)));
     Ok(caught)
 }
 

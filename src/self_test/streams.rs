@@ -11,15 +11,14 @@
 //! is left out. Every stream has 4e5 draws and an address of its own, and is judged at α = 1e-3 for
 //! each of the claims.
 
-use rand::RngExt;
-use rand_distr::{Distribution, Poisson, StandardNormal};
-use rayon::prelude::*;
-
 use crate::harness::record::Verdict;
 use crate::judge::claim::{Claim, Given, ROUNDING};
 use crate::judge::trial::{Trial, Wanted};
+use crate::numeric::parallel;
 use crate::rng::{Address, Stream, exponential, unit};
 use crate::stats::binomial;
+use rand::RngExt;
+use rand_distr::{Distribution, Poisson, StandardNormal};
 
 /// How many draws a stream has.
 const DRAWS: usize = 400_000;
@@ -274,19 +273,16 @@ fn of_law(law: Law, streams: u64, step: &(dyn Fn(u64) + Sync)) -> Vec<StreamVerd
             Some((known, trial))
         })
         .collect();
-    let judged: Vec<Vec<(Verdict, String)>> = (0..streams)
-        .into_par_iter()
-        .map(|stream| {
-            let draws = law.draws(stream);
-            let found = trials.iter().map(|(_, trial)| {
-                let judgement = trial.judge_all(&draws);
-                (judgement.verdict, judgement.reason)
-            });
-            let found = found.collect();
-            step(1);
-            found
-        })
-        .collect();
+    let judged: Vec<Vec<(Verdict, String)>> = parallel::numbered(streams, |stream| {
+        let draws = law.draws(stream);
+        let found = trials.iter().map(|(_, trial)| {
+            let judgement = trial.judge_all(&draws);
+            (judgement.verdict, judgement.reason)
+        });
+        let found = found.collect();
+        step(1);
+        found
+    });
     let verdicts = trials.iter().enumerate().map(|(k, (known, _))| {
         let count = |verdict| judged.iter().filter(|found| found[k].0 == verdict).count() as u64;
         let failure = judged.iter().find(|found| found[k].0 == Verdict::Fail);

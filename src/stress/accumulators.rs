@@ -8,11 +8,10 @@
 //! rounding errors kept
 //! ```
 
-use rayon::prelude::*;
-
 use super::trial::central;
 use super::{Dice, Effort, Measure, Row};
 use crate::numeric::Wide;
+use crate::numeric::parallel;
 use crate::numeric::sum::Sum;
 use crate::stats::{Powers, Tally};
 
@@ -135,8 +134,7 @@ fn in_a_tree(mut parts: Vec<(Tally, Powers)>, dice: &mut Dice) -> (Tally, Powers
 }
 
 fn whole_numbers(name: &str, seed: u64, parts: u64, law: &Law) -> Vec<Row> {
-    let found: Vec<Part> =
-        (0..parts).into_par_iter().map(|part| Part::of(law, name, seed, part)).collect();
+    let found = parallel::numbered(parts, |part| Part::of(law, name, seed, part));
     let mut exact = Exact::default();
     for part in &found {
         exact.merge(&part.exact);
@@ -231,11 +229,8 @@ fn threads(effort: Effort, seed: u64) -> Row {
     let parts = effort.of(4, 32);
     let sums = |threads| -> Option<String> {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()?;
-        let found: Vec<Part> = pool.install(|| {
-            (0..parts)
-                .into_par_iter()
-                .map(|part| Part::of(&UNIFORM, "threads", seed, part))
-                .collect()
+        let found = pool.install(|| {
+            parallel::numbered(parts, |part| Part::of(&UNIFORM, "threads", seed, part))
         });
         let mut all = (Tally::default(), Powers::default());
         for part in &found {

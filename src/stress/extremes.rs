@@ -6,13 +6,12 @@
 //! control at the same places, explorers on top of each other, controls that are the medium
 //! ```
 
-use rayon::prelude::*;
-
 use super::text::{self, one_line};
 use super::{Effort, Row, joined};
 use crate::harness::plan::Planned;
 use crate::harness::record::Verdict;
 use crate::harness::{Amount, Options, Plan, run, verdict};
+use crate::numeric::parallel;
 
 /// Draws of an experiment: enough that a wrong answer shows.
 const DRAWS: u64 = 1 << 13;
@@ -109,39 +108,40 @@ fn swept(effort: Effort, seed: u64) -> Vec<Row> {
             }
         }
     }
-    let found = cases
-        .into_par_iter()
-        .map(|(depth, ratio, length)| {
-            let mut rows = pair(range);
-            let sigma = depth / length;
-            let what = format!("τ = {depth:e}, σ̂/σ_t = {ratio:e}, ℓ = {length:e}");
-            let is_drawn = depth * ratio <= COSTLY;
-            let media = [
-                format!("medium.constant.extinction = {sigma:e}\nspan = [0, {length:e}]"),
+    let found = parallel::map(&cases, |&(depth, ratio, length)| {
+        let mut rows = pair(range);
+        let sigma = depth / length;
+        let what = format!("τ = {depth:e}, σ̂/σ_t = {ratio:e}, ℓ = {length:e}");
+        let is_drawn = depth * ratio <= COSTLY;
+        let media = [
+            format!("medium.constant.extinction = {sigma:e}\nspan = [0, {length:e}]"),
+            format!(
+                "medium.gaussian = {{ peak = {:e}, centre = {:e}, width = {:e} }}\nspan = [0, {length:e}]",
+                1.6 * sigma,
+                0.4 * length,
+                0.25 * length
+            ),
+        ];
+        for medium in media {
+            let sampling = format!("sampling.constant.value = {:e}", ratio * sigma);
+            for problem in [
                 format!(
-                    "medium.gaussian = {{ peak = {:e}, centre = {:e}, width = {:e} }}\nspan = [0, {length:e}]",
-                    1.6 * sigma, 0.4 * length, 0.25 * length
+                    "[problem.transmittance]\n{medium}\n{sampling}\nestimators = [{ESTIMATORS}]"
                 ),
-            ];
-            for medium in media {
-                let sampling = format!("sampling.constant.value = {:e}", ratio * sigma);
-                for problem in [
-                    format!("[problem.transmittance]\n{medium}\n{sampling}\nestimators = [{ESTIMATORS}]"),
-                    format!(
-                        "[problem.free-flight]\n{medium}\n{sampling}\n\
+                format!(
+                    "[problem.free-flight]\n{medium}\n{sampling}\n\
                          estimators = [{{ woodcock = {{}} }}, {{ inversion = {{}} }}]"
-                    ),
-                    format!(
-                        "[problem.transmittance-curve]\n{medium}\n{sampling}\ndistances = 4\n\
+                ),
+                format!(
+                    "[problem.transmittance-curve]\n{medium}\n{sampling}\ndistances = 4\n\
                          estimators = [{{ double = {{}} }}]"
-                    ),
-                ] {
-                    see(&format!("title = \"t\"\n{problem}"), &what, seed, is_drawn, &mut rows);
-                }
+                ),
+            ] {
+                see(&format!("title = \"t\"\n{problem}"), &what, seed, is_drawn, &mut rows);
             }
-            rows.to_vec()
-        })
-        .collect();
+        }
+        rows.to_vec()
+    });
     joined(found)
 }
 
@@ -183,12 +183,12 @@ fn at_breaks(effort: Effort, seed: u64) -> Row {
         }
     }
     let texts: Vec<String> = texts.into_iter().step_by(effort.of(8, 1)).collect();
-    let found = texts.par_iter().map(|text| {
+    let found = parallel::map(&texts, |text| {
         let mut rows = pair(range);
         see(text, &one_line(text), seed, true, &mut rows);
         rows.to_vec()
     });
-    let both = joined(found.collect()).into_iter().reduce(Row::and);
+    let both = joined(found).into_iter().reduce(Row::and);
     let both = both.unwrap_or_else(|| Row::wrong("", range));
     Row { quantity: "wrong at coinciding breaks".into(), ..both }
 }

@@ -2,10 +2,9 @@
 
 use std::f64::consts::FRAC_1_SQRT_2;
 
-use rayon::prelude::*;
-
 use super::{Effort, Measure, Row};
 use crate::media::Piecewise;
+use crate::numeric::parallel;
 use crate::numeric::{Span, Wide};
 use crate::rng::{Address, LANES, Stream, Streams, exponential, name_hash, unit};
 use crate::stats::{anderson_darling, chi_square, correlation, ties};
@@ -141,10 +140,10 @@ fn overlaps(effort: Effort, seed: u64) -> Row {
     let words = effort.of(1 << 14, 1 << 17);
     let range = format!("{} blocks of {LANES} streams, {words} words each", blocks.len());
     let mut row = Row::wrong("words that streams share", range);
-    let mut marked: Vec<u64> = blocks
-        .into_par_iter()
-        .flat_map_iter(|streams| streams.words().take(words).filter(|word| word >> 56 == 0))
-        .collect();
+    let marked = parallel::map(&blocks, |streams| -> Vec<u64> {
+        streams.clone().words().take(words).filter(|word| word >> 56 == 0).collect()
+    });
+    let mut marked = marked.concat();
     marked.sort_unstable();
     marked.windows(2).for_each(|pair| {
         row.count(pair[0] == pair[1], || format!("word {:#x}", pair[0]));
@@ -161,17 +160,14 @@ fn lagged(effort: Effort, seed: u64) -> Row {
         let number = |stream: &mut Stream| 12f64.sqrt() * (stream.uniform() - 0.5);
         lanes.iter_mut().map(|lane| (0..NUMBERS).map(|_| number(lane)).collect()).collect()
     };
-    let found: Vec<correlation::Lagged> = (0..blocks.len() - 1)
-        .into_par_iter()
-        .flat_map_iter(|i| {
-            let (here, next) = (standard(&blocks[i]), standard(&blocks[i + 1]));
-            let pairs =
-                here.windows(2).map(|pair| correlation::lagged(&pair[0], &pair[1], -16..=16));
-            let across = here.iter().zip(&next).map(|(a, b)| correlation::lagged(a, b, -16..=16));
-            let own = here.iter().map(|lane| correlation::lagged(lane, lane, 1..=32));
-            pairs.chain(across).chain(own).flatten().collect::<Vec<_>>()
-        })
-        .collect();
+    let found = parallel::range(blocks.len() - 1, |i| {
+        let (here, next) = (standard(&blocks[i]), standard(&blocks[i + 1]));
+        let pairs = here.windows(2).map(|pair| correlation::lagged(&pair[0], &pair[1], -16..=16));
+        let across = here.iter().zip(&next).map(|(a, b)| correlation::lagged(a, b, -16..=16));
+        let own = here.iter().map(|lane| correlation::lagged(lane, lane, 1..=32));
+        pairs.chain(across).chain(own).flatten().collect::<Vec<_>>()
+    });
+    let found: Vec<correlation::Lagged> = found.into_iter().flatten().collect();
     let range = format!("{} pairs of streams, 32 lags", found.len());
     let mut row = Row::improbable("correlation of streams", range);
     for pair in &found {
@@ -185,14 +181,11 @@ fn lagged(effort: Effort, seed: u64) -> Row {
 fn dispersion(effort: Effort, seed: u64) -> Row {
     const DRAWS: u32 = 4096;
     let blocks = effort.of(512, 16_384);
-    let mut z: Vec<f64> = (0..blocks)
-        .into_par_iter()
-        .map(|block| {
-            let mut streams = address(seed, "dispersion", block, 0).streams();
-            let sum: f64 = (0..DRAWS).map(|_| -streams.of_next_draw().ln_uniform() - 1.0).sum();
-            sum / f64::from(DRAWS).sqrt()
-        })
-        .collect();
+    let mut z: Vec<f64> = parallel::numbered(blocks, |block| {
+        let mut streams = address(seed, "dispersion", block, 0).streams();
+        let sum: f64 = (0..DRAWS).map(|_| -streams.of_next_draw().ln_uniform() - 1.0).sum();
+        sum / f64::from(DRAWS).sqrt()
+    });
     let range = format!("{blocks} blocks of {DRAWS} flights");
     let mut row = Row::improbable("z-scores of blocks", range);
     let squares: f64 = z.iter().map(|z| z * z).sum();

@@ -81,11 +81,10 @@ pub mod trial;
 pub mod verdicts;
 pub mod walks;
 
-use rayon::prelude::*;
-
 pub use self::row::{Measure, Row};
 pub use self::trial::Dice;
 use self::trial::{in_parts, joined};
+use crate::numeric::parallel;
 
 /// How long is looked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,12 +163,11 @@ pub fn all(effort: Effort, seed: u64, done: &(dyn Fn(&str) + Sync)) -> Stress {
     // At once: the last parts of a page alone would leave threads idle.
     let (rows, narrow) = rayon::join(
         || {
-            let pages = PAGES.par_iter().map(|(name, rows)| {
+            parallel::map(PAGES, |(name, rows)| {
                 let found = rows(effort, seed);
                 done(name);
                 found
-            });
-            pages.collect::<Vec<_>>()
+            })
         },
         || {
             let narrow = narrow::measure(effort, seed);

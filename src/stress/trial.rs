@@ -1,8 +1,7 @@
 //! What all pages share: random parameters, a loop over them, and how far a number is from a reference.
 
-use rayon::prelude::*;
-
 use super::Row;
+use crate::numeric::parallel;
 use crate::numeric::{Known, Wide};
 use crate::rng::{Address, Stream, name_hash};
 use crate::theory::Moments;
@@ -66,7 +65,7 @@ pub fn in_parts(
         fill(&mut part);
         part.rows
     };
-    joined((0..parts).into_par_iter().map(part).collect())
+    joined(parallel::numbered(parts, part))
 }
 
 /// What a trial answers: nothing, or `None` where there was nothing to compare.

@@ -8,12 +8,11 @@
 //!           honest walks judged against an answer that is off by as much: a pass is wrong
 //! ```
 
-use rayon::prelude::*;
-
 use super::{Effort, Row, text};
 use crate::harness::checks::Kind;
 use crate::harness::record::{Row as Found, Verdict};
 use crate::harness::{Amount, Case, Options, Plan, evaluate, run, verdict};
+use crate::numeric::parallel;
 
 /// The run-level α of each.
 const ALPHA: f64 = 1e-7;
@@ -102,10 +101,9 @@ fn runs(effort: Effort, seed: u64, cases: &[(&str, &str)]) -> Vec<(String, Vec<F
             }
         }
     }
-    let one = |(name, problem, seed, draws)| {
+    parallel::map(&runs, |&(name, problem, seed, draws)| {
         (format!("{name}, seed {seed}, {draws} draws"), judged(problem, seed, draws))
-    };
-    runs.into_par_iter().map(one).collect()
+    })
 }
 
 fn correct(effort: Effort, seed: u64) -> Row {
@@ -171,10 +169,8 @@ fn shifted(effort: Effort, seed: u64) -> Row {
             jobs.push((name, problem, seed + number, if number % 2 == 0 { 1.0 } else { -1.0 }));
         }
     }
-    let counts: Vec<(&str, Option<[u64; 2]>)> = jobs
-        .into_par_iter()
-        .map(|(name, problem, seed, sign)| (name, passes(problem, seed, sign)))
-        .collect();
+    let counts: Vec<(&str, Option<[u64; 2]>)> =
+        parallel::map(&jobs, |&(name, problem, seed, sign)| (name, passes(problem, seed, sign)));
     let (mut passed, mut asked) = (0, 0);
     for (name, counts) in counts {
         match counts {

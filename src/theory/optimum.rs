@@ -7,9 +7,8 @@
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, with the cost of the walk added.
 
-use rayon::prelude::*;
-
 use super::Prediction;
+use crate::numeric::parallel;
 use crate::numeric::roots;
 
 /// The best constant σ̂ and the figure of merit there.
@@ -47,7 +46,7 @@ pub fn best_constants(
         })
     };
     let of = |merits: &[f64], channel: usize| merits.get(channel).copied().unwrap_or(0.0);
-    let coarse: Vec<Vec<f64>> = (0..COARSE).into_par_iter().map(|i| merits(at(i))).collect();
+    let coarse: Vec<Vec<f64>> = parallel::range(COARSE, |i| merits(at(i)));
     let channels = coarse.iter().map(Vec::len).max().unwrap_or(0);
     let best = |channel: usize| {
         let coarse: Vec<f64> = coarse.iter().map(|all| of(all, channel)).collect();
@@ -55,7 +54,7 @@ pub fn best_constants(
         best_log(&coarse, merit)
             .map(|(log, merit)| Optimum { sampling: scale * log.exp(), figure_of_merit: merit })
     };
-    (0..channels).into_par_iter().map(best).collect()
+    parallel::range(channels, best)
 }
 
 /// `ln(σ̂/scale)` at a step of the coarse search.
