@@ -36,14 +36,18 @@ use self::record::{Bench, BenchCase, Conditions};
 use self::rows::Laps;
 use self::spread::Spread;
 use crate::harness::plan::{Plan, PlannedCase};
+#[cfg(doc)]
+use crate::numeric::pack;
 
-/// How much is timed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// How much is timed, and with what.
+#[derive(Debug, Clone, Copy)]
 pub struct Amounts {
     /// Draws of an experiment in a round.
     pub draws: u64,
     /// Rounds.
     pub rounds: u32,
+    /// The vector hardware that is used, one of [`pack::levels`].
+    pub level: Level,
 }
 
 /// Times every experiment of a plan on the threads of the pool in which it is called; `progress` is
@@ -53,7 +57,7 @@ pub struct Amounts {
 pub fn measure(plan: &Plan, amounts: Amounts, progress: &dyn Fn(u64)) -> Bench {
     let begin = Instant::now();
     let threads = rayon::current_num_threads();
-    let stopwatch = Stopwatch { clock: Clock::of(threads), level: Level::new(), threads };
+    let stopwatch = Stopwatch { clock: Clock::of(threads), level: amounts.level, threads };
     let timed =
         || plan.experiments().filter_map(|(_, planned)| planned.outcome.is_ok().then_some(planned));
     let mut all: Vec<(Laps, Sample)> =

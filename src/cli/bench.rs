@@ -4,12 +4,14 @@ use std::path::PathBuf;
 
 use anyhow::bail;
 use clap::Args;
+use fearless_simd::Level;
 use trueflight::bench::compare::compare;
 use trueflight::bench::comparison::Comparison;
 use trueflight::bench::record::Bench;
 use trueflight::bench::stored::Stored;
 use trueflight::bench::{Amounts, measure};
 use trueflight::harness::{Amount, Plan};
+use trueflight::numeric::pack;
 use trueflight::report::bench as page;
 
 use super::Console;
@@ -34,6 +36,9 @@ pub struct Arguments {
     /// time, and the column `scaling` compares them with one: give more draws then
     #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: u16,
+    /// Vector hardware to draw with, of what this machine has [default: the best]
+    #[arg(long, value_name = "LEVEL", value_parser = level)]
+    level: Option<Level>,
     /// Folder for bench.csv, the cases' CSV files and the plots
     #[arg(long, default_value = "results/bench", value_name = "DIR")]
     out: PathBuf,
@@ -65,10 +70,11 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     // Whatever is timed on, the plan may use all processors.
     let plan = selection::on_threads(0, || experiments.plan(&cases, &options))?;
     let ready = drawable(&plan)?;
+    let level = arguments.level.unwrap_or_else(Level::new);
     let total = ready * u64::from(*rounds) * draws;
     let mut bench = selection::on_threads(usize::from(*threads), || {
         let bar = output::progress("timing", "draws", total, console);
-        let amounts = Amounts { draws: *draws, rounds: *rounds };
+        let amounts = Amounts { draws: *draws, rounds: *rounds, level };
         let bench = measure(&plan, amounts, &|draws| bar.inc(draws));
         bar.finish_and_clear();
         Ok(bench)
@@ -98,6 +104,16 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         errors.keep(output::print(&said));
     }
     Ok(errors.close(u8::from(is_worse)))
+}
+
+/// A level of vector hardware by its name.
+fn level(name: &str) -> Result<Level, String> {
+    let levels = pack::levels();
+    let found = levels.iter().find(|level| pack::word(**level) == name);
+    found.copied().ok_or_else(|| {
+        let names: Vec<String> = levels.iter().map(|&level| pack::word(level)).collect();
+        format!("this machine has {}", names.join(", "))
+    })
 }
 
 /// How many experiments can be timed; none is an error.

@@ -48,6 +48,16 @@ pub fn word(level: Level) -> String {
     name.split('(').next().unwrap_or_default().to_lowercase()
 }
 
+/// The levels that there is code for on this machine, the best first.
+pub fn levels() -> Vec<Level> {
+    let mut levels = vec![Level::new()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    levels.push(Level::baseline());
+    levels.dedup_by_key(|level| word(*level));
+    levels
+}
+
 /// A computation that is compiled once for each level of vector hardware.
 pub trait Task {
     /// What it answers.
@@ -303,9 +313,7 @@ mod tests {
         let list: Vec<f64> = (0..100).map(|n| 0.5 + f64::from(n)).collect();
         let row = |x: &f64| Row(std::array::from_fn(|n| x + 1e3 * n as f64));
         let table: Vec<Row> = list.iter().map(row).collect();
-        let mut levels = vec![Level::new(), Level::baseline()];
-        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        levels.extend(Level::new().as_avx2().map(Level::Avx2));
+        let levels = levels();
         for first in 0..100 {
             // The last places are beyond the lists.
             let numbers = std::array::from_fn(|lane| f64::from(first) + 3.0 * lane as f64);

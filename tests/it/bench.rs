@@ -11,6 +11,7 @@ use trueflight::bench::figures::ERRORS;
 use trueflight::bench::record::{Bench, BenchRow};
 use trueflight::bench::{Amounts, measure};
 use trueflight::harness::{Case, Plan};
+use trueflight::numeric::pack;
 
 const CASE: &str = "title = \"a case\"
 [problem.transmittance]
@@ -40,7 +41,8 @@ estimators = [{ ray-marching = { steps = 2 } }]
 fn bench(cases: &[Case], threads: usize) -> Bench {
     let plan = Plan::new(cases, &options(1, 10_000));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
-    pool.install(|| measure(&plan, Amounts { draws: 10_000, rounds: 3 }, &|_| {}))
+    let amounts = Amounts { draws: 10_000, rounds: 3, level: fearless_simd::Level::new() };
+    pool.install(|| measure(&plan, amounts, &|_| {}))
 }
 
 fn rows(bench: &Bench) -> impl Iterator<Item = &BenchRow> {
@@ -176,6 +178,21 @@ fn the_same_columns_go_everywhere() {
     }
 }
 
+/// With less vector hardware the draws are others only where nothing fuses, and the table names it.
+#[test]
+fn the_level_of_vector_hardware_can_be_chosen() {
+    let place = Place::new();
+    for level in pack::levels().into_iter().map(pack::word) {
+        let bench = format!("bench case.toml --draws 1000 --rounds 1 --out here --level {level}");
+        let output = place.run(&bench);
+        let text = stdout(&output);
+        assert!(output.status.success() && text.contains(&level), "{level} in {text}");
+    }
+    let unknown = place.run("bench case.toml --level abacus");
+    let error = String::from_utf8_lossy(&unknown.stderr);
+    assert!(error.contains("this machine has"), "{error}");
+}
+
 #[test]
 fn usage_is_2_and_nothing_is_written() {
     let place = Place::new();
@@ -185,6 +202,7 @@ fn usage_is_2_and_nothing_is_written() {
         "bench case.toml --draws -5",
         "bench case.toml --rounds 0",
         "bench case.toml --threads 0",
+        "bench case.toml --level abacus",
         "bench case.toml --filter [",
         "bench case.toml --filter nothing-of-the-kind",
         "bench case.toml --format yaml",
