@@ -37,16 +37,14 @@ pub use majorants::majorants;
 pub use product::product;
 pub use score::score;
 
-/// With more pieces of σ̂ than this, lanes that cross them hold the others up for longer than eight
-/// lookups at once gain, unless lookups are costly.
-const MOST_PIECES: usize = 12;
-/// The same of the control, where σ̂ has several pieces, too.
-const MOST_CONTROL_PIECES: usize = 8;
+/// With more pieces of σ̂ or of the control than this, lanes that cross them hold the others up for longer than
+/// eight lookups at once gain, unless lookups are costly or σ̂ is constant.
+const MOST_PIECES: usize = 8;
 
 /// Whether packets are faster than one draw after the other.
 pub(super) fn pays(medium: &Lookups, sampling: &Piecewise, control: &Control) -> bool {
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
-    let few = sampling.count() <= MOST_PIECES && controls <= MOST_CONTROL_PIECES;
+    let few = sampling.count() <= MOST_PIECES && controls <= MOST_PIECES;
     medium.is_costly() || sampling.even().is_some() || few
 }
 
