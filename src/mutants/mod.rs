@@ -178,18 +178,3 @@ pub fn all() -> Vec<About> {
     }
     each_problem!(of_all).into_iter().flat_map(|about| about()).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use std::collections::BTreeSet;
-
-    use super::*;
-
-    #[test]
-    fn no_two_mutants_share_a_name() {
-        let mut names: Vec<&str> = all().iter().map(|about| about.name).collect();
-        names.extend(streams::MUTANTS.iter().map(|mutant| mutant.name));
-        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
-        assert!(all().len() >= 45 && streams::MUTANTS.len() >= 5);
-    }
-}

@@ -37,7 +37,7 @@ pub(crate) fn map<'a, A: Sync, T: Send>(items: &'a [A], f: impl Fn(&'a A) -> T +
 pub(crate) fn change<T: Send>(items: &mut [T], f: impl Fn(&mut T) + Sync) {
     let items: Vec<Mutex<&mut T>> = items.iter_mut().map(Mutex::new).collect();
     for_each(items.len(), &|index| {
-        f(&mut items[index].lock().unwrap_or_else(PoisonError::into_inner))
+        f(&mut items[index].lock().unwrap_or_else(PoisonError::into_inner));
     });
 }
 
@@ -54,7 +54,7 @@ mod tests {
         let squares: Vec<usize> = (0..1000).map(|i| i * i).collect();
         assert_eq!(range(1000, |i| i * i), squares);
         let words = ["a", "bc", ""].map(str::to_owned);
-        assert_eq!(map(&words, |word| word.as_str()), words);
+        assert_eq!(map(&words, String::as_str), words);
         assert!(range(0, |i| i).is_empty());
     }
 

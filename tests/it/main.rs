@@ -27,6 +27,7 @@ mod packets;
 mod properties;
 mod render;
 mod rod;
+mod single_precision;
 mod single_scattering;
 mod single_scattering_packets;
 mod skips;

@@ -48,6 +48,14 @@ fn every_check_has_a_mutant_that_it_catches() {
 }
 
 #[test]
+fn no_two_mutants_share_a_name() {
+    let mut names: Vec<&str> = mutants::all().iter().map(|about| about.name).collect();
+    names.extend(streams::MUTANTS.iter().map(|mutant| mutant.name));
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+    assert!(mutants::all().len() >= 45 && streams::MUTANTS.len() >= 5);
+}
+
+#[test]
 fn mutants_stand_where_they_say() {
     let mut by_case: BTreeMap<&str, Vec<About>> = BTreeMap::new();
     for about in mutants::all() {

@@ -28,7 +28,7 @@ const COSINE: f64 = 0.6;
 const BELOW: f64 = 0.1;
 
 /// A rule in a rod or a slab.
-struct Layer {
+pub struct Layer {
     is_slab: bool,
     rule: ParticleRule,
     roulette: bool,
@@ -124,7 +124,8 @@ const fn layer(is_slab: bool, rule: ParticleRule) -> Layer {
     Layer { is_slab, rule, roulette: false, transmitted: false }
 }
 
-const fn rod(rule: ParticleRule) -> Layer {
+/// A walk through a rod.
+pub const fn rod(rule: ParticleRule) -> Layer {
     layer(false, rule)
 }
 
@@ -152,36 +153,3 @@ pub const SLABS: &[Entry] = &[
         EVERY,
     ),
 ];
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::numeric::Narrow as F32;
-    use crate::stress::Dice;
-
-    #[test]
-    fn decisions_that_are_repeated_have_the_mean_of_walks_that_make_their_own() {
-        // So far away that single precision is off by some per cent.
-        let scene = Scene { depth: 2.0, collisions: 12.0, from: 3e6 };
-        let walk = rod(ParticleRule::Weighted);
-        let (mut own, mut repeated) = ([0.0; 2], [0.0; 2]);
-        let walks = 20_000;
-        for number in 0..walks {
-            let dice = |name: &str| Dice::new(5, name, number);
-            let mut trail = Trail::by_chance(dice("own"));
-            let x = walk.draw::<F32>(&scene, &mut trail);
-            let mut trail = Trail::new(dice("repeated"));
-            walk.draw::<f64>(&scene, &mut trail);
-            let y = walk.draw::<F32>(&scene, &mut trail.again(dice("repeated")));
-            for (sums, x) in [(&mut own, x), (&mut repeated, y)] {
-                sums[0] += x / walks as f64;
-                sums[1] += x * x / walks as f64;
-            }
-        }
-        let variance = |[mean, square]: [f64; 2]| (square - mean * mean) / walks as f64;
-        let error = (variance(own) + variance(repeated)).sqrt();
-        assert!((own[0] - repeated[0]).abs() < 4.0 * error, "{own:?} {repeated:?}");
-        let truth = walk.theory(&scene).truth.expect("known");
-        assert!((own[0] - truth).abs() > 4.0 * error, "{own:?} {truth}");
-    }
-}

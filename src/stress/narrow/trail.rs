@@ -56,6 +56,7 @@ impl Trail {
     }
 
     /// The same decisions once more, with the same random numbers.
+    #[must_use]
     pub fn again(self, dice: Dice) -> Self {
         Self { dice, next: Some(0), likelihood: 1.0, ..self }
     }
@@ -77,6 +78,7 @@ impl Trail {
     }
 
     /// Random numbers for what may take more of them in one precision than in the other.
+    #[must_use]
     pub fn apart(&mut self) -> Self {
         Self::new(Dice::new(self.dice.word(), "narrow-apart", 0))
     }

@@ -295,20 +295,7 @@ pub const OTHERS: &[Entry] = &[
 mod tests {
     use super::*;
     use crate::numeric::Narrow as F32;
-    use crate::stress::narrow::Trial;
-    use crate::stress::narrow::compare::Compare;
     use crate::stress::narrow::precision::LATTICE;
-
-    #[test]
-    fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
-        let at = |collisions: f64, walks: f64| {
-            let scene = Scene { depth: 2.0, collisions, from: 0.0 };
-            rule(Weight).compare(Trial { scene, seed: 1, budget: walks * collisions })
-        };
-        let (short, long) = (at(10.0, 2000.0), at(1e5, 8.0));
-        assert!(short.bias.abs() < 1e-5, "{short:?}");
-        assert!(long.bias.abs() > long.noise, "{long:?}");
-    }
 
     #[test]
     fn a_flight_through_the_control_passes_with_its_chance() {
