@@ -68,6 +68,8 @@ pub mod report;
 pub mod rng;
 #[cfg(feature = "library")]
 pub mod self_test;
+#[cfg(feature = "library")]
+pub mod setup;
 pub mod stats;
 #[cfg(feature = "library")]
 pub mod stress;

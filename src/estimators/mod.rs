@@ -5,10 +5,8 @@
 //! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
 
 pub mod bidirectional_rod;
-pub mod domain;
 pub mod free_flight;
 pub mod furnace;
-pub mod heroes;
 pub mod infinite_medium;
 pub mod lambertian;
 pub mod lit_rod;
@@ -18,10 +16,10 @@ pub mod order_free;
 pub mod packet;
 pub mod rod;
 pub mod scoring;
-pub mod setup;
 pub mod single_scattering;
 pub mod slab;
 pub mod space;
+pub mod spectral_lit_rod;
 pub mod spectral_rod;
 pub mod spectral_slab;
 pub mod spectral_transmittance;
@@ -41,7 +39,8 @@ use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
 
 pub use crate::recipes::{Refusal, Site};
-pub use setup::Setup;
+pub use crate::setup::Setup;
+
 pub use transmittance_curve::RayView;
 pub use trial::{DrawBuffer, Experiment, Kernel, Order};
 

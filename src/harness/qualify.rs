@@ -23,7 +23,9 @@ pub fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
                 (Verdict::Inconclusive, "the mean relies on a variance that does not pass")
             }
             (Verdict::Pass, Some(_)) => (Verdict::Pass, ASSUMED),
-            (Verdict::Pass, None) if is_piloted(&mean.channel) => (Verdict::Pass, ASSUMED),
+            (Verdict::Pass, None) if !mean.expects_bias && is_piloted(&mean.channel) => {
+                (Verdict::Pass, ASSUMED)
+            }
             (Verdict::Fail, Some(variance)) if rests_on(plan, mean, variance) => {
                 (Verdict::Inconclusive, "the mean rests on a variance that is refuted")
             }

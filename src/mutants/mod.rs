@@ -32,6 +32,7 @@ pub mod single_scattering;
 pub mod slab;
 pub mod space;
 pub mod spectral;
+pub mod spectral_lit_rod;
 pub mod spectral_rod;
 pub mod sphere;
 pub mod streams;
@@ -48,8 +49,8 @@ use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Problem,
-    Rod, SingleScattering, Slab, SpectralRod, SpectralSlab, SpectralTransmittance, Sphere,
-    Transmittance, TransmittanceCurve, each_problem,
+    Rod, SingleScattering, Slab, SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance,
+    Sphere, Transmittance, TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -156,6 +157,7 @@ mutable! {
     Rod: rod::mutants();
     LitRod: lit_rod::mutants();
     LitSlab: lit_slab::mutants();
+    SpectralLitRod: spectral_lit_rod::mutants();
     SingleScattering: single_scattering::mutants();
     Furnace: space::in_furnace();
     Lambertian: space::under_light();

@@ -13,7 +13,6 @@ use super::target::{
     SPECTRAL_MIS_RATIO,
 };
 use super::{About, Mutant, with};
-use crate::estimators::heroes::Heroes;
 use crate::estimators::spectral_transmittance::walk::{Passed, relative_density};
 use crate::estimators::{Draw, Setup};
 use crate::media::body::MOST_CHANNELS;
@@ -22,6 +21,7 @@ use crate::numeric::Lane;
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
+use crate::setup::heroes::Heroes;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry

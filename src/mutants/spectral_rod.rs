@@ -4,7 +4,6 @@ use super::target::{
     SPECTRAL_ROD_MIS, SPECTRAL_ROD_TRACKING, SPECTRAL_SLAB_MIS, SPECTRAL_SLAB_TRACKING,
 };
 use super::{About, Mutant, Target, with};
-use crate::estimators::heroes::Heroes;
 use crate::estimators::spectral_rod::Coloured;
 use crate::estimators::{Draw, Setup};
 use crate::media::Lookups;
@@ -12,6 +11,7 @@ use crate::media::body::MOST_CHANNELS;
 use crate::problems::spectral_rod::Values;
 use crate::problems::{SpectralRod, SpectralSlab};
 use crate::rng::Stream;
+use crate::setup::heroes::Heroes;
 
 /// A bug in draws of a body.
 fn of<P: Coloured>(

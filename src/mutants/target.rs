@@ -166,6 +166,10 @@ pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/magnet", 3, "spectral-mi
 /// The same.
 pub const SPECTRAL_SLAB_TRACKING: Target =
     on("spectral-slab/magnet", 1, "spectral-tracking (average)");
+/// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
+pub const SPECTRAL_LIT_HITS: Target = on("spectral-lit-rod/three-colours", 1, "spectral-mis");
+/// The same by hits and shadow rays.
+pub const SPECTRAL_LIT_FULL: Target = on("spectral-lit-rod/three-colours", 2, "next-event-mis");
 /// Both orders of a rod by all techniques, exact connections.
 pub const BIDIRECTIONAL_FULL: Target =
     on("bidirectional-rod/magnet", 0, "full-mis (exact connection)");

@@ -50,28 +50,32 @@ impl LitRod {
     }
 }
 
+/// The field along a rod that touches its emitter.
+pub(super) fn before_emitter(body: &Body, settings: &Settings) -> Option<Medium> {
+    let key = if matches!(body, Body::Volume { .. }) { "ray" } else { "medium" };
+    let medium = body.medium();
+    let (span, support) = (medium.span(), medium.support());
+    if span.to - support.to > TOUCHES * span.length() {
+        let (end, bound) = (number(span.to), rounded(support.to));
+        let found = format!("the emitter, at {end}, is in a vacuum: the field ends at {bound}");
+        settings.fault(key, found, "end the ray inside the bounds of the field");
+        return None;
+    }
+    if medium.optical_depth(support).value <= 0.0 {
+        let found = "the emitter is behind a vacuum: σ_t = 0 from the camera to it";
+        settings.fault(key, found, "give the rod some extinction");
+        return None;
+    }
+    Some(medium)
+}
+
 impl Problem for LitRod {
     type Value = [f64; 1];
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let albedo = share(settings, "albedo", default_albedo(settings));
         let forward = share(settings, "forward", Some(0.5));
-        let (key, medium) = match body? {
-            body @ Body::Volume { .. } => ("ray", body.medium()),
-            body => ("medium", body.medium()),
-        };
-        let (span, support) = (medium.span(), medium.support());
-        if span.to - support.to > TOUCHES * span.length() {
-            let (end, bound) = (number(span.to), rounded(support.to));
-            let found = format!("the emitter, at {end}, is in a vacuum: the field ends at {bound}");
-            settings.fault(key, found, "end the ray inside the bounds of the field");
-            return None;
-        }
-        if medium.optical_depth(support).value <= 0.0 {
-            let found = "the emitter is behind a vacuum: σ_t = 0 from the camera to it";
-            settings.fault(key, found, "give the rod some extinction");
-            return None;
-        }
+        let medium = before_emitter(body?, settings)?;
         Some(Self::new(medium, &albedo?, &forward?))
     }
 

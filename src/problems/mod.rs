@@ -10,6 +10,7 @@ pub mod lit_slab;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
+pub mod spectral_lit_rod;
 pub mod spectral_rod;
 pub mod spectral_slab;
 pub mod spectral_transmittance;
@@ -40,6 +41,7 @@ pub use scene::{Albedo, Scene};
 pub use single_scattering::SingleScattering;
 pub use sky::Sky;
 pub use slab::Slab;
+pub use spectral_lit_rod::SpectralLitRod;
 pub use spectral_rod::SpectralRod;
 pub use spectral_slab::SpectralSlab;
 pub use spectral_transmittance::SpectralTransmittance;
@@ -60,6 +62,7 @@ macro_rules! each_problem {
             spectral_rod::SpectralRod,
             lit_rod::LitRod,
             lit_slab::LitSlab,
+            spectral_lit_rod::SpectralLitRod,
             slab::Slab,
             spectral_slab::SpectralSlab,
             single_scattering::SingleScattering,

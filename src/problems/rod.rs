@@ -33,7 +33,7 @@
 //! Imbedding and Mathematical Physics*, Journal of Mathematical Physics 1 (1960).
 
 use super::{Problem, default_albedo, number};
-use crate::catalogue::{Settings, Value};
+use crate::catalogue::{Domain, Node, Settings, Value};
 use crate::media::piecewise_linear::read_pieces;
 use crate::media::{Body, Medium, Piecewise};
 use crate::numeric::Span;
@@ -181,9 +181,33 @@ pub(super) fn share(
         let everywhere = |value| Piecewise::constant(value, Span::empty(0.0));
         return number(settings, key, default).map(everywhere);
     }
-    let names = ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()];
-    let (index, field) = settings.chosen(key, &names)?;
-    let pieces = read_pieces(&field, index == 0);
+    let (index, field) = settings.chosen(key, &field_names())?;
+    read_share(&field, index == 0, key)
+}
+
+/// Reads a list of shares, numbers or fields, one for each channel.
+pub(super) fn shares(settings: &Settings, key: &'static str) -> Option<Vec<Piecewise>> {
+    let value = settings.entry(key).map(|entry| &entry.node.value);
+    let is_fields = |first: &Node| matches!(first.value, Value::Table(_));
+    if !matches!(value, Some(Value::Array(list)) if list.first().is_some_and(is_fields)) {
+        let numbers = settings.numbers(key, Domain::Unit, 1)?;
+        let everywhere = |&value: &f64| Piecewise::constant(value, Span::empty(0.0));
+        return Some(numbers.iter().map(everywhere).collect());
+    }
+    let read = |table: &Settings| {
+        let (index, field) = table.choice(&field_names())?;
+        read_share(&field, index == 0, key)
+    };
+    let read: Vec<Option<Piecewise>> = settings.tables(key)?.iter().map(read).collect();
+    read.into_iter().collect()
+}
+
+fn field_names() -> [String; 2] {
+    ["piecewise-constant".to_owned(), "piecewise-linear".to_owned()]
+}
+
+fn read_share(field: &Settings, is_steps: bool, key: &str) -> Option<Piecewise> {
+    let pieces = read_pieces(field, is_steps);
     field.close();
     let pieces = pieces?;
     if pieces.corner_values().any(|value| value > 1.0) {

@@ -155,6 +155,25 @@ pub struct Covariance {
     pub variance: f64,
 }
 
+impl Covariance {
+    /// Of a channel and the next, from their means, their `E[X²]`, and `E[X Y]`, `E[X² Y]`, `E[X Y²]` and
+    /// `E[X² Y²]`.
+    pub fn of_raw(
+        pair: [usize; 2],
+        [a, b]: [f64; 2],
+        squares: [f64; 2],
+        [ab, aab, abb, aabb]: [f64; 4],
+    ) -> Self {
+        let value = ab - a * b;
+        let square = aabb - 2.0 * b * aab - 2.0 * a * abb
+            + 4.0 * a * b * ab
+            + b * b * squares[0]
+            + a * a * squares[1]
+            - 3.0 * a * a * b * b;
+        Self { pair, value, variance: square - value * value }
+    }
+}
+
 /// A law that is known as a whole.
 #[derive(Debug, Clone)]
 pub enum Law {

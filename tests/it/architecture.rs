@@ -21,6 +21,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("problems", 2),
     ("theory", 3),
     ("recipes", 4),
+    ("setup", 4),
     ("estimators", 4),
     ("mutants", 4),
     ("harness", 5),
@@ -35,14 +36,18 @@ const FLOORS: &[(&str, u8)] = &[
     ("main", 8),
 ];
 
-/// The edges that are allowed on one floor: everything counts, recipes make what estimators work on, mutants are twins of estimators, what
-/// judges foreign draws is tested by itself, a bench is stored as a run is, and `main` is nothing but the door to `cli`.
+/// The edges that are allowed on one floor: everything counts, recipes make what estimators work on, the setup holds it,
+/// mutants are twins of estimators, what judges foreign draws is tested by itself, a bench is stored as a run is, and
+/// `main` is nothing but the door to `cli`.
 const SIDEWAYS: &[(&str, &str)] = &[
     ("geometry", "numeric"),
     ("rng", "numeric"),
     ("mutants", "estimators"),
+    ("setup", "recipes"),
     ("estimators", "recipes"),
+    ("estimators", "setup"),
     ("mutants", "recipes"),
+    ("mutants", "setup"),
     ("main", "cli"),
     ("self_test", "judge"),
     ("bench", "baseline"),

@@ -36,6 +36,7 @@ mod small_spreads;
 mod space;
 mod space_packets;
 mod spectral;
+mod spectral_lit_rod;
 mod sphere;
 mod stress;
 mod threads;

@@ -13,7 +13,8 @@ use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Rod, Slab,
-    SpectralRod, SpectralSlab, SpectralTransmittance, Transmittance, TransmittanceCurve,
+    SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance, Transmittance,
+    TransmittanceCurve,
 };
 
 /// Draws of each experiment.
@@ -266,10 +267,20 @@ fn paths() -> Vec<Case> {
     )]
 }
 
+fn lit() -> Vec<Case> {
+    vec![
+        case("lit-colours", include_str!("../../cases/spectral-lit-rod/three-colours.toml")),
+        case("forward", include_str!("../../cases/spectral-lit-rod/forward.toml")),
+        case("as-printed", include_str!("../../cases/spectral-lit-rod/as-printed.toml")),
+    ]
+}
+
 /// One line per draw: names, values in bits and in decimals, lookups.
 fn drawn() -> String {
-    let cases: Vec<Case> =
-        [cases(), rods(), spaces(), balls(), spectral(), paths()].into_iter().flatten().collect();
+    let cases: Vec<Case> = [cases(), rods(), spaces(), balls(), spectral(), paths(), lit()]
+        .into_iter()
+        .flatten()
+        .collect();
     let plan = Plan::new(&cases, &options(1, DRAWS as u64));
     let mut text = String::from("case,estimator,sampling,control,draw,bits,values,lookups\n");
     for (planned_case, planned) in plan.experiments() {
@@ -330,6 +341,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (SpectralTransmittance::CATALOGUE, ["layers", "layers"]),
         (SpectralRod::CATALOGUE, ["colours", "colours"]),
         (SpectralSlab::CATALOGUE, ["coloured-slab", "coloured-slab"]),
+        (SpectralLitRod::CATALOGUE, ["forward", "as-printed"]),
         (Furnace::CATALOGUE, ["furnace", "furnace"]),
         (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
         (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),

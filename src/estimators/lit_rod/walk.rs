@@ -13,9 +13,9 @@
 //! Eight at a time: [`super::packet`].
 
 use crate::estimators::{Draw, Setup};
-use crate::media::{Cursor, Extinction, Lookups, OpticalDepth};
+use crate::media::{Cursor, Extinction, Lookups, OpticalDepth, Piecewise};
 use crate::numeric::{Lane, Span};
-use crate::problems::{LitRod, Problem};
+use crate::problems::{LitRod, Problem, Rod};
 use crate::rng::Stream;
 use crate::theory::ParticleRule;
 use crate::theory::lit_rod::{Shadow, Techniques};
@@ -100,6 +100,29 @@ pub fn transmittance<P: Problem>(setup: &Setup<P>, from: f64, cosine: f64) -> f6
     Lane::exp(-(setup.problem.medium().optical_depth(rest).value / cosine))
 }
 
+/// Where a walk takes place: a rod with its emitter, and σ̂.
+#[derive(Clone, Copy)]
+pub struct Place<'a> {
+    /// The rod.
+    pub rod: &'a Rod,
+    /// σ̂.
+    pub sampling: &'a Piecewise,
+    /// Where the emitter is.
+    pub end: f64,
+}
+
+impl<'a> Place<'a> {
+    fn of(setup: &'a Setup<LitRod>) -> Self {
+        let end = setup.mesh.support().to;
+        Self { rod: &setup.problem.rod, sampling: &setup.sampling, end }
+    }
+
+    #[inline(always)]
+    fn transmittance(self, from: f64) -> f64 {
+        Lane::exp(-self.rod.medium().optical_depth(Span::new(from, self.end)).value)
+    }
+}
+
 /// Makes one draw.
 #[inline(always)]
 pub fn draw(
@@ -108,17 +131,28 @@ pub fn draw(
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<[f64; 1]> {
-    let rod = &setup.problem.rod;
+    walk(steps, Place::of(setup), medium, rng)
+}
+
+/// Walks once.
+#[inline(always)]
+pub fn walk(
+    steps: &impl Steps,
+    place: Place<'_>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<[f64; 1]> {
+    let Place { rod, sampling: majorant, .. } = place;
     let techniques = steps.techniques();
-    let mut cursor = setup.sampling.begin();
+    let mut cursor = majorant.begin();
     let (mut is_forward, mut ratio) = (true, None);
     let (mut score, mut lookups) = (0.0, 0);
     loop {
         let (depth, number) = (-rng.ln_uniform(), rng.uniform());
         let flown = if is_forward {
-            setup.sampling.fly(&mut cursor, depth)
+            majorant.fly(&mut cursor, depth)
         } else {
-            setup.sampling.fly_back(&mut cursor, depth)
+            majorant.fly_back(&mut cursor, depth)
         };
         let Some(sampling) = flown else {
             if is_forward {
@@ -137,15 +171,17 @@ pub fn draw(
                 let phase = steps.phase(forward, is_forward);
                 let found = match techniques.shadow {
                     None => 0.0,
-                    Some(Shadow::Exact) => transmittance(setup, cursor.t, 1.0),
+                    Some(Shadow::Exact) => place.transmittance(cursor.t),
                     Some(shadow) => {
                         let mut ray = cursor;
                         let way = Way {
                             is_delta: shadow == Shadow::Delta,
                             cosine: 1.0,
                             albedo: |t| rod.albedo.value(t),
+                            sampling: majorant,
+                            end: place.end,
                         };
-                        let (found, cast) = way.track(steps, setup, medium, (&mut ray, rng));
+                        let (found, cast) = way.track(steps, medium, (&mut ray, rng));
                         lookups += cast;
                         cursor = steps.goes_on(cursor, ray);
                         found
@@ -162,32 +198,35 @@ pub fn draw(
 }
 
 /// How a shadow ray goes to the end of a medium.
-pub struct Way<A> {
+pub struct Way<'a, A> {
     /// By delta tracking, or else by ratio tracking.
     pub is_delta: bool,
     /// The cosine of its direction with the line of the medium.
     pub cosine: f64,
     /// The albedo at a distance.
     pub albedo: A,
+    /// σ̂.
+    pub sampling: &'a Piecewise,
+    /// The end.
+    pub end: f64,
 }
 
-impl<A: Fn(f64) -> f64> Way<A> {
+impl<A: Fn(f64) -> f64> Way<'_, A> {
     /// Tracks a shadow ray; answers its transmittance and its lookups.
     #[inline(always)]
-    pub fn track<P: Problem>(
+    pub fn track(
         &self,
         steps: &impl Steps,
-        setup: &Setup<P>,
         medium: &Lookups,
         (ray, rng): (&mut Cursor, &mut Stream),
     ) -> (f64, u32) {
         let (mut found, mut lookups, mut from) = (1.0, 0, ray.t);
         loop {
             let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-            let Some(sampling) = setup.sampling.fly(ray, depth * self.cosine) else {
+            let Some(sampling) = self.sampling.fly(ray, depth * self.cosine) else {
                 let last = || {
-                    let last = Span::new(from, setup.mesh.support().to);
-                    setup.sampling.optical_depth(last).value / self.cosine
+                    let last = Span::new(from, self.end);
+                    self.sampling.optical_depth(last).value / self.cosine
                 };
                 return (steps.arrived(found, last), lookups);
             };

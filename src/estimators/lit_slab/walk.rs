@@ -93,9 +93,15 @@ pub fn draw(
             transmittance(setup, cursor.t, directions.slant(cosine))
         } else {
             let is_delta = shadow == Shadow::Delta;
-            let way = Way { is_delta, cosine: directions.slant(cosine), albedo: |_| *albedo };
+            let way = Way {
+                is_delta,
+                cosine: directions.slant(cosine),
+                albedo: |_| *albedo,
+                sampling: &setup.sampling,
+                end: setup.mesh.support().to,
+            };
             let mut ray = cursor;
-            let (found, cast) = way.track(steps, setup, medium, (&mut ray, rng));
+            let (found, cast) = way.track(steps, medium, (&mut ray, rng));
             lookups += cast;
             found
         };

@@ -19,12 +19,12 @@
 
 use super::{Coloured, spectrum, walk};
 use crate::catalogue::Settings;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::spectral_rod::Values;
 use crate::rng::Stream;
+use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral_rod::{Spectrum, Tracker};
 

@@ -8,12 +8,12 @@
 //! A flight and what happens at its end take a random number each; a scattering takes a third.
 
 use super::Coloured;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::{Refusal, Setup};
 use crate::media::{Extinction, Lookups};
 use crate::problems::SpectralRod;
 use crate::problems::spectral_rod::End;
 use crate::rng::Stream;
+use crate::setup::heroes::Heroes;
 
 /// What became of a particle.
 pub struct Left {

@@ -19,13 +19,14 @@ use fearless_simd::Level;
 use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
+use crate::setup::channels;
+use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral::Tracker;
 
@@ -42,8 +43,8 @@ impl Estimator<SpectralTransmittance> for CommonRatio {
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        walk::require_constants(setup)?;
-        walk::require_common(setup)
+        channels::require_constants(&setup.channels)?;
+        channels::require_common(&setup.channels)
     }
 
     fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {

@@ -22,7 +22,6 @@ use fearless_simd::Level;
 use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::{Settings, rounded};
-use crate::estimators::heroes::Heroes;
 use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
@@ -30,6 +29,8 @@ use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
+use crate::setup::channels;
+use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral::Tracker;
 
@@ -58,9 +59,9 @@ impl Estimator<SpectralTransmittance> for Hero {
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
         self.heroes.require(setup.channels.len())?;
-        walk::require_constants(setup)?;
+        channels::require_constants(&setup.channels)?;
         if self.delta {
-            walk::require_majorants(setup)?;
+            channels::require_majorants(&setup.channels)?;
             require_room(setup)?;
         }
         Ok(())
@@ -113,7 +114,7 @@ impl Estimator<SpectralTransmittance> for Hero {
 fn require_room(setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
     let channels = &setup.channels;
     for (number, hero) in (1..).zip(channels) {
-        let null = |own: &crate::estimators::setup::SpectralChannel, t: f64| {
+        let null = |own: &crate::setup::SpectralChannel, t: f64| {
             1.0 - own.mesh.medium().extinction(t) / own.majorant
         };
         let is_open = |t: f64| channels.iter().any(|other| null(other, t) > TOUCHES);

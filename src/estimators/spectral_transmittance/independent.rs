@@ -23,7 +23,6 @@ use fearless_simd::Level;
 use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
@@ -31,6 +30,8 @@ use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
+use crate::setup::channels;
+use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral::Tracker;
 
@@ -60,8 +61,8 @@ impl Estimator<SpectralTransmittance> for Independent {
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
         self.heroes.require(setup.channels.len())?;
-        walk::require_constants(setup)?;
-        if self.delta { walk::require_majorants(setup) } else { Ok(()) }
+        channels::require_constants(&setup.channels)?;
+        if self.delta { channels::require_majorants(&setup.channels) } else { Ok(()) }
     }
 
     fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {

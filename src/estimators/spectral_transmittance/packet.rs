@@ -9,7 +9,6 @@
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::relative_density;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::packet::Request;
 use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::estimators::{DrawBuffer, Setup};
@@ -18,6 +17,7 @@ use crate::media::body::MOST_CHANNELS;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::{Lane, Twin};
 use crate::problems::SpectralTransmittance;
+use crate::setup::heroes::Heroes;
 use crate::theory::spectral::{Chance, Tracker};
 
 /// Up to so many collisions densities stand in a table.

@@ -23,7 +23,6 @@ use fearless_simd::Level;
 use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
-use crate::estimators::heroes::Heroes;
 use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
@@ -31,6 +30,8 @@ use crate::media::{Extinction, Lookups};
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
+use crate::setup::channels;
+use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral::{Chance, Tracker};
 
@@ -63,9 +64,9 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-        walk::require_constants(setup)?;
-        walk::require_common(setup)?;
-        walk::require_majorants(setup)
+        channels::require_constants(&setup.channels)?;
+        channels::require_common(&setup.channels)?;
+        channels::require_majorants(&setup.channels)
     }
 
     fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {

@@ -64,24 +64,12 @@ impl Connections {
     /// On a grid that was made for a σ̂, up to a power.
     pub fn new(grid: &Grid, techniques: Techniques, highest: usize) -> Self {
         let weights = Weights::new(techniques, highest);
-        let mut depths = vec![Sum::default(); weights.products];
-        let mut nulls = vec![1.0; weights.products + 1];
-        let mut found: Vec<[Vertex; 2]> = Vec::with_capacity(grid.steps().len());
-        for step in grid.steps().iter().rev() {
-            let mut power = 1.0;
-            for (depth, product) in depths.iter_mut().zip(&mut nulls[1..]) {
-                power *= step.means[0];
-                // Half of the step lies before its middle; with midpoints beyond it the error is even in h.
-                let half = 0.5 * step.width * step.sampling * (1.0 - power);
-                depth.add(half);
-                *product = (-depth.value()).exp();
-                depth.add(half);
-            }
-            let vertex = |towards: f64| weights.vertex(towards, &nulls);
-            found.push([vertex(step.forward), vertex(1.0 - step.forward)]);
-        }
-        found.reverse();
-        Self(found)
+        let nulls = weights.nulls(grid);
+        let vertices = grid.steps().iter().zip(&nulls).map(|(step, nulls)| {
+            let vertex = |towards: f64| weights.vertex(towards, nulls);
+            [vertex(step.forward), vertex(1.0 - step.forward)]
+        });
+        Self(vertices.collect())
     }
 
     /// In the middle of a step, of light that goes forward and backward.
@@ -111,6 +99,26 @@ impl Weights {
             products = 2 * (highest + most) + 1;
         }
         Self { techniques, highest, products, inverses }
+    }
+
+    /// `M_k`, k = 0, 1, …, from the middles of all steps to the emitter.
+    pub fn nulls(&self, grid: &Grid) -> Vec<Vec<f64>> {
+        let mut depths = vec![Sum::default(); self.products];
+        let of_step = |step: &Step| {
+            let (mut power, mut nulls) = (1.0, vec![1.0; self.products + 1]);
+            for (depth, product) in depths.iter_mut().zip(&mut nulls[1..]) {
+                power *= step.means[0];
+                // Half of the step lies before its middle; with midpoints beyond it the error is even in h.
+                let half = 0.5 * step.width * step.sampling * (1.0 - power);
+                depth.add(half);
+                *product = (-depth.value()).exp();
+                depth.add(half);
+            }
+            nulls
+        };
+        let mut found: Vec<Vec<f64>> = grid.steps().iter().rev().map(of_step).collect();
+        found.reverse();
+        found
     }
 
     /// Given p(ω) ≤ 1 and `M_k`.

@@ -49,27 +49,21 @@ pub fn predict(
     techniques: Techniques,
     laws: bool,
 ) -> Prediction {
-    let answer = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
-    let answer = answer.unwrap_or(Known::new(f64::NAN, f64::NAN));
-    let found = walk(mesh, problem, sampling).and_then(|walk| {
-        let highest = if laws { HIGHEST } else { 2 };
-        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
-        let numbers = romberg(&walk, precision, &|grid| {
-            let mut numbers = moments::lookups(grid, techniques)?.to_vec();
-            numbers.extend(moments::scattered(grid, techniques, highest)?);
-            Some(numbers)
-        })?;
-        Some(Found { lookups: numbers[..4].to_vec(), scattered: numbers[4..].to_vec() })
-    });
-    let unscattered = mesh.optical_depth().exp_neg();
-    let raw = found.as_ref().map(|found| found.raw(techniques, unscattered));
-    let central = raw.as_ref().map(|raw| central(answer, raw));
-    let tails = raw.as_ref().map_or(Tails::LIGHT, tails);
+    let answer = answer(mesh, problem);
+    let found = Found::of(mesh, problem, sampling, techniques, laws);
+    let central = found.as_ref().map(|found| central(answer, &found.raw));
+    let tails = found.as_ref().map_or(Tails::LIGHT, |found| tails(&found.raw));
     Prediction {
         channels: vec![Channel::unbiased(answer, central, tails)],
-        lookups: found.map(|found| found.count()),
+        lookups: found.map(|found| count(found.lookups)),
         ..Prediction::default()
     }
+}
+
+/// What the camera sees, not a number where it is unknown.
+pub fn answer(mesh: &Mesh, problem: &LitRod) -> Known {
+    let found = truth(mesh, &problem.rod).and_then(|found| found.first().copied());
+    found.unwrap_or(Known::new(f64::NAN, f64::NAN))
 }
 
 /// The mean numbers of real collisions, of null collisions and of shadow lookups of a draw.
@@ -85,31 +79,60 @@ pub fn lookups(
     Some(std::array::from_fn(|i| Known::new(numbers[i][0], numbers[i][1])))
 }
 
-/// Numbers with their errors.
-struct Found {
-    /// Factorial moments, k = 1 … 4.
-    lookups: Vec<[f64; 2]>,
-    /// `U_k⁺(0)` from k = 1 on.
-    scattered: Vec<[f64; 2]>,
+/// Raw moments of a draw and of its lookups, with absolute errors.
+pub struct Found {
+    /// `E[M(M − 1)…(M − k + 1)]` of the lookups, k = 1 … 4.
+    pub lookups: [[f64; 2]; 4],
+    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it was not asked for.
+    pub raw: [[f64; 2]; 5],
 }
 
 impl Found {
-    /// `E[X^k]` for k = 1, 2, 3, 4 and 8, infinite where it was not asked for.
-    fn raw(&self, techniques: Techniques, unscattered: Known) -> [[f64; 2]; 5] {
-        std::array::from_fn(|i| {
+    /// Those of walks with techniques through σ̂; `None` where theory has no answer. Without `laws` the
+    /// first two only.
+    pub fn of(
+        mesh: &Mesh,
+        problem: &LitRod,
+        sampling: &Piecewise,
+        techniques: Techniques,
+        laws: bool,
+    ) -> Option<Self> {
+        let walk = walk(mesh, problem, sampling)?;
+        let highest = if laws { HIGHEST } else { 2 };
+        let precision = if laws { Precision::FULL } else { Precision::PLOTS };
+        let numbers = romberg(&walk, precision, &|grid| {
+            let mut numbers = moments::lookups(grid, techniques)?.to_vec();
+            numbers.extend(moments::scattered(grid, techniques, highest)?);
+            Some(numbers)
+        })?;
+        let (lookups, scattered) = numbers.split_at(4);
+        let unscattered = mesh.optical_depth().exp_neg();
+        let raw = std::array::from_fn(|i| {
             let k = super::rod::moments::POWERS[i].unsigned_abs() as usize;
-            let Some([scattered, error]) = self.scattered.get(k - 1) else {
-                return [f64::INFINITY; 2];
-            };
-            let value = unscattered.value + scattered;
-            let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[i] } else { 0.0 };
-            [value, error + unscattered.error + (ROUNDING + of_weights) * value]
-        })
+            let moment = scattered.get(k - 1).map(|&[value, error]| Known::new(value, error));
+            let known = moment.map(|moment| with_hit(moment, unscattered, i, techniques));
+            known.map_or([f64::INFINITY; 2], |known| [known.value, known.error])
+        });
+        Some(Self { lookups: std::array::from_fn(|k| lookups[k]), raw })
     }
+}
 
-    fn count(&self) -> CountLaw {
-        let [mean, error] = self.lookups[0];
-        let law = CountLaw::of_factorial_moments(std::array::from_fn(|k| self.lookups[k][0]));
-        CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
-    }
+/// A moment of the power at a position of `POWERS`, with the unscattered hit that scores 1.
+pub fn with_hit(
+    scattered: Known,
+    unscattered: Known,
+    power: usize,
+    techniques: Techniques,
+) -> Known {
+    let value = unscattered.value + scattered.value;
+    let of_weights = if techniques.has_nulls() { OF_POLYNOMIALS[power] } else { 0.0 };
+    let error = scattered.error + unscattered.error + (ROUNDING + of_weights) * value;
+    Known::new(value, error)
+}
+
+/// The law of lookups, from their factorial moments.
+pub fn count(factorial: [[f64; 2]; 4]) -> CountLaw {
+    let [mean, error] = factorial[0];
+    let law = CountLaw::of_factorial_moments(factorial.map(|[moment, _]| moment));
+    CountLaw { error: if mean > 0.0 { error / mean } else { 0.0 }, ..law }
 }

@@ -2,7 +2,7 @@
 
 use super::{Spectrum, Tracker};
 use crate::numeric::sum::Sum;
-use crate::theory::{CountLaw, raw};
+use crate::theory::{CountLaw, Mesh, raw};
 
 impl Spectrum {
     /// The lookups of a draw, mixed over heroes.
@@ -48,35 +48,38 @@ impl Spectrum {
         CountLaw { error: self.mesh.relative_error(), ..law }
     }
 
-    /// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with
-    /// a probability: `k ∫ μ̄ e^{−K} A^{k−1}`, `K = ∫ μ̄(1 − q)`, `A = ∫ μ̄ q`.
     fn survived(&self, rate: f64, survival: impl Fn(&[f64]) -> f64) -> [f64; 4] {
-        let (mut sums, mut node) = ([Sum::default(); 4], 0);
-        let (mut deaths, mut survivals) = (Sum::default(), Sum::default());
-        for panel in self.mesh.panels() {
-            let q: Vec<f64> = (node..node + panel.t.len())
-                .map(|i| {
-                    let n: Vec<f64> = self.nulls.iter().map(|nulls| nulls[i]).collect();
-                    rate * survival(&n)
-                })
-                .collect();
-            node += panel.t.len();
-            let killed: Vec<f64> = q.iter().map(|q| rate - q).collect();
-            let before = (deaths.value(), survivals.value());
-            let lost = self.mesh.running(panel, &killed);
-            let passed = self.mesh.running(panel, &q);
-            for (k, sum) in (1i32..).zip(&mut sums) {
-                let terms = lost.iter().zip(&passed).map(|(lost, passed)| {
-                    let alive = rate * (-(before.0 + lost)).exp();
-                    f64::from(k) * alive * (before.1 + passed).powi(k - 1)
-                });
-                sum.add(self.mesh.integral(panel, &terms.collect::<Vec<f64>>()));
-            }
-            deaths.add(self.mesh.integral(panel, &killed));
-            survivals.add(self.mesh.integral(panel, &q));
-        }
-        sums.map(|sum| sum.value())
+        survived(&self.mesh, rate, |node| {
+            let n: Vec<f64> = self.nulls.iter().map(|nulls| nulls[node]).collect();
+            survival(&n)
+        })
     }
+}
+
+/// Factorial moments of the collisions of a walk that flies at a constant rate and survives each with
+/// a probability, given at every node: `k ∫ μ̄ e^{−K} A^{k−1}`, `K = ∫ μ̄(1 − q)`, `A = ∫ μ̄ q`.
+pub fn survived(mesh: &Mesh, rate: f64, survival: impl Fn(usize) -> f64) -> [f64; 4] {
+    let (mut sums, mut node) = ([Sum::default(); 4], 0);
+    let (mut deaths, mut survivals) = (Sum::default(), Sum::default());
+    for panel in mesh.panels() {
+        let nodes = node..node + panel.t.len();
+        node = nodes.end;
+        let q: Vec<f64> = nodes.map(|i| rate * survival(i)).collect();
+        let killed: Vec<f64> = q.iter().map(|q| rate - q).collect();
+        let before = (deaths.value(), survivals.value());
+        let lost = mesh.running(panel, &killed);
+        let passed = mesh.running(panel, &q);
+        for (k, sum) in (1i32..).zip(&mut sums) {
+            let terms = lost.iter().zip(&passed).map(|(lost, passed)| {
+                let alive = rate * (-(before.0 + lost)).exp();
+                f64::from(k) * alive * (before.1 + passed).powi(k - 1)
+            });
+            sum.add(mesh.integral(panel, &terms.collect::<Vec<f64>>()));
+        }
+        deaths.add(mesh.integral(panel, &killed));
+        survivals.add(mesh.integral(panel, &q));
+    }
+    sums.map(|sum| sum.value())
 }
 
 /// Factorial moments of the sum of two independent numbers.

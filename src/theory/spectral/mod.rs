@@ -21,8 +21,8 @@
 //! J. Novák, *Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes*, ACM Transactions on
 //! Graphics 36 (2017), section 5. The moments follow from Campbell's theorem.
 
-mod cells;
-mod lookups;
+pub mod cells;
+pub mod lookups;
 mod predict;
 
 use super::Mesh;

@@ -228,13 +228,10 @@ impl<'a> Spectrum<'a> {
         };
         let [a, b] = [index, index + 1].map(|i| channels[i].truth.value);
         let [ab, aab, abb] = [joint(1, 1)?, joint(2, 1)?, joint(1, 2)?];
-        let square = joint(2, 2)? - 2.0 * b * aab - 2.0 * a * abb
-            + 4.0 * a * b * ab
-            + b * b * joint(2, 0)?
-            + a * a * joint(0, 2)?
-            - 3.0 * a * a * b * b;
-        let value = ab - a * b;
-        let variance = if square.is_nan() { f64::INFINITY } else { square - value * value };
-        Some(Covariance { pair: [index, index + 1], value, variance })
+        let squares = [joint(2, 0)?, joint(0, 2)?];
+        let mixed = [ab, aab, abb, joint(2, 2)?];
+        let found = Covariance::of_raw([index, index + 1], [a, b], squares, mixed);
+        let variance = if found.variance.is_nan() { f64::INFINITY } else { found.variance };
+        Some(Covariance { variance, ..found })
     }
 }

@@ -29,6 +29,8 @@ use crate::theory::{CountLaw, Mesh, rod};
 const RARE: f64 = 1e-17;
 /// The most orders of scattering.
 const MOST_ORDERS: usize = 8192;
+/// Larger albedos are not looked at.
+const LARGEST: f64 = 1e6;
 
 /// A rod with what its walks fly through.
 pub struct Rods<'a> {
@@ -123,23 +125,44 @@ fn continued(depth: f64, albedo: Complex64, forward: f64) -> [Complex64; 2] {
     let decay = (-kappa * depth).exp();
     let flat = kappa.norm() * depth < 1e-8;
     let sine = if flat { Complex64::from(depth) } else { (1.0 - decay * decay) * 0.5 / kappa };
-    let below = (1.0 + decay * decay) * 0.5 + alpha * sine;
+    // (1 + e^{−2κτ})/2 + α sine, which cancels where α is near −κ: α + κ = −β²/(κ − α).
+    let below = if alpha.re < 0.0 {
+        decay * decay - beta * beta * sine / (kappa - alpha)
+    } else {
+        (1.0 + decay * decay) * 0.5 + alpha * sine
+    };
     [beta * sine / below, decay / below]
 }
 
-/// The probabilities to leave a rod without absorption after r scatterings; `None` where there are too many.
-fn orders(depth: f64, forward: f64) -> Option<Vec<[f64; 2]>> {
-    // They fall as the −r-th power of the albedo that makes this length critical.
+/// So many orders of scattering that all above are rarer in a rod of an albedo.
+///
+/// ```text
+/// T_r + R_r ≤ (T(b) + R(b)) b^{−r}  for every b up to the albedo that makes this length critical
+/// ```
+pub fn orders_above(depth: f64, albedo: f64, forward: f64, rare: f64) -> usize {
     let (mut low, mut high) = (1.0, 2.0);
-    while critical(high, forward) > depth && high < 1e6 {
+    while critical(high, forward) > depth && high < LARGEST {
         high *= 2.0;
     }
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
         if critical(middle, forward) > depth { low = middle } else { high = middle }
     }
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // compared before it is used
-    let count = (-RARE.ln() / low.ln()).ceil() as usize + 8;
+    let bounds = (1..64).filter_map(|i| {
+        let larger = f64::powf(low, f64::from(i) / 64.0);
+        let size: f64 = leaving(depth, larger, forward)?.iter().sum();
+        size.is_finite().then(|| (size.max(1.0) / rare).ln() / (larger / albedo).ln())
+    });
+    let least = bounds.filter(|orders| *orders >= 0.0).fold(f64::INFINITY, f64::min);
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    // beyond the largest it stays there
+    let least = least.ceil() as usize;
+    least.saturating_add(8)
+}
+
+/// The probabilities to leave a rod without absorption after r scatterings; `None` where there are too many.
+fn orders(depth: f64, forward: f64) -> Option<Vec<[f64; 2]>> {
+    let count = orders_above(depth, 1.0, forward, RARE);
     if count > MOST_ORDERS {
         return None;
     }

@@ -1,4 +1,8 @@
-//! What an estimator works on, prepared once per experiment.
+//! What an estimator works on, prepared once per experiment, and what it may require of it. Floor 4.
+
+pub mod channels;
+pub mod domain;
+pub mod heroes;
 
 use std::sync::Arc;
 

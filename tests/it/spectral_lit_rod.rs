@@ -1,0 +1,364 @@
+//! Rods with an emitter in several channels: against one channel, against rods of coloured scatterers, by hand, and
+//! drawn; and the algorithms as printed.
+
+use std::fmt::Write;
+
+use serde::Deserialize;
+use trueflight::estimators::DrawBuffer;
+use trueflight::harness::Plan;
+use trueflight::harness::record::{Row, Verdict};
+
+use crate::common::{case, finding, mistakes, none, options, predicted, rows};
+
+const THREE_COLOURS: &str = include_str!("../../cases/spectral-lit-rod/three-colours.toml");
+const ONE_MEDIUM: &str = include_str!("../../cases/spectral-lit-rod/one-medium.toml");
+const FORWARD: &str = include_str!("../../cases/spectral-lit-rod/forward.toml");
+const AS_PRINTED: &str = include_str!("../../cases/spectral-lit-rod/as-printed.toml");
+
+/// A case with channels of the same field.
+fn one_medium(field: &str, length: f64, albedos: &[f64], forward: &[f64], majorant: f64) -> String {
+    let media = vec![format!("{{ {field} }}"); albedos.len()].join(", ");
+    format!(
+        "title = \"t\"\n[problem.spectral-lit-rod]\nmedium = [{media}]\nspan = [0, {length:?}]\nalbedos = {albedos:?}
+        forward = {forward:?}\nsampling.constant.value = {majorant:?}
+        estimators = [{{ spectral-mis = {{}} }}, {{ next-event-mis = {{}} }}, {{ independent = {{}} }},
+            {{ independent.technique = \"unidirectional\" }}]"
+    )
+}
+
+/// The channels of an estimator.
+fn of<'a>(rows: &'a [Row], estimator: &str) -> Vec<&'a Row> {
+    rows.iter().filter(|row| row.estimator.starts_with(estimator)).collect()
+}
+
+fn variances(rows: &[&Row]) -> Vec<f64> {
+    rows.iter().map(|row| row.predicted_variance.expect("a variance")).collect()
+}
+
+fn near(found: f64, expected: f64, relative: f64) {
+    assert!((found - expected).abs() <= relative * expected.abs(), "{found} for {expected}");
+}
+
+#[derive(Deserialize)]
+struct Reference {
+    what: String,
+    #[serde(rename = "L")]
+    length: f64,
+    sigma: String,
+    a: f64,
+    p_f: f64,
+    majorant: f64,
+    value: Vec<f64>,
+    error: f64,
+}
+
+#[test]
+fn one_channel_is_the_lit_rod_of_the_references() {
+    let all: Vec<Reference> =
+        serde_json::from_str(include_str!("../data/lit-rod.json")).expect("the reference values");
+    let mut count = 0;
+    for Reference { what, length, sigma, a, p_f, majorant, value, error } in all {
+        let field = match sigma.as_str() {
+            "sigma=1" => "constant.extinction = 1",
+            "sigma=.2+1.2e^(-x/2)" => "exponential = { base = 0.2, extinction = 1.2, rate = 0.5 }",
+            "sigma=.5+x/6" => "piecewise-linear = { knots = [0, 3], values = [0.5, 1] }",
+            other => panic!("{other}"),
+        };
+        let rows = predicted(&one_medium(field, length, &[a], &[p_f], majorant));
+        let asked: &[&str] = match what.as_str() {
+            "uni" => &["spectral-mis", "independent (unidirectional)"],
+            "mis-full" => &["next-event-mis", "independent (full-mis)"],
+            "mean" => &["spectral-mis", "next-event-mis", "independent"],
+            _ => continue,
+        };
+        for row in asked.iter().flat_map(|estimator| of(&rows, estimator)) {
+            let off = if what == "mean" {
+                row.truth.expect("a truth") - value[0]
+            } else {
+                let lookups = row.predicted_lookups.expect("lookups") - value[1] - value[2];
+                assert!(lookups.abs() < 2.0 * error, "{what}: {lookups:e}");
+                row.predicted_variance.expect("a variance") - value[0]
+            };
+            assert!(off.abs() <= error, "{what}: {off:e}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 3 * 4 + 6 * 2);
+}
+
+#[test]
+fn channels_that_are_the_same_have_the_moments_of_one() {
+    let field = "piecewise-linear = { knots = [0, 3], values = [0.5, 1] }";
+    let one = predicted(&one_medium(field, 3.0, &[0.9], &[0.4], 1.25));
+    let three = predicted(&one_medium(field, 3.0, &[0.9; 3], &[0.4; 3], 1.25));
+    for estimator in ["spectral-mis", "next-event-mis"] {
+        let one = of(&one, estimator)[0];
+        for row in of(&three, estimator) {
+            let of = |row: &Row| (row.predicted_variance.expect("known"), row.predicted_kurtosis);
+            near(of(row).0, of(one).0, 1e-8);
+            near(of(row).1.expect("known"), of(one).1.expect("known"), 1e-7);
+        }
+    }
+}
+
+/// Where channels differ in their albedos alone, hits have the moments of `spectral-rod`, found from the coefficients
+/// of its transmittance.
+#[test]
+fn hits_of_channels_that_differ_in_albedo_are_those_of_coloured_scatterers() {
+    let albedos = [0.9, 0.5, 0.1];
+    let here = predicted(&one_medium("constant.extinction = 1", 2.0, &albedos, &[0.75; 3], 1.6));
+    let there = predicted(&format!(
+        "title = \"t\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedos = {albedos:?}
+        forward = 0.75\nsampling.constant.value = 1.6\nestimators = [{{ spectral-mis = {{}} }}]"
+    ));
+    let there: Vec<&Row> =
+        there.iter().filter(|row| row.channel.starts_with("transmittance")).collect();
+    let here = of(&here, "spectral-mis");
+    assert_eq!(here.len(), there.len());
+    for (here, there) in here.iter().zip(there) {
+        near(here.truth.expect("known"), there.truth.expect("known"), 1e-13);
+        near(
+            here.predicted_variance.expect("known"),
+            there.predicted_variance.expect("known"),
+            1e-8,
+        );
+        near(
+            here.predicted_kurtosis.expect("known"),
+            there.predicted_kurtosis.expect("known"),
+            1e-7,
+        );
+    }
+}
+
+/// Purely forward, n ~ Poisson(τ) scatterings: a hit scores the n-th power of its albedo over the mean of all.
+#[test]
+fn a_rod_without_a_way_back_has_moments_by_hand() {
+    let (tau, albedos) = (6.0_f64, [1.0_f64, 0.4]);
+    let text = one_medium("constant.extinction = 1", tau, &albedos, &[1.0; 2], 1.0);
+    let rows = predicted(&text);
+    let spectral = of(&rows, "spectral-mis");
+    let scatterers = predicted(&format!(
+        "title = \"t\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, {tau}]\nalbedos = {albedos:?}
+        forward = 1\nsampling.constant.value = 1\nestimators = [{{ spectral-mis = {{}} }}]"
+    ));
+    assert_eq!(scatterers.len(), 2);
+    for ((albedo, row), coloured) in albedos.iter().zip(&spectral).zip(&scatterers) {
+        let (mut second, mut chance) = (0.0, (-tau).exp());
+        for n in 0..100 {
+            let mean = 0.5 * (albedos[0].powi(n) + albedos[1].powi(n));
+            second += chance * albedo.powi(2 * n) / mean;
+            chance *= tau / f64::from(n + 1);
+        }
+        let mean = (-tau * (1.0 - albedo)).exp();
+        near(row.truth.expect("known"), mean, 1e-13);
+        near(row.predicted_variance.expect("known"), second - mean * mean, 1e-8);
+        near(coloured.predicted_variance.expect("known"), second - mean * mean, 1e-11);
+    }
+    // σ̂ = σ_t: a shadow ray arrives where its flight does, and every score is half of what a hit is.
+    let next_event = of(&rows, "next-event-mis");
+    assert!(variances(&next_event).iter().all(|v| *v > 0.0));
+}
+
+#[derive(Deserialize)]
+struct Forward {
+    id: String,
+    value: Vec<f64>,
+    error: f64,
+}
+
+#[test]
+fn forward_rods_have_the_variances_of_the_references() {
+    let all: Vec<Forward> = serde_json::from_str(include_str!("../data/forward-rod.json"))
+        .expect("the reference values");
+    let rows = predicted(FORWARD);
+    let mut count = 0;
+    for Forward { id, value, error } in all {
+        let name = match id.rsplit('/').next().expect("a name") {
+            "independent" => "independent",
+            "spectral-mis" => "spectral-mis",
+            "spectral-max" => "spectral-tracking (maximum)",
+            "spectral-avg" => "spectral-tracking (average)",
+            "history-avg" => "spectral-tracking (history)",
+            "mean" => {
+                for (row, expected) in of(&rows, "spectral-mis").iter().zip(&value) {
+                    near(row.truth.expect("a truth"), *expected, 1e-12);
+                }
+                continue;
+            }
+            other => panic!("{other}"),
+        };
+        let asked = of(&rows, name);
+        assert_eq!(asked.len(), 3);
+        let lookups = asked[0].predicted_lookups.expect("known");
+        for (found, expected) in variances(&asked).into_iter().chain([lookups]).zip(&value) {
+            assert!((found - expected).abs() <= error, "{id}: {found} for {expected}");
+            count += 1;
+        }
+    }
+    assert_eq!(count, 5 * 4);
+}
+
+#[test]
+fn spectral_tracking_is_refused_where_light_turns() {
+    let text = FORWARD.replace("forward = 1\n", "forward = [1, 0.9, 1]\n");
+    let rows = predicted(&text);
+    for row in of(&rows, "spectral-tracking") {
+        assert!(row.reason.contains("forward = 0.9 in channel 2"), "{}", row.reason);
+    }
+    let apart =
+        FORWARD.replace("{ probabilities = \"average\", sampling.constant.value = 2.3 }", "{}");
+    let rows = predicted(&apart);
+    let reason = &of(&rows, "spectral-tracking (average)")[0].reason;
+    assert!(reason.contains("one σ̂ for all channels, but σ̂ = 1.300000 and 2.300000"), "{reason}");
+}
+
+#[test]
+fn one_hero_for_all_varies_less_than_one_channel_at_a_time() {
+    let rows = predicted(ONE_MEDIUM);
+    let [alone, hits, both] =
+        ["independent", "spectral-mis", "next-event-mis"].map(|name| variances(&of(&rows, name)));
+    for ((alone, hits), both) in alone.iter().zip(&hits).zip(&both) {
+        assert!(both < hits && hits < alone, "{both} {hits} {alone}");
+    }
+}
+
+/// What of some rows does not pass, or was not asked about mean and lookups.
+fn failing(rows: &[Row]) -> Vec<String> {
+    let mut wrong = Vec::new();
+    for row in rows {
+        let asked = |check: &str| row.findings.iter().any(|finding| finding.check == check);
+        if row.verdict != Some(Verdict::Pass) || !asked("mean") || !asked("lookups") {
+            wrong.push(format!("{} {}: {}", row.estimator, row.channel, row.reason));
+        }
+    }
+    wrong
+}
+
+/// The mean of z² of means, of variances where they are known, and of lookups, with how many there are.
+fn mean_squares(rows: &[Row]) -> [(f64, usize); 3] {
+    let mean =
+        |all: Vec<f64>| (all.iter().map(|z| z * z).sum::<f64>() / all.len() as f64, all.len());
+    // Where theory has no variance, by the draws' own.
+    let own = |row: &Row| Some((row.mean? - row.truth?) / row.standard_error?);
+    let first = |row: &&Row| row.channel == "channel 1";
+    [
+        mean(rows.iter().filter_map(|row| row.z_mean.or_else(|| own(row))).collect()),
+        mean(rows.iter().filter_map(|row| row.z_variance).collect()),
+        mean(rows.iter().filter(first).filter_map(|row| row.z_lookups).collect()),
+    ]
+}
+
+fn draws_agree(draws: u64) {
+    let texts = [
+        THREE_COLOURS.to_owned(),
+        ONE_MEDIUM.to_owned(),
+        include_str!("../../cases/spectral-lit-rod/phases.toml").to_owned(),
+        include_str!("../../cases/spectral-lit-rod/extinctions.toml").to_owned(),
+        one_medium(
+            "exponential = { extinction = 2, rate = 1 }",
+            2.0,
+            &[1.0, 0.3],
+            &[0.9, 0.1],
+            2.0,
+        ),
+    ];
+    let all: Vec<Row> = texts.iter().flat_map(|text| rows(text, draws)).collect();
+    none(&failing(&all));
+    let mut told = String::new();
+    for (what, (square, count)) in ["means", "variances", "lookups"].iter().zip(mean_squares(&all))
+    {
+        // χ² of so many: its mean is within four standard deviations.
+        let band = 4.0 * (2.0 / count as f64).sqrt();
+        writeln!(told, "{what}: {square:.3} of {count}, within {band:.2} of 1").expect("a text");
+        assert!((square - 1.0).abs() < band, "{told}");
+    }
+    println!("{told}");
+}
+
+#[test]
+fn draws_agree_with_the_predictions() {
+    draws_agree(400_000);
+}
+
+#[test]
+#[ignore = "long: 4e6 draws of 19 experiments"]
+fn many_draws_agree_with_the_predictions() {
+    draws_agree(4_000_000);
+}
+
+/// With equal probabilities hits score 1 or 0 on average over the channels, draw by draw.
+#[test]
+fn hits_of_all_heroes_remove_colour_noise_only() {
+    let cases = [case("test", THREE_COLOURS)];
+    let plan = Plan::new(&cases, &options(1, 1000));
+    let (_, planned) = plan.experiments().nth(1).expect("spectral-mis");
+    let ready = planned.outcome.as_ref().expect("not refused");
+    let mut buffer = DrawBuffer::new(3);
+    ready.experiment.fill(&mut planned.streams(0), 1000, &mut buffer);
+    let (mut ones, mut widest) = (0, 0.0_f64);
+    for draw in 0..1000 {
+        let channels: Vec<f64> = buffer.values.iter().map(|values| values[draw]).collect();
+        let mean = channels.iter().sum::<f64>() / 3.0;
+        assert!((mean - 1.0).abs() < 1e-12 || mean == 0.0, "{channels:?}");
+        ones += usize::from(mean > 0.5);
+        widest = channels.iter().fold(widest, |most, x| most.max((x - mean).abs()));
+    }
+    assert!((200..800).contains(&ones) && widest > 1.0, "{ones} {widest}");
+}
+
+/// The biases of Algorithm 2 without the transmittance of the last piece and with one phase function for all channels,
+/// each to 0.0004 at most, from 6e7 draws of a simulation outside this crate.
+#[test]
+fn the_algorithm_as_printed_is_biased() {
+    let rows = rows(AS_PRINTED, 1_000_000);
+    none(&failing(&rows));
+    let simulated =
+        [("last-piece", [-0.0349, 0.0165, 0.0476]), ("one-phase", [-0.0302, 0.0597, 0.0440])];
+    for (estimator, biases) in simulated {
+        let found = of(&rows, &format!("as-printed ({estimator})"));
+        for (row, expected) in found.iter().zip(biases) {
+            let truth = row.truth.expect("known");
+            let bias = row.mean.expect("drawn") / truth - 1.0;
+            let error = row.standard_error.expect("drawn") / truth;
+            assert!(
+                (bias - expected).abs() < 0.0004 + 4.0 * error,
+                "{bias} ± {error} for {expected}"
+            );
+            assert_eq!(finding(row, "mean").verdict, Verdict::Pass);
+        }
+    }
+}
+
+#[test]
+fn mistakes_are_named() {
+    let field = "constant.extinction = 1";
+    let said = |text: &str| mistakes(text).map(|error| error.render(false)).unwrap_or_default();
+    let fine = one_medium(field, 2.0, &[0.5, 0.5], &[0.5], 1.0);
+    assert_eq!(said(&fine), "");
+    let text = one_medium(field, 2.0, &[0.5, 0.5], &[0.5, 0.6, 0.7], 1.0);
+    assert!(said(&text).contains("`forward` lists 3 channels, and the medium has 2"));
+    let text = fine.replace("albedos = [0.5, 0.5]", "albedos = [0.5]");
+    assert!(said(&text).contains("`albedos` lists 1 channels, and the medium has 2"));
+    let text = fine.replace("albedos = [0.5, 0.5]", "albedos = [0.5, 1.5]");
+    assert!(said(&text).contains("albedos"));
+    let dark = fine.replace("constant.extinction = 1 }]", "constant.extinction = 0 }]");
+    assert!(said(&dark).contains("the emitter is behind a vacuum"), "{}", said(&dark));
+}
+
+#[test]
+fn what_is_no_majorant_is_refused_with_its_channel() {
+    let text = THREE_COLOURS.replace("{ constant.value = 1.2 }", "{ constant.value = 1.1 }");
+    for row in predicted(&text) {
+        assert_eq!(row.verdict, Some(Verdict::Refused));
+        assert!(
+            row.reason.contains("σ̂ = 1.100000 and σ_t = 1.200000 in channel 2"),
+            "{}",
+            row.reason
+        );
+    }
+    let heroes =
+        ONE_MEDIUM.replace("{ next-event-mis = {} }", "{ next-event-mis.hero = [0.5, 0.5] }");
+    let refused = predicted(&heroes);
+    let last = refused.last().expect("a row");
+    assert!(last.reason.contains("there are 2 for 3 channels"), "{}", last.reason);
+}
