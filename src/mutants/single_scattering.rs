@@ -71,7 +71,7 @@ fn draw(
     }
     let numbers = if technique.bug == Bug::NumberTwice { &mut beginning } else { &mut *rng };
     let (transmittance, walked) = camera(setup, medium, technique.camera, s, numbers);
-    if transmittance == 0.0 {
+    if technique.camera == CameraTracking::Delta && transmittance == 0.0 {
         return Draw::free([0.0], 1 + walked);
     }
     let (lit, cast) = shadow(problem, technique.shadow, s, rng);

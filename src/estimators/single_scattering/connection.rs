@@ -10,7 +10,8 @@
 //!
 //! A shadow ray is clipped to the bounds of the volume and walked from the scattering point. Where
 //! σ_t = 0 there is nothing to light, and where it misses the bounds nothing in the way: neither
-//! costs a lookup.
+//! costs a lookup. Where delta tracking ended on the way to the point none is cast; one is where a tracked weight has
+//! become 0, whose chance depends on the rounding of σ̂ and σ_t.
 
 use super::packet::Kind;
 use crate::catalogue::{Domain, Settings, number, rounded};
@@ -162,7 +163,7 @@ impl Connection {
             return (0.0, 1);
         }
         let (transmittance, walked) = camera(setup, medium, self.camera, s, rng);
-        if transmittance == 0.0 {
+        if self.camera == CameraTracking::Delta && transmittance == 0.0 {
             return (0.0, 1 + walked);
         }
         let (lit, cast) = shadow(&setup.problem, self.shadow, s, rng);

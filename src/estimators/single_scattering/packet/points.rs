@@ -127,9 +127,8 @@ impl<S: Simd> Page<S> for Points<'_, S> {
             self.walk.on &= !arrives;
             self.walk.begin(scatters);
         }
-        let is_nothing = arrives & self.weight.at_most(zero) & zero.at_most(self.weight);
-        self.done |= ends | is_nothing;
-        (arrives & !is_nothing, self.s)
+        self.done |= ends;
+        (arrives, self.s)
     }
 
     #[inline(always)]
