@@ -59,6 +59,7 @@ const CASES: BuiltIn = cases![
     "spectral-lit-rod/as-printed",
     "single-scattering/homogeneous",
     "single-scattering/magnet",
+    "single-scattering/null-paths-layers",
     "slab/magnet",
     "slab/magnet-diffuse",
     "spectral-slab/magnet",

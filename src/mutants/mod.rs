@@ -23,6 +23,7 @@ pub mod free_flight;
 pub mod lit_rod;
 pub mod lit_slab;
 pub mod lookups;
+pub mod null_paths;
 pub mod precision;
 pub mod rod;
 pub mod rules;
@@ -158,7 +159,7 @@ mutable! {
     LitRod: lit_rod::mutants();
     LitSlab: lit_slab::mutants();
     SpectralLitRod: spectral_lit_rod::mutants();
-    SingleScattering: single_scattering::mutants();
+    SingleScattering: single_scattering::mutants(), null_paths::mutants();
     Furnace: space::in_furnace();
     Lambertian: space::under_light();
     InfiniteMedium: space::in_infinite_medium();

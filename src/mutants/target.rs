@@ -107,6 +107,21 @@ pub const SINGLE_RATIO: Target =
 /// The same with ratio-tracked shadow rays.
 pub const SINGLE_SHADOW: Target =
     on("single-scattering/magnet", 2, "source-driven (exact camera, ratio shadow 1.5)");
+/// Equiangular points and delta tracking by null-scattering paths, `σ̂ = 1.2`.
+pub const SINGLE_NULL_PATHS: Target =
+    on("single-scattering/magnet", 3, "source-delta-mis (null paths, analog, ratio shadow 1.5)");
+/// One of both.
+pub const SINGLE_ONE_SAMPLE: Target = on(
+    "single-scattering/magnet",
+    4,
+    "source-delta-mis (null paths, analog, one sample, ratio shadow 1.5)",
+);
+/// By the power heuristic.
+pub const SINGLE_POWER: Target = on(
+    "single-scattering/magnet",
+    5,
+    "source-delta-mis (null paths, analog, power, ratio shadow 1.5)",
+);
 /// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
 pub const SLAB_ANALOG: Target = on("slab/magnet", 0, "analog");
 /// `σ̂ = 1.2`.

@@ -89,7 +89,7 @@ fn trial(t: &mut Trial) -> Option<()> {
         let blur = |_: &Node| DENSITY;
         Points::of(
             &scene(along),
-            &Technique { density: &density, gain: &gain, blur: &blur, found: None },
+            &Technique { density: &density, gain: &gain, blur: &blur, found: None, weighted: None },
         )
     };
     let nodes = nodes(&problem, [sampling, held], tracking);

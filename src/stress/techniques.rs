@@ -3,11 +3,12 @@
 use super::chains::{Chain, Term};
 use super::series::{binomial, power};
 use super::shared_walk::{ORDERS, degree, of_mean};
+use crate::media::Piecewise;
 use crate::numeric::Wide;
-use crate::problems::SingleScattering;
-use crate::theory::raw::{added, poisson};
-use crate::theory::single::predict::Found;
-use crate::theory::single::{CameraTracking, Node, Points, Scene, Technique, Tracking, walks};
+use crate::problems::{Problem, SingleScattering};
+use crate::theory::single::{
+    CameraTracking, Collisions, Node, Points, Scene, Technique, Tracking, walks,
+};
 
 fn wide<const N: usize>(numbers: [f64; N]) -> [Wide; N] {
     numbers.map(Wide::from)
@@ -243,19 +244,16 @@ impl Case {
     /// Of delta tracking.
     pub fn found(&mut self, scene: &Scene) -> Wanted {
         let sigma = self.sigma;
-        let (sampling, length) = (self.walk.sampling, self.length);
-        let nulls = |s: f64| (sampling - sigma).value() * s;
+        let sampling = self.walk.sampling;
+        let medium = scene.problem.medium();
+        let flown = Piecewise::constant(sampling.value(), medium.support());
+        let collisions = Collisions { medium, sampling: &flown, scatters: 1.0 };
         let technique = Technique {
-            density: &|node| node.extinction * node.transmittance,
-            gain: &|node| node.source,
+            density: &|node| collisions.density(node),
+            gain: &|node| collisions.worth(node),
             blur: &|node| node.error[1],
-            found: Some(Found {
-                at: &|node| added(added([1.0; 5], poisson(nulls(node.s))), node.shadow.lookups),
-                none: {
-                    let left = (-(sigma * length).value()).exp();
-                    poisson(nulls(length.value())).map(|moment| left * moment)
-                },
-            }),
+            found: Some(&collisions),
+            weighted: None,
         };
         let gain = self.scattered / sigma;
         let known = [1, 2, 3, 4].map(|k| {
@@ -263,7 +261,7 @@ impl Case {
             self.add(sigma, sigma * power(gain, k), kernel, None)
         });
         let cast = self.shadows(sigma, sigma, 0);
-        let walked = -(-sigma * length).exp_m1() * sampling / sigma;
+        let walked = -(-sigma * self.length).exp_m1() * sampling / sigma;
         Wanted {
             name: "delta tracking",
             is_walk: false,
@@ -281,7 +279,10 @@ impl Case {
         (n, a): (i32, Wide),
     ) -> Wanted {
         let gain = |node: &Node| node.extinction * node.source / density(node);
-        let found = Points::of(scene, &Technique { density, gain: &gain, blur, found: None });
+        let found = Points::of(
+            scene,
+            &Technique { density, gain: &gain, blur, found: None, weighted: None },
+        );
         let none = Wide::default();
         let before = |k: usize, case: &Self| match along {
             CameraTracking::Exact => case.sigma * k as f64,

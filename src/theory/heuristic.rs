@@ -34,4 +34,13 @@ impl Heuristic {
     pub fn raised<L: Lane>(self, density: L) -> L {
         if self == Self::Power { density * density } else { density }
     }
+
+    /// `p_i/w_i` of one technique beside another one, `(p_i^β + p_j^β)/p_i^{β−1}`: what its samples are divided by.
+    #[inline(always)]
+    pub fn shared<L: Lane>(self, own: L, other: L) -> L {
+        match self {
+            Self::Balance => own + other,
+            Self::Power => (own * own + other * other) / own,
+        }
+    }
 }

@@ -11,6 +11,7 @@ mod check;
 mod cli;
 mod common;
 mod equation14;
+mod equiangular;
 mod fuzz_corpus;
 mod golden;
 mod judge;

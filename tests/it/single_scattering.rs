@@ -65,6 +65,9 @@ const ALL: &str = "
     { delta-tracking = {} },
     { source-scattering-mis = { control.mean = {}, camera = \"ratio\" } },
     { source-delta-mis = {} },
+    { source-delta-mis = { camera = \"ratio\", shadow.ratio = { sampling = 1.3 } } },
+    { source-delta-mis = { camera = \"ratio\", absorption = \"analog\", samples = \"one\", heuristic = \"power\" } },
+    { delta-tracking = { absorption = \"analog\" } },
     { attenuation-driven = { control.constant.value = 0.2 } },
     { attenuation-resampled = {} },
     { shared-walk = { points = 3, control.constant.value = 0.2 } }";
@@ -285,4 +288,27 @@ fn a_sampling_extinction_is_not_used_where_the_camera_is_exact() {
         estimators = [{ source-driven = { sampling.constant.value = -1 } }]",
     );
     assert!(wrong.expect("a mistake").render(false).contains("`value` is -1"));
+}
+
+/// A weight of 0 costs its shadow ray all the same, as predicted: ratio tracking where σ̂ = σ_t.
+#[test]
+fn lookups_of_tight_ratio_tracking_are_predicted() {
+    let text = "title = \"tight\"
+        [problem.single-scattering]
+        volume.constant.extinction = 0.8
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 6 }
+        light.position = [0.5, 0, 2.5]
+        albedo = 0.9
+        phase.isotropic = {}
+        sampling.constant.value = 0.8
+        estimators = [
+            { source-driven = { camera = \"ratio\", shadow.ratio.sampling = 1.2 } },
+            { source-driven = { camera = \"delta\", shadow.ratio.sampling = 1.2 } },
+            { source-scattering-mis = { camera = \"ratio\", control.constant.value = 0.3,
+                sampling.constant.value = 0.5, shadow.delta.sampling = 1 } },
+            { source-delta-mis = { camera = \"ratio\", shadow.ratio.sampling = 1.2 } },
+        ]";
+    for row in rows(text, 200_000) {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+    }
 }

@@ -31,7 +31,7 @@ const SHADOWS: [&str; 4] = [
 ];
 
 /// Techniques, each with a shadow ray to be filled in.
-const TECHNIQUES: [&str; 22] = [
+const TECHNIQUES: [&str; 28] = [
     "source-driven = {",
     "source-driven = { camera = \"ratio\",",
     "source-driven = { camera = \"delta\",",
@@ -44,6 +44,12 @@ const TECHNIQUES: [&str; 22] = [
     "source-scattering-mis = { control.explorers.points = 5, camera = \"ratio\",",
     "delta-tracking = {",
     "source-delta-mis = {",
+    "delta-tracking = { absorption = \"analog\",",
+    "source-delta-mis = { camera = \"ratio\",",
+    "source-delta-mis = { camera = \"ratio\", absorption = \"analog\", heuristic = \"power\",",
+    "source-delta-mis = { camera = \"ratio\", absorption = \"analog\", samples = \"one\",",
+    "source-delta-mis = { absorption = \"analog\", samples = \"one\", heuristic = \"power\",",
+    "source-delta-mis = { absorption = \"analog\", heuristic = \"power\",",
     "attenuation-driven = {",
     "attenuation-driven = { control.constant.value = 0.4, sampling.constant.value = 0.3,",
     "attenuation-driven = { control.explorers.points = 5,",

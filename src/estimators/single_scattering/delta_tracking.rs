@@ -2,11 +2,13 @@
 //!
 //! ```text
 //! s the first tᵢ with uᵢ < σ_t(tᵢ)/σ̄(tᵢ),  p(s) = σ_t T;   X = S(s) T̂_shadow, 0 if there is none
+//! analog: scattered if uᵢ < a σ_t/σ̄, else absorbed,  p(s) = a σ_t T;   X = (S/a) T̂_shadow, 0 if absorbed
 //! ```
 //!
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `sampling` | σ̄ ≥ σ_t on the ray | required here or in the case |
+//! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the chance of a real collision to scatter | `"weight"` |
 //! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
 //!
 //! Unbiased for `σ̄ ≥ σ_t`; refused elsewhere. The density knows nothing of the light: the variance
@@ -21,68 +23,96 @@ use super::in_packets;
 use super::packet::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::{Extinction, Lookups, OpticalDepth};
-use crate::numeric::Span;
+use crate::media::{Extinction, Lookups};
 use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::raw::{added, poisson};
-use crate::theory::single::predict::Found;
-use crate::theory::single::{CameraTracking, Node, Points, Technique, Tracking};
+use crate::theory::single::{CameraTracking, Collisions, Points, Technique, Tracking};
+
+/// What absorption does to a walk.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Absorption {
+    /// It is a factor of what a real collision brings.
+    Weight,
+    /// It ends walks.
+    Analog,
+}
+
+impl Absorption {
+    /// Reads `absorption`.
+    pub fn read(settings: &Settings) -> Option<Self> {
+        let word = settings.word_or("absorption", &["weight", "analog"], "weight")?;
+        Some(if word == "analog" { Self::Analog } else { Self::Weight })
+    }
+
+    /// The chance that a real collision scatters.
+    #[inline(always)]
+    pub fn scatters(self, albedo: f64) -> f64 {
+        if self == Self::Analog { albedo } else { 1.0 }
+    }
+
+    /// For theory.
+    pub fn collisions(self, setup: &Setup<SingleScattering>) -> Collisions<'_> {
+        let scatters = self.scatters(setup.problem.albedo());
+        Collisions { medium: setup.problem.medium(), sampling: &setup.sampling, scatters }
+    }
+}
 
 /// Scattering at the first real collision.
 #[derive(Debug, Clone)]
 pub struct DeltaTracking {
+    absorption: Absorption,
     shadow: Tracking,
 }
 
-/// The first real collision, if there is one, and the lookups of the walk.
+/// The end of a walk.
+pub struct Walked {
+    /// Where it scatters, if it does, and σ_t there.
+    pub scattering: Option<[f64; 2]>,
+    /// `Π (1 − σ_t/σ̄)` over its null collisions.
+    pub nulls: f64,
+    /// Its lookups.
+    pub lookups: u32,
+}
+
+/// The first real collision, if there is one and it scatters, with the given chance.
 #[inline(always)]
-pub(super) fn collide(
+pub fn collide(
     setup: &Setup<SingleScattering>,
     medium: &Lookups,
+    scatters: f64,
     rng: &mut Stream,
-) -> (Option<f64>, u32) {
+) -> Walked {
     let mut cursor = setup.sampling.begin();
-    let mut lookups = 0;
+    let mut walked = Walked { scattering: None, nulls: 1.0, lookups: 0 };
     loop {
         let (depth, number) = (-rng.ln_uniform(), rng.uniform());
-        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { return (None, lookups) };
-        lookups += 1;
-        if number * sampling < medium.extinction(cursor.t) {
-            return (Some(cursor.t), lookups);
+        let Some(sampling) = setup.sampling.fly(&mut cursor, depth) else { return walked };
+        walked.lookups += 1;
+        let extinction = medium.extinction(cursor.t);
+        if number * sampling < extinction {
+            if number * sampling < extinction * scatters {
+                walked.scattering = Some([cursor.t, extinction]);
+            }
+            return walked;
         }
+        walked.nulls *= 1.0 - extinction / sampling;
     }
-}
-
-/// The mean number of null collisions up to a point: `∫σ̄ − τ`.
-fn nulls(setup: &Setup<SingleScattering>, s: f64) -> f64 {
-    let medium = setup.problem.medium();
-    let before = Span::new(medium.support().from, s);
-    setup.sampling.optical_depth(before).value - medium.optical_depth(before).value
-}
-
-/// `E[N^k]` of a walk that collides at a node, with its shadow ray.
-pub(super) fn lookups_at(setup: &Setup<SingleScattering>, node: &Node) -> [f64; 5] {
-    added(added([1.0; 5], poisson(nulls(setup, node.s))), node.shadow.lookups)
-}
-
-/// `E[N^k; no collision]`.
-pub(super) fn lookups_of_escape(setup: &Setup<SingleScattering>) -> [f64; 5] {
-    let nulls = nulls(setup, setup.problem.medium().support().to);
-    poisson(nulls).map(|moment| setup.transmittance * moment)
 }
 
 impl Estimator<SingleScattering> for DeltaTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    in_packets!(self => (Kind::Collision, self.shadow));
+    in_packets!(self => (Kind::Collision(self.absorption), self.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { shadow: connection::read_shadow(settings)? })
+        let absorption = Absorption::read(settings);
+        let shadow = connection::read_shadow(settings);
+        Some(Self { absorption: absorption?, shadow: shadow? })
     }
 
     fn label(&self, _: bool) -> String {
-        connection::shadow_label(self.shadow)
+        let shadow = connection::shadow_label(self.shadow);
+        if self.absorption == Absorption::Analog { format!("analog, {shadow}") } else { shadow }
     }
 
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
@@ -91,14 +121,13 @@ impl Estimator<SingleScattering> for DeltaTracking {
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
+        let collisions = self.absorption.collisions(setup);
         let technique = Technique {
-            density: &|node| node.extinction * node.transmittance,
-            gain: &|node| node.source,
+            density: &|node| collisions.density(node),
+            gain: &|node| collisions.worth(node),
             blur: &|node| node.error[1],
-            found: Some(Found {
-                at: &|node| lookups_at(setup, node),
-                none: lookups_of_escape(setup),
-            }),
+            found: Some(&collisions),
+            weighted: None,
         };
         let connection = Connection { camera: CameraTracking::Exact, shadow: self.shadow };
         let scene = connection.scene(setup, setup.sampling.knots().to_vec());
@@ -112,9 +141,10 @@ impl Estimator<SingleScattering> for DeltaTracking {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let (collision, walked) = collide(setup, medium, rng);
-        let Some(s) = collision else { return Draw::free([0.0], walked) };
+        let scatters = self.absorption.scatters(setup.problem.albedo());
+        let Walked { scattering, lookups, .. } = collide(setup, medium, scatters, rng);
+        let Some([s, _]) = scattering else { return Draw::free([0.0], lookups) };
         let (lit, cast) = connection::shadow(&setup.problem, self.shadow, s, rng);
-        Draw::free([setup.problem.source(s) * lit], walked + cast)
+        Draw::free([setup.problem.source(s) / scatters * lit], lookups + cast)
     }
 }

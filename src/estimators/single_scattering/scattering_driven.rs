@@ -65,6 +65,7 @@ impl Estimator<SingleScattering> for ScatteringDriven {
             gain: &|node| node.extinction * node.source / density(node.s),
             blur: &|node| main.map_or(0.0, |main| main.blur(node.s)),
             found: None,
+            weighted: None,
         };
         let scene = self.connection.scene(setup, main_part::cuts(setup));
         Points::of(&scene, &technique).prediction()

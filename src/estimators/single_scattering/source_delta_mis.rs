@@ -1,82 +1,109 @@
-//! Equiangular points and delta tracking together, weighted by the balance heuristic.
+//! Equiangular points and delta tracking together, weighted by multiple importance sampling.
 //!
 //! ```text
-//! X = Σ_{i=1,2} T σ_t S T̂_shadow / (p₁ + p₂)  at sᵢ,  sᵢ of density pᵢ,  0 where there is no s₂
-//! p₁ = D/(Δθ r²),   p₂ = σ_t T
+//! p₁ = D/(Δθ r²),   p₂ = c σ_t x,   f = σ_t S x T̂_shadow
+//! both   X = Σ_{i=1,2} f(sᵢ) w_i/p_i,   w_i = p_i^β/(p₁^β + p₂^β),   0 where there is no s₂
+//! one    X = 2 f(sᵢ) w_i/p_i,   i = 1 or 2 with chances of ½
 //! ```
 //!
-//! The weights need the value of p₂, and so the transmittance of the ray in closed form; it is used
-//! for the first point as well. Settings are those of `delta-tracking`.
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `sampling` | σ̄ ≥ σ_t on the ray | required here or in the case |
+//! | `camera` | what x is: `"exact"`, the transmittance T in closed form, or `"ratio"`, `Π (1 − σ_t/σ̄)` over the null collisions of the path, by ratio tracking where the point is from the light | `"exact"` |
+//! | `absorption` | `"weight"`: c = 1; `"analog"`: the albedo c is the chance of a real collision to scatter | `"weight"` |
+//! | `samples` | `"both"` techniques in a draw, or `"one"` of them | `"both"` |
+//! | `heuristic` | β: `"balance"` (1) or `"power"` (2) | `"balance"` |
+//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//!
+//! With a tracked camera the weights are those of the null-scattering path: both densities hold the same majorant
+//! transmittances, which cancel, and so do all of the shadow ray. A shadow ray is cast even where x is 0.
 //!
 //! Unbiased for `σ̄ ≥ σ_t`; refused elsewhere. The variance stays bounded however near the light is.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*,
 //! SIGGRAPH 1995, section 3; C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing
-//! in Participating Media*, Computer Graphics Forum 31 (2012).
+//! in Participating Media*, Computer Graphics Forum 31 (2012); B. Miller, I. Georgiev, W. Jarosz, *A null-scattering
+//! path integral formulation of light transport*, ACM Transactions on Graphics 38 (2019), section 5.
 
 use super::Connection;
-use super::connection::{self, require_shadow};
-use super::delta_tracking::{collide, lookups_at, lookups_of_escape};
+use super::connection::{self, camera, require_shadow};
+use super::delta_tracking::{Absorption, Walked, collide};
 use super::in_packets;
 use super::packet::Kind;
 use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
-use crate::numeric::{Lane, Span};
-use crate::problems::{Problem, SingleScattering};
+use crate::problems::SingleScattering;
 use crate::rng::Stream;
-use crate::theory::Prediction;
-use crate::theory::single::predict::{DENSITY, Found};
-use crate::theory::single::{CameraTracking, Node, Points, Technique, Tracking};
+use crate::theory::single::{CameraTracking, Mis, NullPaths};
+use crate::theory::{Heuristic, Prediction};
 
 /// Equiangular points and delta tracking.
 #[derive(Debug, Clone)]
 pub struct SourceDeltaMis {
-    shadow: Tracking,
+    connection: Connection,
+    sharing: Sharing,
 }
 
-impl SourceDeltaMis {
-    fn connection(&self) -> Connection {
-        Connection { camera: CameraTracking::Exact, shadow: self.shadow }
-    }
+/// How the two techniques share what they find.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Sharing {
+    /// x, exact or by null collisions.
+    pub camera: CameraTracking,
+    /// What absorption does to delta tracking.
+    pub absorption: Absorption,
+    /// Whether a draw is of one technique.
+    pub is_one: bool,
+    /// β.
+    pub heuristic: Heuristic,
 }
 
 impl Estimator<SingleScattering> for SourceDeltaMis {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    in_packets!(self => (Kind::SourceAndCollision, self.shadow));
+    in_packets!(self => (Kind::SourceAndCollision(self.sharing), self.connection.shadow));
 
     fn read(settings: &Settings) -> Option<Self> {
-        Some(Self { shadow: connection::read_shadow(settings)? })
+        let connection = Connection::read(settings, &["exact", "ratio"]);
+        let absorption = Absorption::read(settings);
+        let samples = settings.word_or("samples", &["both", "one"], "both");
+        let heuristic = Heuristic::read(settings);
+        let connection = connection?;
+        let sharing = Sharing {
+            camera: connection.camera,
+            absorption: absorption?,
+            is_one: samples? == "one",
+            heuristic: heuristic?,
+        };
+        Some(Self { connection, sharing })
     }
 
     fn label(&self, _: bool) -> String {
-        connection::shadow_label(self.shadow)
+        let Sharing { camera, absorption, is_one, heuristic } = self.sharing;
+        let said = [
+            (camera == CameraTracking::Ratio, "null paths, "),
+            (absorption == Absorption::Analog, "analog, "),
+            (is_one, "one sample, "),
+            (heuristic == Heuristic::Power, "power, "),
+        ];
+        let said: String = said.iter().filter(|(is, _)| *is).map(|(_, word)| *word).collect();
+        said + &connection::shadow_label(self.connection.shadow)
     }
 
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
-        require_shadow(setup, self.shadow)
+        require_shadow(setup, self.connection.shadow)
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let source = |node: &Node| setup.problem.equiangular_density_beyond(node.along);
-        let collision = |node: &Node| node.extinction * node.transmittance;
-        let gain = |node: &Node| node.extinction * node.source / (source(node) + collision(node));
-        let walked = |node: &Node| node.transmittance * gain(node);
-        let blur = |node: &Node| node.error[1] + DENSITY;
-        let scene = self.connection().scene(setup, setup.sampling.knots().to_vec());
-        let first = Technique { density: &source, gain: &gain, blur: &blur, found: None };
-        let second = Technique {
-            density: &collision,
-            gain: &walked,
-            blur: &blur,
-            found: Some(Found {
-                at: &|node| lookups_at(setup, node),
-                none: lookups_of_escape(setup),
-            }),
-        };
-        Points::of(&scene, &first).plus(&Points::of(&scene, &second)).prediction()
+        let Sharing { camera, absorption, heuristic, .. } = self.sharing;
+        let nulls = (camera == CameraTracking::Ratio)
+            .then(|| NullPaths::new(&setup.mesh, &setup.sampling, heuristic));
+        let scene = &self.connection.scene(setup, setup.sampling.knots().to_vec());
+        let mis = Mis { scene, collisions: absorption.collisions(setup), heuristic, nulls };
+        let [first, second] = mis.points();
+        let found = if self.sharing.is_one { first.either(&second) } else { first.plus(&second) };
+        found.prediction()
     }
 
     #[inline(always)]
@@ -86,40 +113,55 @@ impl Estimator<SingleScattering> for SourceDeltaMis {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let problem = &setup.problem;
-        let s = point(problem, rng.uniform());
-        let mut draw = Draw::free([0.0], 1);
-        let extinction = medium.extinction(s);
-        if extinction > 0.0 {
-            self.add(setup, extinction, s, rng, &mut draw);
+        let Sharing { camera: along, absorption, is_one, .. } = self.sharing;
+        let mut draw = Draw::free([0.0], 0);
+        let from_light = !is_one || rng.uniform() < 0.5;
+        if from_light {
+            let s = point(&setup.problem, rng.uniform());
+            let extinction = medium.extinction(s);
+            draw.lookups += 1;
+            if extinction > 0.0 {
+                let (kept, walked) = camera(setup, medium, along, s, rng);
+                draw.lookups += walked;
+                self.add(setup, [s, extinction, kept], true, rng, &mut draw);
+            }
         }
-        let (collision, walked) = collide(setup, medium, rng);
-        draw.lookups += walked;
-        if let Some(s) = collision {
-            self.add(setup, medium.extinction(s), s, rng, &mut draw);
+        if !(is_one && from_light) {
+            let scatters = absorption.scatters(setup.problem.albedo());
+            let Walked { scattering, nulls, lookups } = collide(setup, medium, scatters, rng);
+            draw.lookups += lookups;
+            if let Some([s, extinction]) = scattering {
+                let kept = match along {
+                    CameraTracking::Exact => camera(setup, medium, along, s, rng).0,
+                    _ => nulls,
+                };
+                self.add(setup, [s, extinction, kept], false, rng, &mut draw);
+            }
         }
         draw
     }
 }
 
 impl SourceDeltaMis {
-    /// Adds what a point gives; σ_t there has been looked up before.
+    /// Adds what a point gives: where it is, σ_t there and x.
     #[inline(always)]
     fn add(
         &self,
         setup: &Setup<SingleScattering>,
-        extinction: f64,
-        s: f64,
+        [s, extinction, kept]: [f64; 3],
+        from_light: bool,
         rng: &mut Stream,
         draw: &mut Draw<[f64; 1]>,
     ) {
         let problem = &setup.problem;
-        let before = Span::new(problem.medium().support().from, s);
-        let transmittance = Lane::exp(-problem.medium().optical_depth(before).value);
-        let (lit, cast) = connection::shadow(problem, self.shadow, s, rng);
-        let collision = extinction * transmittance;
-        let density = problem.equiangular_density(s) + collision;
-        draw.value[0] += collision * problem.source(s) * lit / density;
+        let scatters = self.sharing.absorption.scatters(problem.albedo());
+        let (lit, cast) = connection::shadow(problem, self.connection.shadow, s, rng);
+        let collision = extinction * scatters * kept;
+        let point = problem.equiangular_density(s);
+        let (own, other) = if from_light { (point, collision) } else { (collision, point) };
+        let density = self.sharing.heuristic.shared(own, other);
+        let times = if self.sharing.is_one { 2.0 } else { 1.0 };
+        draw.value[0] += times * (collision * (problem.source(s) / scatters) * lit / density);
         draw.lookups += cast;
     }
 }

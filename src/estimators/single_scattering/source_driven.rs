@@ -73,6 +73,7 @@ impl Estimator<SingleScattering> for SourceDriven {
             },
             blur: &|_| DENSITY,
             found: None,
+            weighted: None,
         };
         Points::of(&self.connection.scene(setup, Vec::new()), &technique).prediction()
     }

@@ -62,7 +62,10 @@ impl Estimator<SingleScattering> for SourceScatteringMis {
         let blur = |node: &Node| main.map_or(DENSITY, |main| main.blur(node.s));
         let scene = self.connection.scene(setup, main_part::cuts(setup));
         let points = |density: &dyn Fn(&Node) -> f64| {
-            Points::of(&scene, &Technique { density, gain: &gain, blur: &blur, found: None })
+            Points::of(
+                &scene,
+                &Technique { density, gain: &gain, blur: &blur, found: None, weighted: None },
+            )
         };
         points(&source).plus(&points(&scattering)).prediction()
     }

@@ -9,12 +9,16 @@
 //! ```
 //!
 //! where the moments of a tracked transmittance are those of a Poisson product, integrals along its
-//! segment. Draws that scatter at several points of one walk obey a chain of such integrals
+//! segment. Where two techniques share what they find by the densities of whole null-scattering paths, weights
+//! depend on the walk from the origin, too ([`mis`]). Draws that scatter at several points of one walk obey a chain of such integrals
 //! ([`chain`]). Where a part of the answer has no closed form, all of it is a quadrature in one
 //! variable, adaptive to a bound that is stated.
 
 pub mod camera;
 pub mod chain;
+pub mod collisions;
+pub mod mis;
+pub mod null_path;
 pub mod predict;
 pub mod quick;
 pub mod scene;
@@ -22,6 +26,9 @@ pub mod segment;
 pub mod walks;
 
 pub use camera::Camera;
+pub use collisions::Collisions;
+pub use mis::Mis;
+pub use null_path::NullPaths;
 pub use predict::{Points, Technique};
 pub use scene::{Node, Scene};
 pub use segment::{Segment, Tracking};

@@ -1,6 +1,9 @@
 //! Draws that scatter at one point, or at one point of each of two techniques.
 
+use super::Collisions;
+use super::null_path::Weighted;
 use super::scene::{Node, Scene};
+use super::segment::POWERS;
 use crate::numeric::Known;
 use crate::theory::raw::added;
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
@@ -20,17 +23,27 @@ pub struct Technique<'a> {
     pub gain: &'a dyn Fn(&Node) -> f64,
     /// A relative error bound of the density, and of whatever stands for it in the gain.
     pub blur: &'a dyn Fn(&Node) -> f64,
-    /// Whether the point was found by a walk that came through: then the transmittance from the
-    /// origin is no factor of the draw, and what comes is its lookups given the point.
-    pub found: Option<Found<'a>>,
+    /// The delta tracking that found the point, if it did: then the transmittance from the origin is no factor
+    /// of the draw, and the lookups are its own.
+    pub found: Option<&'a Collisions<'a>>,
+    /// What stands in the place of the transmittance from the origin, where weights depend on the walk.
+    pub weighted: Option<&'a dyn Fn(&Node) -> Weighted>,
 }
 
-/// The lookups of a walk that ends at its scattering point.
-pub struct Found<'a> {
-    /// `E[N^k]` of a walk that ends at the point, shadow ray included.
-    pub at: &'a dyn Fn(&Node) -> [f64; 5],
-    /// `E[N^k; none]` of walks that find none.
-    pub none: [f64; 5],
+impl Technique<'_> {
+    /// The moments of what the walk from the origin brings, k = 1 … 4 and 8, and bounds on their errors.
+    fn camera(&self, node: &Node) -> [[f64; 5]; 2] {
+        if let Some(weighted) = self.weighted {
+            let Weighted { powers: [_, a, b, c, d], errors: [_, e, f, g, h] } = weighted(node);
+            return [[a, b, c, d, f64::NAN], [e, f, g, h, f64::NAN]];
+        }
+        if self.found.is_some() {
+            return [[1.0; 5], [0.0; 5]];
+        }
+        let [_, a, b, c, d] = node.camera.powers;
+        let powers = [a, b, c, d, node.camera.eighth];
+        [powers, powers.map(|power| power * node.camera.error)]
+    }
 }
 
 /// The raw moments of the draws of a technique.
@@ -71,28 +84,28 @@ impl Points {
                 return [0.0; 13];
             }
             let gain = (technique.gain)(node);
-            let walked = technique.found.is_some();
-            let power = |k: i32, camera: f64, shadow: f64| {
-                let camera = if walked { 1.0 } else { camera };
-                density * gain.powi(k) * camera * shadow
-            };
+            let [camera, errors] = technique.camera(node);
+            let [_, a, b, c, d] = node.shadow.powers;
+            let shadow = [a, b, c, d, node.shadow.eighth];
             let factor = node.error[0] + (technique.blur)(node) + DENSITY;
-            let exponents = if walked { 0.0 } else { node.camera.error } + node.shadow.error;
-            let lookups = match &technique.found {
-                Some(found) => (found.at)(node),
+            let lookups = match technique.found {
+                Some(collisions) => collisions.lookups_at(node),
                 None => node.lookups(),
             };
             let mut row = [0.0; 13];
-            row[4] = power(8, node.camera.eighth, node.shadow.eighth);
-            for (i, k) in (0..4).zip(1_i32..) {
-                row[i] = power(k, node.camera.powers[i + 1], node.shadow.powers[i + 1]);
-                row[5 + i] = density * lookups[i + 1];
-                row[9 + i] = row[i].abs() * (f64::from(k) * factor + exponents);
+            for (i, k) in POWERS.into_iter().enumerate() {
+                let gathered = density * gain.powi(k);
+                row[i] = gathered * camera[i] * shadow[i];
+                if i < 4 {
+                    row[5 + i] = density * lookups[i + 1];
+                    let blur = f64::from(k) * factor + node.shadow.error;
+                    row[9 + i] = row[i].abs() * blur + (gathered * errors[i] * shadow[i]).abs();
+                }
             }
             row
         });
         let [p1, p2, p3, p4, eighth, n1, n2, n3, n4, roundings @ ..] = found.value;
-        let none = technique.found.as_ref().map_or([0.0; 5], |found| found.none);
+        let none = technique.found.map_or([0.0; 5], Collisions::lookups_of_escape);
         let off = found.error[..4].iter().zip(roundings).map(|(apart, rounding)| apart + rounding);
         let relative = off.zip([p1, p2, p3, p4]).map(|(off, power)| off / power.abs());
         let lookups = [1.0, n1 + none[1], n2 + none[2], n3 + none[3], n4 + none[4]];
@@ -102,7 +115,7 @@ impl Points {
             truth: scene.radiance(),
             powers: [1.0, p1, p2, p3, p4],
             error: relative.fold(SUMS, f64::max),
-            eighth: Some(eighth),
+            eighth: (!eighth.is_nan()).then_some(eighth),
             lookups: Some(lookups),
             least,
             counted: SUMS + found.error[5] / (least + lookups[1]),
@@ -120,6 +133,32 @@ impl Points {
             least: self.least + other.least,
             counted: self.counted.max(other.counted),
             lookups: self.lookups.zip(other.lookups).map(|(a, b)| added(a, b)),
+        }
+    }
+
+    /// A draw of either technique, with chances of ½, of which what it brings counts twice.
+    #[must_use]
+    pub fn either(&self, other: &Self) -> Self {
+        let lookups = |one: &Self| {
+            let least = one.least;
+            let always = [1.0, least, least.powi(2), least.powi(3), least.powi(4)];
+            one.lookups.map(|more| added(always, more))
+        };
+        let half = |a: f64, b: f64| 0.5 * (a + b);
+        let mut powers = self.powers;
+        for (k, (power, other)) in (0..).zip(powers.iter_mut().zip(other.powers)) {
+            *power = 2f64.powi(k) * half(*power, other);
+        }
+        Self {
+            truth: self.truth,
+            powers,
+            error: self.error.max(other.error),
+            eighth: None,
+            least: 0.0,
+            counted: self.counted.max(other.counted),
+            lookups: lookups(self)
+                .zip(lookups(other))
+                .map(|(a, b)| std::array::from_fn(|k| half(a[k], b[k]))),
         }
     }
 
@@ -195,6 +234,18 @@ mod tests {
         let moments = prediction.channels[0].moments.expect("moments");
         assert!((moments.variance() - 0.5).abs() < 1e-15);
         assert!((moments.kurtosis().expect("spread") - 2.0).abs() < 1e-14);
+        let lookups = prediction.lookups.expect("lookups");
+        assert_eq!([lookups.mean, lookups.variance], [1.0, 0.5]);
+    }
+
+    #[test]
+    fn either_of_two_coins_is_one_of_twice_the_worth() {
+        // 0, or 2 with chance ½: mean 1, variance 1; lookups: 1 more than a coin, or a coin.
+        let coin = points([1.0, 0.5, 0.5, 0.5, 0.5]);
+        let other = Points { least: 1.0, ..coin };
+        let prediction = coin.either(&other).prediction();
+        let moments = prediction.channels[0].moments.expect("moments");
+        assert!((moments.scale - 1.0).abs() < 1e-15 && (moments.variance() - 1.0).abs() < 1e-15);
         let lookups = prediction.lookups.expect("lookups");
         assert_eq!([lookups.mean, lookups.variance], [1.0, 0.5]);
     }

@@ -4,13 +4,16 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::collisions::Collisions;
 use super::interactions::Interactions;
+use super::mis::Mis;
 use super::points::Points;
 use super::shared::Shared;
 use super::walk::{Walk, World};
 use super::{Page, Sums};
 use crate::estimators::packet::Request;
 use crate::estimators::packet::bank::{self, Numbers, Slot, Slots};
+use crate::estimators::single_scattering::delta_tracking::Absorption;
 use crate::estimators::single_scattering::main_part::MainPart;
+use crate::estimators::single_scattering::source_delta_mis::Sharing;
 use crate::estimators::space::exit;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays, Shadows};
 use crate::estimators::{DrawBuffer, Setup};
@@ -41,9 +44,9 @@ pub enum Kind {
         from_main: bool,
     },
     /// The first real collision.
-    Collision,
-    /// A point from the light, then the first real collision.
-    SourceAndCollision,
+    Collision(Absorption),
+    /// A point from the light, the first real collision, or both.
+    SourceAndCollision(Sharing),
     /// All interaction points.
     Interactions,
     /// One of them.
@@ -111,15 +114,15 @@ impl Task for Walks<'_, '_> {
                 #[inline(always)]
                 || Points::new(simd, start, camera, from_source, main),
             ),
-            Kind::Collision => self.make(
+            Kind::Collision(absorption) => self.make(
                 simd,
                 #[inline(always)]
-                || Collisions::<S, false>::new(simd, start),
+                || Collisions::new(simd, start, absorption),
             ),
-            Kind::SourceAndCollision => self.make(
+            Kind::SourceAndCollision(sharing) => self.make(
                 simd,
                 #[inline(always)]
-                || Collisions::<S, true>::new(simd, start),
+                || Mis::new(simd, start, sharing),
             ),
             Kind::Interactions => self.make(
                 simd,
@@ -235,7 +238,7 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         };
         if self.casts.to_bitmask() != 0 {
             (self.place, self.inside) = self.shadows.fly(rays, self.origin, depth);
-            for (row, coordinate) in points.iter_mut().zip(self.place) {
+            for (row, coordinate) in points.iter_mut().zip(&self.place) {
                 coordinate.store_slice(&mut row[number * WIDTH..][..WIDTH]);
             }
         }
@@ -266,8 +269,8 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
             let casts = self.aiming;
             self.aiming = nobody;
             let (origin, direction, distance) = world.setup.problem.to_light(self.from);
-            for (to, from) in self.origin.iter_mut().zip(origin) {
-                *to = Lane::select(casts, from, *to);
+            for (to, from) in self.origin.iter_mut().zip(&origin) {
+                *to = Lane::select(casts, *from, *to);
             }
             let light = Light { direction, share: one, distance };
             let (which, through) = self.shadows.cast(rays, casts, &light, (origin, one));

@@ -14,6 +14,7 @@
 mod bank;
 mod collisions;
 mod interactions;
+mod mis;
 mod points;
 mod shared;
 mod walk;
