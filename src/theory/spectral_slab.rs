@@ -1,10 +1,12 @@
 //! Slabs of coloured scatterers: what adding and doubling says of albedos above 1, and orders of scattering.
 //!
 //! Moments are those of [`super::spectral_rod`]. An albedo above 1 may be too large for the depth of the slab: it is
-//! critical, and the moment infinite. Orders of scattering are known for isotropic scattering; of other phase functions
-//! multiple importance sampling has a mean only, and the variance of pilot draws, which is safe as its draws are bounded.
+//! critical, and the moment infinite. Of phase functions that are not isotropic, albedos above 1 are solved to 1e-4.
+//! Orders of scattering are known for isotropic scattering; of other phase functions multiple importance sampling has a
+//! mean only, and the variance of pilot draws, which is safe as its draws are bounded.
 
-use super::slab::{self, Pieces, Walk};
+use super::slab::layer::Slice;
+use super::slab::{self, Pieces, Resolution, Walk};
 use super::spectral_rod::{Body, Orders};
 use super::{CountLaw, Mesh, ParticleRule};
 use crate::catalogue::rounded;
@@ -46,10 +48,25 @@ impl<'a> Slabs<'a> {
     }
 }
 
+/// An answer of moderate precision, `None` where it is infinite: with sharp phase functions an exact one takes seconds.
+fn coarse(incidence: &Incidence, depth: f64, albedo: f64) -> Option<[Known; 2]> {
+    let slice = Slice { flown: depth, straight: 0.0, scattered: albedo, score: 0.0 };
+    let found = slab::solve(&incidence.phase, &[incidence.light], &[slice], Resolution::COARSE)?;
+    Some([found[0].reflected, found[0].transmitted])
+}
+
+fn is_isotropic(incidence: &Incidence) -> bool {
+    incidence.phase == Phase::Isotropic(Isotropic)
+}
+
 /// Whether a slab of so many optical depths has a finite answer.
 fn is_finite(incidence: &Incidence, depth: f64, albedo: f64) -> bool {
     let light = Incidence { light: Light::Diffuse, ..*incidence };
-    slab::cached(&light, Known::exact(depth), albedo).is_some()
+    if is_isotropic(incidence) {
+        slab::cached(&light, Known::exact(depth), albedo).is_some()
+    } else {
+        coarse(&light, depth, albedo).is_some()
+    }
 }
 
 /// The albedo from which on a slab has no finite answer.
@@ -73,13 +90,20 @@ impl Body for Slabs<'_> {
         Some([answer.reflected, answer.transmitted])
     }
 
+    fn power(&self, albedo: f64) -> Option<[Known; 2]> {
+        if is_isotropic(&self.slab.incidence) || albedo <= 1.0 {
+            return self.leaving(albedo);
+        }
+        coarse(&self.slab.incidence, self.depth().value, albedo)
+    }
+
     fn beyond(&self, albedo: f64) -> Option<String> {
         let (incidence, depth) = (&self.slab.incidence, self.depth().value);
         if albedo <= 1.0 {
             return None;
         }
         let near = depth * (1.0 + NEAR);
-        if is_finite(incidence, near, albedo) && self.leaving(albedo).is_some() {
+        if is_finite(incidence, near, albedo) && self.power(albedo).is_some() {
             return None;
         }
         let key = (incidence.phase.label(), depth.to_bits());
@@ -92,7 +116,7 @@ impl Body for Slabs<'_> {
     }
 
     fn orders(&self) -> Option<Orders> {
-        if self.slab.incidence.phase != Phase::Isotropic(Isotropic) {
+        if !is_isotropic(&self.slab.incidence) {
             return None;
         }
         let depth = self.depth();

@@ -41,6 +41,11 @@ pub trait Body: Send + Sync {
     /// Reflectance and transmittance, of albedos above 1, too; `None` where they are infinite.
     fn leaving(&self, albedo: f64) -> Option<[Known; 2]>;
 
+    /// The same for higher moments, which need not be known as sharply.
+    fn power(&self, albedo: f64) -> Option<[Known; 2]> {
+        self.leaving(albedo)
+    }
+
     /// From where on they are infinite, in words; `None` where they are not.
     fn beyond(&self, albedo: f64) -> Option<String>;
 
@@ -126,7 +131,7 @@ impl<'a> Spectrum<'a> {
             Tracker::Tracking { scatter } => {
                 let infinite = Known::new(f64::INFINITY, f64::INFINITY);
                 let albedo = self.albedo_of_power(k, scatter);
-                Some(self.body.leaving(albedo).map_or(infinite, |found| found[side]))
+                Some(self.body.power(albedo).map_or(infinite, |found| found[side]))
             }
             Tracker::Mis => {
                 let orders = self.orders.as_ref()?;
