@@ -141,7 +141,7 @@ pub fn one_by_one(
 #[inline(always)]
 pub fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
     let mut rows = [[0.0; WIDTH]; 3];
-    for (row, coordinate) in rows.iter_mut().zip(&points) {
+    for (row, coordinate) in rows.iter_mut().zip(points) {
         coordinate.store_slice(row);
     }
     rows
