@@ -78,8 +78,12 @@ pub fn walks<'a>(
     let is_box = matches!(bounds, Bounds::Box(_));
     let is_tracked = matches!(kind, Kind::Points { camera, .. } if camera != CameraTracking::Exact);
     let is_single = setup.control.single_value().is_some();
-    // Clipped lookups of shadow rays, and a main part of many pieces beside a tracked camera, do not pay.
-    if (is_box && tracking != Tracking::Exact) || (main.is_some() && is_tracked && !is_single) {
+    // One cheap sample alone, clipped lookups of shadow rays, and a main part of many pieces beside a tracked camera
+    // do not pay.
+    let is_one = matches!(kind, Kind::SourceAndCollision(Sharing { is_one: true, .. }));
+    let is_cheap = is_one && tracking == Tracking::Exact && !medium.is_costly();
+    let is_clipped = is_box && tracking != Tracking::Exact;
+    if is_cheap || is_clipped || (main.is_some() && is_tracked && !is_single) {
         return Some(request);
     }
     let in_space = volume.batches(level, is_box);
