@@ -185,12 +185,7 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
                 },
             )
         } else {
-            let field = table.choice(&names).and_then(|(index, field)| {
-                let volume = (READERS[index].volume)(&field);
-                field.close();
-                Some((names[index].clone(), volume?))
-            });
-            field.zip(ray.flatten()).and_then(|((name, volume), ray)| {
+            read_listed(table, &names).zip(ray.flatten()).and_then(|((name, volume), ray)| {
                 fits(table, &*volume, &ray)?;
                 Some(Body::Volume { name, volume, ray })
             })
@@ -263,6 +258,21 @@ fn choose_line<'a>(
 /// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
 pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
     read_field(settings, "volume")
+}
+
+/// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
+pub fn read_volumes(settings: &Settings) -> Option<Vec<(String, Arc<Volume>)>> {
+    let (tables, names) = (settings.tables("volume")?, names());
+    let fields: Vec<_> = tables.iter().map(|table| read_listed(table, &names)).collect();
+    fields.into_iter().collect()
+}
+
+/// Reads a field in space of a list.
+fn read_listed(table: &Settings, names: &[String]) -> Option<(String, Arc<Volume>)> {
+    let (index, field) = table.choice(names)?;
+    let volume = (READERS[index].volume)(&field);
+    field.close();
+    Some((names[index].clone(), volume?))
 }
 
 /// Reads a field in space, `KEY.NAME = { … }`.

@@ -2,6 +2,12 @@
 
 use crate::catalogue::{number, rounded};
 
+/// The most channels of a pixel: red, green and blue.
+pub const MOST_CHANNELS: usize = 3;
+
+/// A number for each channel of a pixel; a grey one uses the first only.
+pub type Colour = [f64; MOST_CHANNELS];
+
 /// More draws at a pixel than this are a mistake in the picture.
 const MOST_DRAWS: f64 = 1e7;
 
@@ -10,10 +16,10 @@ const MOST_DRAWS: f64 = 1e7;
 pub struct Forecast {
     /// Its lookups; `None` where no pilot was drawn.
     pub lookups: Option<f64>,
-    /// Its variance, by theory.
-    pub variance: Option<f64>,
-    /// By how much its mean is off, by theory.
-    pub bias: f64,
+    /// Its variance in each channel, by theory.
+    pub variance: Option<Colour>,
+    /// By how much its mean is off in each channel, by theory.
+    pub bias: Colour,
     /// Whether the pixel fits its own control.
     pub leads: bool,
     /// The lookups of the pilot.
@@ -26,9 +32,9 @@ pub struct PixelDraws {
     /// How many.
     pub draws: u64,
     /// The sum of their values.
-    pub sum: f64,
+    pub sum: Colour,
     /// The sum of their squares.
-    pub squares: f64,
+    pub squares: Colour,
     /// The sum of their lookups.
     pub lookups: u64,
 }
@@ -40,18 +46,18 @@ pub struct Plan {
     /// The lookups of a control, for each pixel.
     points: Vec<u64>,
     pilots: u64,
-    variances: Vec<f64>,
-    biases: Vec<f64>,
+    variances: Vec<Colour>,
+    biases: Vec<Colour>,
 }
 
-/// What an estimator found: one number for each covered pixel.
+/// What an estimator found at the covered pixels.
 #[derive(Debug, Clone, Default)]
 pub struct PixelValues {
-    /// The pixels' values.
+    /// The pixels' values, all channels of one after those of the other.
     pub values: Vec<f64>,
     /// Their squared standard errors, measured; not a number where there is one draw only.
     pub square_errors: Vec<f64>,
-    /// Their expected squared errors by theory; empty where it is not asked.
+    /// Their expected squared errors by theory; empty where it does not tell.
     pub predicted: Vec<f64>,
     /// Draws.
     pub draws: Vec<u64>,
@@ -118,19 +124,27 @@ impl Plan {
         until(number + 1) - until(number)
     }
 
-    /// Gathers what pixels came to.
-    pub fn gather(&self, pixels: &[PixelDraws]) -> PixelValues {
-        let spread = |pixel: &PixelDraws| {
+    /// Gathers what pixels of so many channels came to.
+    pub fn gather(&self, channels: usize, pixels: &[PixelDraws]) -> PixelValues {
+        let spread = |pixel: &PixelDraws, c: usize| {
             let n = pixel.draws as f64;
-            let mean = pixel.sum / n;
-            if n < 2.0 { f64::NAN } else { (pixel.squares / n - mean * mean).max(0.0) / (n - 1.0) }
+            let mean = pixel.sum[c] / n;
+            let square = pixel.squares[c] / n;
+            if n < 2.0 { f64::NAN } else { (square - mean * mean).max(0.0) / (n - 1.0) }
+        };
+        let each = |f: &dyn Fn(&PixelDraws, usize) -> f64| {
+            pixels.iter().flat_map(|pixel| (0..channels).map(|c| f(pixel, c))).collect()
         };
         let predicted = self.variances.iter().zip(&self.biases).zip(pixels);
         let lookups = pixels.iter().zip(&self.points);
         PixelValues {
-            values: pixels.iter().map(|pixel| pixel.sum / pixel.draws as f64).collect(),
-            square_errors: pixels.iter().map(spread).collect(),
-            predicted: predicted.map(|((v, b), p)| v / p.draws as f64 + b * b).collect(),
+            values: each(&|pixel, c| pixel.sum[c] / pixel.draws as f64),
+            square_errors: each(&spread),
+            predicted: predicted
+                .flat_map(|((v, b), p)| {
+                    (0..channels).map(move |c| v[c] / p.draws as f64 + b[c] * b[c])
+                })
+                .collect(),
             draws: pixels.iter().map(|pixel| pixel.draws).collect(),
             lookups: lookups.map(|(pixel, points)| pixel.lookups + points).collect(),
             pilots: self.pilots,
@@ -145,8 +159,8 @@ mod tests {
     type Asked = Result<Forecast, String>;
 
     fn of(lookups: f64) -> Forecast {
-        let (lookups, variance) = (Some(lookups), Some(1.0));
-        Forecast { lookups, variance, bias: 0.0, leads: true, pilots: 0 }
+        let (lookups, variance) = (Some(lookups), Some([1.0; 3]));
+        Forecast { lookups, variance, bias: [0.0; 3], leads: true, pilots: 0 }
     }
 
     #[test]
@@ -178,10 +192,12 @@ mod tests {
     #[test]
     fn a_pixel_knows_its_standard_error() {
         let plan = Plan::new([Ok(of(5.0))].iter(), 0, 20).expect("4 draws");
-        let pixel = PixelDraws { draws: 4, sum: 2.0, squares: 2.0, lookups: 18 };
-        let found = plan.gather(&[pixel]);
-        // 0, 0, 1, 1: s² = 1/3, over 4 draws.
+        let pixel =
+            PixelDraws { draws: 4, sum: [2.0, 4.0, 0.0], squares: [2.0, 4.0, 0.0], lookups: 18 };
+        let found = plan.gather(3, &[pixel]);
+        // 0, 0, 1, 1: s² = 1/3, over 4 draws; then four times 1, and four times 0.
         assert!((found.square_errors[0] - 1.0 / 12.0).abs() < 1e-15);
-        assert_eq!((found.values[0], found.predicted[0]), (0.5, 0.25));
+        assert_eq!(found.square_errors[1..], [0.0; 2]);
+        assert_eq!((found.values, found.predicted), (vec![0.5, 1.0, 0.0], vec![0.25; 3]));
     }
 }

@@ -21,6 +21,8 @@ const PICTURES: BuiltIn = pictures![
     "figure-12-300",
     "figure-12-50",
     "white-furnace",
+    "spectral-noise",
+    "spectral-density",
 ];
 
 /// Every built-in picture, in the order of the gallery.

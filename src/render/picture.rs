@@ -3,7 +3,7 @@
 //! | key | meaning | default |
 //! |---|---|---|
 //! | `title` | one line above the picture | required |
-//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
+//! | `picture.NAME` | what is shown: `transmittance` (before the sky), `spectral-transmittance` (the same in colour), `single-scattering` (of a point light) or `multiple-scattering` (of the sky) | required |
 //!
 //! Within `[picture.NAME]`:
 //!
@@ -11,7 +11,7 @@
 //! |---|---|---|
 //! | `size = [columns, rows]` | pixels, one ray through the middle of each | required |
 //! | `lookups` | lookups of σ_t per pixel that the volume covers, for every estimator | required |
-//! | `volume.NAME = { … }` | a field in space, bounded | required |
+//! | `volume.NAME = { … }` | a field in space, bounded; in colour a list of three, for red, green and blue: `[{ NAME = { … } }, …]` | required |
 //! | `camera = { position, target, up, angle }` | pinhole camera; degrees from the lower to the upper edge | up `[0, 1, 0]`, angle 40 |
 //! | `sky.constant = { radiance }` | what is behind the volume | radiance 1 |
 //! | `sky.gradient = { ground, horizon, zenith, up, sun, glare, sharpness }` | radiances straight below, at the horizon and above, and `glare · exp(sharpness (cos − 1))` about the sun | .2, 1, .5, y, y, 0, 50 |
@@ -28,7 +28,7 @@
 //! their own, which are counted apart. Explorer points count as lookups, once for each ray that a
 //! control is fitted to; the controls `mean` and `minimum` come from theory and cost none. A pixel
 //! that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of merit
-//! are over the covered pixels:
+//! are over the covered pixels, and over their channels:
 //!
 //! ```text
 //! MSE = mean of (image − reference)²,   figure of merit = 1/(MSE · lookups per pixel)

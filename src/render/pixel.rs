@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use super::budget::{Forecast, PixelDraws};
+use super::budget::{Colour, Forecast, PixelDraws};
 use super::subject::{AnyRay, RayOf, SubjectKind};
 use super::view::View;
 use crate::estimators::{DrawBuffer, Experiment, Kernel, Refusal, Site};
-use crate::geometry::Ray;
 use crate::harness::estimator::{Estimators, ParsedEstimator};
 use crate::harness::problem::Parts;
-use crate::media::{Body, Control, Majorants};
+use crate::media::{Body, Control, Majorants, Medium};
 use crate::numeric::Known;
 use crate::rng::Address;
 use crate::theory::Mesh;
@@ -60,8 +59,9 @@ pub struct Pixel<'a> {
     ray: Box<dyn AnyRay>,
     /// The sky behind it, or 1 where that is not seen.
     sky: f64,
-    mesh: Arc<Mesh>,
-    body: Body,
+    /// The field of each channel.
+    meshes: Vec<Arc<Mesh>>,
+    bodies: Vec<Body>,
     /// Where a control is fitted that several pixels share; `None` for a pixel that fits its own.
     leader: Option<(Body, Mesh)>,
     index: usize,
@@ -76,27 +76,25 @@ impl<'a> Pixel<'a> {
         index: usize,
     ) -> Option<Self> {
         let along = view.covered(index)?;
-        let ray = ray_of(&view.volume, &along)?;
+        let ray = ray_of(&view.volumes, &along)?;
         let panels = if kind.along_ray { PANELS } else { 1 };
-        let mesh = Arc::new(Mesh::even(ray.medium().clone(), panels));
-        let body = |ray: Ray| {
-            let (name, volume) = (view.medium.clone(), view.volume.clone());
-            Body::Volume { name, volume, ray }
-        };
+        let mesh = |medium: &Medium| Arc::new(Mesh::even(medium.clone(), panels));
+        let meshes = ray.media().iter().map(mesh).collect();
         let leader = Some(view.leader(index)).filter(|&leader| leader != index);
         let leader = leader.and_then(|leader| view.covered(leader)).map(|ray| {
-            let body = body(ray);
+            let body = view.bodies(ray).swap_remove(0);
             let mesh = Mesh::even(body.medium(), 1);
             (body, mesh)
         });
         let sky = if kind.before_sky { view.behind(index) } else { 1.0 };
-        Some(Self { view, kind, ray, sky, mesh, body: body(along), leader, index })
+        Some(Self { view, kind, ray, sky, meshes, bodies: view.bodies(along), leader, index })
     }
 
-    /// The exact answer, or that of a quadrature with so many panels.
-    pub fn answer(&self, panels: Option<usize>) -> Option<Known> {
-        let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n));
-        found.map(|known| Known::new(known.value * self.sky, known.error * self.sky))
+    /// The exact answer in each channel, or that of a quadrature with so many panels.
+    pub fn answer(&self, panels: Option<usize>) -> Option<Vec<Known>> {
+        let found = panels.map_or_else(|| self.ray.exact(), |n| self.ray.by_quadrature(n))?;
+        let seen = |known: Known| Known::new(known.value * self.sky, known.error * self.sky);
+        Some(found.into_iter().map(seen).collect())
     }
 
     fn parts<'b>(
@@ -104,15 +102,15 @@ impl<'a> Pixel<'a> {
         estimators: &'b Estimators,
         parsed: &'b ParsedEstimator,
     ) -> Result<Parts<'b>, Refusal> {
-        let mesh = &self.mesh;
+        let mesh = &self.meshes[0];
         let recipe = estimators.sampling_of(parsed);
         let (sampling, control) = if self.kind.along_ray {
-            let site = Site { body: &self.body, mesh, address: NOWHERE };
+            let site = Site { body: &self.bodies[0], mesh, address: NOWHERE };
             let recipe_of_control = estimators.control_of(parsed);
             let control = match &self.leader {
                 Some((body, mesh)) if recipe_of_control.lookups() > 0 => {
                     match recipe_of_control.prepare(&Site { body, mesh, ..site })? {
-                        Control::Pieces(pieces) => Control::Pieces(pieces.on(self.mesh.support())),
+                        Control::Pieces(pieces) => Control::Pieces(pieces.on(mesh.support())),
                         other => other,
                     }
                 }
@@ -122,10 +120,19 @@ impl<'a> Pixel<'a> {
         } else {
             (None, Control::None)
         };
+        let channels = self.meshes.iter().zip(&self.bodies).enumerate().skip(1);
+        let further = channels.map(|(channel, (mesh, body))| {
+            let recipe =
+                recipe.map(|recipe| recipe.channels().get(channel).map_or(recipe, |own| &**own));
+            let site = Site { body, mesh, address: NOWHERE };
+            let sampling = recipe.map(|recipe| recipe.prepare(&site, &control)).transpose()?;
+            Ok((mesh.clone(), sampling))
+        });
+        let further = further.collect::<Result<_, Refusal>>()?;
         Ok(Parts {
             mesh,
             sampling,
-            further: Vec::new(),
+            further,
             control,
             constant: None,
             recipe,
@@ -152,15 +159,17 @@ impl<'a> Pixel<'a> {
         let prepared = self.ray.prepare(listed.index, parts, listed.space.as_ref(), ask);
         let (prediction, experiment) = prepared.map_err(refused)?;
         let leads = self.leader.is_none();
-        if let Some(prediction) = prediction {
-            let channel = &prediction.channels[0];
-            return Ok(Forecast {
-                lookups: prediction.lookups.map(|lookups| lookups.mean),
-                variance: channel.moments.map(|m| m.variance() * self.sky * self.sky),
-                bias: (channel.mean.value - channel.truth.value) * self.sky,
-                leads,
-                pilots: 0,
-            });
+        let known = prediction.and_then(|found| Some((found.lookups?.mean, found.channels)));
+        if let Some((lookups, channels)) = known {
+            let (mut variance, mut bias) = (Some(Colour::default()), Colour::default());
+            for (c, channel) in channels.iter().take(self.kind.channels).enumerate() {
+                bias[c] = (channel.mean.value - channel.truth.value) * self.sky;
+                variance = variance.zip(channel.moments).map(|(mut all, moments)| {
+                    all[c] = moments.variance() * self.sky * self.sky;
+                    all
+                });
+            }
+            return Ok(Forecast { lookups: Some(lookups), variance, bias, leads, pilots: 0 });
         }
         let is_pilot = [column, row].iter().all(|at| at % PILOTS_EVERY == 0);
         let address = Address { block: number as u64, ..listed.addresses[0] };
@@ -169,7 +178,7 @@ impl<'a> Pixel<'a> {
         let lookups = is_pilot.then(|| self.drawn(&*experiment, draws, address).lookups);
         let pilots = lookups.unwrap_or(0);
         let lookups = lookups.map(|lookups| lookups as f64 / draws as f64);
-        Ok(Forecast { lookups, variance: None, bias: 0.0, leads, pilots })
+        Ok(Forecast { lookups, variance: None, bias: Colour::default(), leads, pilots })
     }
 
     /// So many draws at the covered pixel of a number.
@@ -189,8 +198,10 @@ impl<'a> Pixel<'a> {
 
     fn drawn(&self, experiment: &dyn Experiment, draws: u64, address: Address) -> PixelDraws {
         let mut streams = address.streams();
-        let mut buffer = DrawBuffer::new(1);
-        let mut pixel = PixelDraws { draws, sum: 0.0, squares: 0.0, lookups: 0 };
+        // Values after those of the picture's channels, as a luminance, are not shown.
+        let mut buffer = DrawBuffer::new(self.kind.channels);
+        let (sum, squares) = (Colour::default(), Colour::default());
+        let mut pixel = PixelDraws { draws, sum, squares, lookups: 0 };
         // The same draws either way: packs of eight walk many steps at once, which few draws do not fill.
         let kernel =
             if draws < FEW { Kernel::Single } else { Kernel::Packets(fearless_simd::Level::new()) };
@@ -199,10 +210,13 @@ impl<'a> Pixel<'a> {
             let count = left.min(DrawBuffer::LENGTH as u64);
             #[expect(clippy::cast_possible_truncation)] // at most a buffer's length
             experiment.fill_by(kernel, &mut streams, count as usize, &mut buffer);
-            for x in &buffer.values[0] {
-                let x = x * self.sky;
-                pixel.sum += x;
-                pixel.squares += x * x;
+            let sums = pixel.sum.iter_mut().zip(&mut pixel.squares);
+            for (values, (sum, squares)) in buffer.values.iter().zip(sums) {
+                for x in values {
+                    let x = x * self.sky;
+                    *sum += x;
+                    *squares += x * x;
+                }
             }
             pixel.lookups += buffer.lookups.iter().map(|&n| u64::from(n)).sum::<u64>();
             left -= count;

@@ -19,6 +19,8 @@ pub struct PictureRecord {
     pub medium: String,
     /// Columns and rows.
     pub size: [usize; 2],
+    /// How many values a pixel has: one, or those of red, green and blue.
+    pub channels: usize,
     /// How many pixels the volume covers.
     pub covered: usize,
     /// How many it does not: they cost nothing.
@@ -45,7 +47,7 @@ pub struct ReferenceRecord {
     pub error: f64,
     /// Its lookups per covered pixel.
     pub lookups: f64,
-    /// Row after row from the top.
+    /// Row after row from the top, each pixel with its channels.
     pub image: Vec<f64>,
 }
 
@@ -62,10 +64,10 @@ pub struct ExposureRecord {
     pub outcome: Result<Exposure, String>,
 }
 
-/// An image with its error and its cost. Means are over covered pixels.
+/// An image with its error and its cost. Means are over covered pixels, those of values over their channels, too.
 #[derive(Debug, Clone, Serialize)]
 pub struct Exposure {
-    /// Row after row from the top.
+    /// Row after row from the top, each pixel with its channels.
     pub image: Vec<f64>,
     /// Draws per pixel.
     pub draws: f64,
@@ -86,7 +88,7 @@ pub struct Exposure {
 impl PictureRecord {
     /// Compares what was rendered.
     pub(super) fn new([name, title, problem]: [&str; 3], view: &View, rendered: Rendered) -> Self {
-        let Rendered { budget, covered, reference, images } = rendered;
+        let Rendered { budget, channels, covered, reference, images } = rendered;
         let exposures: Vec<ExposureRecord> = images
             .into_iter()
             .map(|(names, outcome)| ExposureRecord {
@@ -94,7 +96,9 @@ impl PictureRecord {
                 sampling: names.sampling,
                 control: names.control,
                 outcome: outcome
-                    .map(|exposed| Exposure::new(view, &covered, &reference.1, &exposed))
+                    .map(|exposed| {
+                        Exposure::new(view, channels, &covered, [&reference.1, &exposed])
+                    })
                     .and_then(|exposure| {
                         let is_finite = exposure.rmse.is_finite();
                         is_finite.then_some(exposure).ok_or("its image is not finite".into())
@@ -108,18 +112,19 @@ impl PictureRecord {
             .collect();
         errors.sort_by(f64::total_cmp);
         let middle = errors.get(errors.len() / 2).copied().unwrap_or_default();
-        let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
-        let is_whole = exposed.values.len() == covered.len();
-        let error = over(&mut exposed.square_errors.iter().copied()).sqrt();
+        let values = channels * covered.len();
+        let is_whole = exposed.values.len() == values;
+        let error = mean(exposed.square_errors.iter().copied(), values).sqrt();
         let error = if is_whole { error } else { f64::NAN };
-        let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
-        let image = image(view, &covered, &exposed.values);
+        let lookups = mean(exposed.lookups.iter().map(|&n| n as f64), covered.len());
+        let image = image(view, channels, &covered, &exposed.values);
         Self {
             name: name.to_owned(),
             title: title.to_owned(),
             problem: problem.to_owned(),
             medium: view.medium.clone(),
             size: view.size,
+            channels,
             covered: covered.len(),
             empty: view.pixels() - covered.len(),
             budget,
@@ -152,35 +157,41 @@ impl PictureRecord {
 }
 
 impl Exposure {
-    fn new(view: &View, covered: &[usize], truth: &PixelValues, exposed: &PixelValues) -> Self {
-        let over = |values: &mut dyn Iterator<Item = f64>| mean(values, covered.len());
+    fn new(
+        view: &View,
+        channels: usize,
+        covered: &[usize],
+        [truth, exposed]: [&PixelValues; 2],
+    ) -> Self {
+        let (pixels, values) = (covered.len(), channels * covered.len());
         let apart = || exposed.values.iter().zip(&truth.values).map(|(x, truth)| x - truth);
-        let square = over(&mut apart().map(|x| x * x));
-        let lookups = over(&mut exposed.lookups.iter().map(|&n| n as f64));
+        let square = mean(apart().map(|x| x * x), values);
+        let lookups = mean(exposed.lookups.iter().map(|&n| n as f64), pixels);
         let is_predicted = !exposed.predicted.is_empty();
         Self {
-            image: image(view, covered, &exposed.values),
-            draws: over(&mut exposed.draws.iter().map(|&n| n as f64)),
+            image: image(view, channels, covered, &exposed.values),
+            draws: mean(exposed.draws.iter().map(|&n| n as f64), pixels),
             lookups,
-            pilots: exposed.pilots as f64 / covered.len().max(1) as f64,
+            pilots: exposed.pilots as f64 / pixels.max(1) as f64,
             rmse: square.sqrt(),
             predicted_rmse: is_predicted
-                .then(|| over(&mut exposed.predicted.iter().copied()).sqrt()),
-            bias: over(&mut apart()),
+                .then(|| mean(exposed.predicted.iter().copied(), values).sqrt()),
+            bias: mean(apart(), values),
             figure_of_merit: (square > 0.0 && lookups > 0.0).then(|| 1.0 / (square * lookups)),
         }
     }
 }
 
-fn mean(values: &mut dyn Iterator<Item = f64>, count: usize) -> f64 {
+fn mean(values: impl Iterator<Item = f64>, count: usize) -> f64 {
     values.sum::<f64>() / count.max(1) as f64
 }
 
 /// The whole image: covered pixels as found, the others exactly.
-fn image(view: &View, covered: &[usize], values: &[f64]) -> Vec<f64> {
-    let mut image: Vec<f64> = (0..view.pixels()).map(|pixel| view.background(pixel)).collect();
-    for (&pixel, &value) in covered.iter().zip(values) {
-        image[pixel] = value;
+fn image(view: &View, channels: usize, covered: &[usize], values: &[f64]) -> Vec<f64> {
+    let background = |pixel| std::iter::repeat_n(view.background(pixel), channels);
+    let mut image: Vec<f64> = (0..view.pixels()).flat_map(background).collect();
+    for (&pixel, values) in covered.iter().zip(values.chunks_exact(channels)) {
+        image[pixel * channels..][..channels].copy_from_slice(values);
     }
     image
 }

@@ -72,7 +72,7 @@ impl Reference {
     pub fn of(
         &self,
         images: &mut Vec<(Label, Result<PixelValues, String>)>,
-        answers: &[Option<Known>],
+        answers: &[Option<Vec<Known>>],
     ) -> (String, PixelValues) {
         let how = match self {
             Self::Exact => "closed form".to_owned(),
@@ -87,7 +87,7 @@ impl Reference {
                 };
             }
         };
-        let answers = || answers.iter().flatten();
+        let answers = || answers.iter().flatten().flatten();
         let values = answers().map(|known| known.value).collect();
         let square_errors = answers().map(|known| known.error * known.error).collect();
         (how, PixelValues { values, square_errors, ..PixelValues::default() })

@@ -28,6 +28,8 @@ pub struct Request<'a> {
 pub struct Rendered {
     /// The lookups per covered pixel that were to be taken.
     pub budget: u64,
+    /// How many channels a pixel has.
+    pub channels: usize,
     /// The numbers of the covered pixels.
     pub covered: Vec<usize>,
     /// How the reference was found, and the reference.
@@ -50,11 +52,13 @@ pub struct Scene {
 impl Scene {
     /// Reads all that `[picture.NAME]` holds.
     pub fn read(kind: &'static SubjectKind, settings: &Settings) -> Option<Self> {
-        let view = View::read(settings, kind.shows_sky);
+        let view = View::read(settings, kind.shows_sky, kind.channels > 1);
         // Recipes are read for the ray of the first pixel, and prepared for each.
         let body = view.as_ref().and_then(|view| {
-            let (name, volume, ray) = (view.medium.clone(), view.volume.clone(), view.ray(0)?);
-            Some(Body::Volume { name, volume, ray })
+            let mut channels = view.bodies(view.ray(0)?);
+            let name = view.medium.clone();
+            let is_one = channels.len() == 1;
+            Some(if is_one { channels.remove(0) } else { Body::Spectral { name, channels } })
         });
         let body = body.as_ref();
         let lookups = settings.count("lookups", 1..=1_000_000_000);
@@ -128,7 +132,8 @@ impl Scene {
                 Address { seed: request.seed, experiment, block: 0, lane: 0 }
             };
             let recipe = self.estimators.sampling_of(parsed).filter(|_| !self.kind.along_ray);
-            let space = recipe.and_then(|recipe| recipe.in_space(&*self.view.volume)).map(Arc::new);
+            let space =
+                recipe.and_then(|recipe| recipe.in_space(&*self.view.volumes[0])).map(Arc::new);
             let addresses = ["pilot", "draws"].map(address);
             listed.push(Listed { parsed, index, label, lookups, space, addresses });
         }
@@ -170,12 +175,14 @@ impl Scene {
             let found = plan.and_then(|plan| {
                 let of_pixel = |all: &Vec<Option<PixelDraws>>| all[index];
                 let pixels: Option<Vec<PixelDraws>> = pixels.iter().map(of_pixel).collect();
-                pixels.map(|pixels| plan.gather(&pixels)).ok_or_else(|| "no image".to_owned())
+                pixels
+                    .map(|pixels| plan.gather(self.kind.channels, &pixels))
+                    .ok_or_else(|| "no image".to_owned())
             });
             images.push((listed.label, found));
         }
         let reference = self.reference.of(&mut images, &answers);
-        Rendered { budget: self.lookups, covered, reference, images }
+        Rendered { budget: self.lookups, channels: self.kind.channels, covered, reference, images }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::budget::MOST_CHANNELS;
 use super::view::View;
 use crate::catalogue::{Catalogue, Domain, Settings};
 use crate::estimators::trial::Entry;
@@ -15,13 +16,14 @@ use crate::phase::Phase;
 use crate::problems::scene::read_albedo;
 use crate::problems::single_scattering::{Lamp, OnTheLine};
 use crate::problems::{
-    Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, Transmittance,
+    Albedo, MultipleScattering, Problem, Scene, SingleScattering, Sky, SpectralTransmittance,
+    Transmittance,
 };
 use crate::theory::single::quick;
 use crate::theory::{Mesh, Prediction};
 
 /// A problem that pictures are made of.
-pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
+pub trait Subject: Estimated {
     /// What all its rays share beside the volume.
     type Shared: Send + Sync;
 
@@ -48,7 +50,7 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
     }
 
     /// The problem of one ray; `None` where it is not allowed.
-    fn at(shared: &Self::Shared, volume: &Arc<Volume>, ray: &Ray) -> Option<Self>;
+    fn at(shared: &Self::Shared, volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self>;
 
     /// Whether [`Subject::exact`] knows all answers.
     fn has_exact(shared: &Self::Shared) -> bool {
@@ -56,14 +58,14 @@ pub trait Subject: Estimated + Problem<Value = [f64; 1]> {
         false
     }
 
-    /// The exact answer, from closed forms; `None` where there are none.
-    fn exact(&self) -> Option<Known> {
+    /// The exact answer in each channel, from closed forms; `None` where there are none.
+    fn exact(&self) -> Option<Vec<Known>> {
         None
     }
 
-    /// The answer by a quadrature of twice so many panels with 16 nodes, and what half of them differ
-    /// by; `None` where there is no such thing.
-    fn by_quadrature(&self, panels: usize) -> Option<Known> {
+    /// The answer in each channel by a quadrature of twice so many panels with 16 nodes, and what half of them
+    /// differ by; `None` where there is no such thing.
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
         let _ = panels;
         None
     }
@@ -82,6 +84,8 @@ pub struct SubjectKind {
     pub along_ray: bool,
     /// See [`Subject::IS_PREDICTED`].
     pub is_predicted: bool,
+    /// How many channels a pixel has: 1, or 3 where the medium has them.
+    pub channels: usize,
     /// Its estimators.
     pub estimators: Catalogue,
     /// Its reader.
@@ -95,11 +99,12 @@ pub type ReadEstimators<'a> = &'a mut dyn FnMut(&mut dyn EntryReader, bool);
 pub type Read = fn(&Settings, Option<&View>, ReadEstimators) -> Option<RayOf>;
 
 /// The problem of one ray with the estimators of the picture; `None` where the ray is not allowed.
-pub type RayOf = Box<dyn Fn(&Arc<Volume>, &Ray) -> Option<Box<dyn AnyRay>> + Send + Sync>;
+pub type RayOf = Box<dyn Fn(&[Arc<Volume>], &Ray) -> Option<Box<dyn AnyRay>> + Send + Sync>;
 
 /// What is shown, in the order of the catalogue.
-pub static SUBJECTS: [SubjectKind; 3] = [
+pub static SUBJECTS: [SubjectKind; 4] = [
     SubjectKind::of::<Transmittance>("transmittance"),
+    SubjectKind::of::<SpectralTransmittance>("spectral-transmittance"),
     SubjectKind::of::<SingleScattering>("single-scattering"),
     SubjectKind::of::<MultipleScattering>("multiple-scattering"),
 ];
@@ -112,6 +117,7 @@ impl SubjectKind {
             shows_sky: P::SHOWS_SKY,
             along_ray: P::ALONG_RAY,
             is_predicted: P::IS_PREDICTED,
+            channels: if P::SPECTRAL { MOST_CHANNELS } else { 1 },
             estimators: P::CATALOGUE,
             read: read::<P>,
         }
@@ -135,22 +141,22 @@ fn read<P: Subject>(
     // What cannot be read has been told.
     read_estimators(&mut entries, shared.as_ref().is_none_or(P::has_exact));
     let (shared, entries) = (shared?, Arc::new(entries));
-    Some(Box::new(move |volume, ray| {
-        let problem = Arc::new(P::at(&shared, volume, ray)?);
+    Some(Box::new(move |volumes, ray| {
+        let problem = Arc::new(P::at(&shared, volumes, ray)?);
         Some(Box::new(OneRay { problem, entries: entries.clone() }))
     }))
 }
 
 /// The problem of one ray, whose type is no longer visible.
 pub trait AnyRay {
-    /// The field along the ray.
-    fn medium(&self) -> &Medium;
+    /// The field of each channel along the ray.
+    fn media(&self) -> &[Medium];
 
     /// See [`Subject::exact`].
-    fn exact(&self) -> Option<Known>;
+    fn exact(&self) -> Option<Vec<Known>>;
 
     /// See [`Subject::by_quadrature`].
-    fn by_quadrature(&self, panels: usize) -> Option<Known>;
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>>;
 
     /// An estimator of the picture on the ray, with σ̂ in space where that is given; refused outside
     /// its domain if the first is asked, and with what theory says of it if the second is.
@@ -173,15 +179,15 @@ struct OneRay<P> {
 }
 
 impl<P: Subject> AnyRay for OneRay<P> {
-    fn medium(&self) -> &Medium {
-        self.problem.medium()
+    fn media(&self) -> &[Medium] {
+        self.problem.media()
     }
 
-    fn exact(&self) -> Option<Known> {
+    fn exact(&self) -> Option<Vec<Known>> {
         Subject::exact(&*self.problem)
     }
 
-    fn by_quadrature(&self, panels: usize) -> Option<Known> {
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
         Subject::by_quadrature(&*self.problem, panels)
     }
 
@@ -193,8 +199,9 @@ impl<P: Subject> AnyRay for OneRay<P> {
         [is_checked, is_predicted]: [bool; 2],
     ) -> Result<(Option<Prediction>, Box<dyn Experiment>), Refusal> {
         let entry = &self.entries[estimator];
-        let Parts { mesh, sampling, control, recipe, .. } = parts;
+        let Parts { mesh, sampling, further, control, recipe, .. } = parts;
         let setup = Setup::new(self.problem.clone(), mesh.clone(), sampling, control);
+        let setup = if P::SPECTRAL { setup.spectral(further) } else { setup };
         let setup = match space {
             _ if P::ALONG_RAY && entry.skips() => setup.skipping(),
             _ if P::ALONG_RAY => setup,
@@ -221,27 +228,67 @@ impl Subject for Transmittance {
         Some(())
     }
 
-    fn at((): &(), volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
-        let support = volume.bounds().clip(ray);
-        let profile = volume.along(ray, support);
-        Some(Self::new(Medium::new(profile, ray.span(), support)))
+    fn at((): &(), volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self> {
+        Some(Self::new(along(&*volumes[0], ray)))
     }
 
     fn has_exact((): &()) -> bool {
         true
     }
 
-    fn exact(&self) -> Option<Known> {
-        Some(self.medium().optical_depth(self.medium().support()).exp_neg())
+    fn exact(&self) -> Option<Vec<Known>> {
+        Some(vec![exact_transmittance(self.medium())])
     }
 
-    fn by_quadrature(&self, panels: usize) -> Option<Known> {
-        let transmittance = |panels: usize| {
-            Lane::exp(-Mesh::even(self.medium().clone(), panels).optical_depth().value)
-        };
-        let fine = transmittance(2 * panels);
-        Some(Known::new(fine, (fine - transmittance(panels)).abs()))
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
+        Some(vec![transmittance_by_quadrature(self.medium(), panels)])
     }
+}
+
+impl Subject for SpectralTransmittance {
+    type Shared = ();
+
+    const BEFORE_SKY: bool = true;
+    const SHOWS_SKY: bool = true;
+    const IS_PREDICTED: bool = false;
+
+    fn read_shared(_: &Settings, _: Option<&View>) -> Option<()> {
+        Some(())
+    }
+
+    fn at((): &(), volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self> {
+        Some(Self::new(volumes.iter().map(|volume| along(&**volume, ray)).collect()))
+    }
+
+    fn has_exact((): &()) -> bool {
+        true
+    }
+
+    fn exact(&self) -> Option<Vec<Known>> {
+        Some(self.media().iter().map(exact_transmittance).collect())
+    }
+
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
+        let answer = |medium| transmittance_by_quadrature(medium, panels);
+        Some(self.media().iter().map(answer).collect())
+    }
+}
+
+/// A volume along a ray.
+fn along(volume: &Volume, ray: &Ray) -> Medium {
+    let support = volume.bounds().clip(ray);
+    Medium::new(volume.along(ray, support), ray.span(), support)
+}
+
+fn exact_transmittance(medium: &Medium) -> Known {
+    medium.optical_depth(medium.support()).exp_neg()
+}
+
+fn transmittance_by_quadrature(medium: &Medium, panels: usize) -> Known {
+    let transmittance =
+        |panels: usize| Lane::exp(-Mesh::even(medium.clone(), panels).optical_depth().value);
+    let fine = transmittance(2 * panels);
+    Known::new(fine, (fine - transmittance(panels)).abs())
 }
 
 /// A light and how the medium scatters it.
@@ -277,12 +324,12 @@ impl Subject for SingleScattering {
         })
     }
 
-    fn at(shared: &Lit, volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
-        Self::new(volume.clone(), *ray, shared.lamp, shared.albedo, shared.phase).ok()
+    fn at(shared: &Lit, volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self> {
+        Self::new(volumes[0].clone(), *ray, shared.lamp, shared.albedo, shared.phase).ok()
     }
 
-    fn by_quadrature(&self, panels: usize) -> Option<Known> {
-        Some(quick::radiance(self, panels))
+    fn by_quadrature(&self, panels: usize) -> Option<Vec<Known>> {
+        Some(vec![quick::radiance(self, panels)])
     }
 }
 
@@ -296,13 +343,13 @@ impl Subject for MultipleScattering {
 
     fn read_shared(settings: &Settings, view: Option<&View>) -> Option<Sunlit> {
         let phase = Phase::read(settings);
-        let albedo = read_albedo(settings, view.map(|view| &*view.volume));
+        let albedo = read_albedo(settings, view.map(|view| &*view.volumes[0]));
         Some(Sunlit { albedo: albedo?, phase: phase?, sky: view?.sky })
     }
 
-    fn at(shared: &Sunlit, volume: &Arc<Volume>, ray: &Ray) -> Option<Self> {
+    fn at(shared: &Sunlit, volumes: &[Arc<Volume>], ray: &Ray) -> Option<Self> {
         let (albedo, phase) = (shared.albedo.clone(), shared.phase);
-        Some(Self::new(Scene { volume: volume.clone(), albedo, phase }, shared.sky, *ray))
+        Some(Self::new(Scene { volume: volumes[0].clone(), albedo, phase }, shared.sky, *ray))
     }
 
     /// A white furnace: nothing is absorbed, and it is as bright as its walls.
@@ -310,8 +357,8 @@ impl Subject for MultipleScattering {
         shared.albedo.even() == Some(1.0) && matches!(shared.sky, Sky::Constant { .. })
     }
 
-    fn exact(&self) -> Option<Known> {
-        Some(Known::exact(self.background()))
+    fn exact(&self) -> Option<Vec<Known>> {
+        Some(vec![Known::exact(self.background())])
     }
 }
 

@@ -3,10 +3,11 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
+use super::budget::MOST_CHANNELS;
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Point, Ray};
-use crate::media::Volume;
-use crate::media::body::read_volume;
+use crate::media::body::{read_volume, read_volumes};
+use crate::media::{Body, Volume};
 use crate::numeric::Lane;
 use crate::problems::Sky;
 
@@ -81,10 +82,10 @@ impl Camera {
 
 /// A volume as a camera sees it.
 pub struct View {
-    /// The field's name in the catalogue.
+    /// The fields' names in the catalogue, without repetition.
     pub medium: String,
-    /// The field.
-    pub volume: Arc<Volume>,
+    /// The field: one, or those of red, green and blue light within the same bounds.
+    pub volumes: Vec<Arc<Volume>>,
     /// What is behind it.
     pub sky: Sky,
     /// How many columns and rows.
@@ -99,16 +100,16 @@ pub struct View {
 }
 
 impl View {
-    /// Reads `size`, `camera`, `volume` and, where it is seen, `sky`.
-    pub fn read(settings: &Settings, shows_sky: bool) -> Option<Self> {
+    /// Reads `size`, `camera`, `volume`, of which a coloured picture lists three, and, where it is seen, `sky`.
+    pub fn read(settings: &Settings, shows_sky: bool, is_coloured: bool) -> Option<Self> {
         let size = read_size(settings);
         let camera = Camera::read(settings, size);
         let black = Sky::Constant { radiance: 0.0 };
         let sky = if shows_sky { Sky::read(settings) } else { Some(black) };
         let shared = settings.count_or("shared-control", 1..=1024, 1);
-        let field = read_volume(settings);
-        let (medium, volume) = field?;
-        let Some(about) = volume.bounds().enclosing_box() else {
+        let fields = if is_coloured { read_colours(settings) } else { read_one(settings) };
+        let (medium, volumes) = fields?;
+        let Some(about) = volumes[0].bounds().enclosing_box() else {
             let help = "add `bounds.sphere = { centre, radius }` or `bounds.box = { low, high }`";
             settings.fault("volume", "this volume fills all of space", help);
             return None;
@@ -117,7 +118,16 @@ impl View {
         let length = furthest(&about, camera.position);
         let (sky, size) = (sky?, size?);
         let shared_control = usize::try_from(shared?).ok()?;
-        Some(Self { medium, volume, sky, size, shared_control, shows_sky, camera, length })
+        Some(Self { medium, volumes, sky, size, shared_control, shows_sky, camera, length })
+    }
+
+    /// The field of each channel with a ray.
+    pub fn bodies(&self, ray: Ray) -> Vec<Body> {
+        let body = |volume: &Arc<Volume>| {
+            let (name, volume) = (self.medium.clone(), volume.clone());
+            Body::Volume { name, volume, ray }
+        };
+        self.volumes.iter().map(body).collect()
     }
 
     /// How many pixels there are.
@@ -134,7 +144,7 @@ impl View {
 
     /// The ray of a pixel if it meets the volume.
     pub fn covered(&self, pixel: usize) -> Option<Ray> {
-        self.ray(pixel).filter(|ray| !self.volume.bounds().clip(ray).is_empty())
+        self.ray(pixel).filter(|ray| !self.volumes[0].bounds().clip(ray).is_empty())
     }
 
     /// The pixel whose ray a control is fitted to that this one uses: that in the middle of its block,
@@ -155,6 +165,27 @@ impl View {
     pub fn behind(&self, pixel: usize) -> f64 {
         self.ray(pixel).map_or(0.0, |ray| self.sky.radiance(ray.direction))
     }
+}
+
+fn read_one(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
+    read_volume(settings).map(|(name, volume)| (name, vec![volume]))
+}
+
+fn read_colours(settings: &Settings) -> Option<(String, Vec<Arc<Volume>>)> {
+    let fields = read_volumes(settings)?;
+    if fields.len() != MOST_CHANNELS {
+        let found = format!("`volume` lists {} channels", fields.len());
+        settings.fault("volume", found, "a coloured picture takes three: red, green and blue");
+        return None;
+    }
+    let (mut names, volumes): (Vec<String>, Vec<Arc<Volume>>) = fields.into_iter().unzip();
+    if volumes.iter().any(|volume| volume.bounds() != volumes[0].bounds()) {
+        let found = "the channels do not fill the same part of space";
+        settings.fault("volume", found, "give all of them the same `bounds`");
+        return None;
+    }
+    names.dedup();
+    Some((names.join(", "), volumes))
 }
 
 /// A little more than the distance of the furthest corner.

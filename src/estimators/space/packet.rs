@@ -33,8 +33,11 @@ use crate::numeric::twin::PAIR;
 use crate::problems::{Albedo, Scene};
 use crate::rng::{LANES, PACKS};
 
+/// With more cells of σ̂ than this a walk spends its time on their planes, which packets cross no faster.
+const MOST_CELLS: usize = 1000;
+
 /// The draws of a particle, on the hardware of a level; a request is handed back where that is too narrow,
-/// where the particle splits, where there is no σ̂, and where draws have other channels.
+/// where the particle splits, where there is no σ̂ or one of many cells, and where draws have other channels.
 pub fn walks<'a, const SUMS: usize, T: Tally<SUMS>>(
     level: Level,
     tally: &T,
@@ -44,6 +47,7 @@ pub fn walks<'a, const SUMS: usize, T: Tally<SUMS>>(
 ) -> Option<Request<'a>> {
     let Some(majorants) = majorants else { return Some(request) };
     let is_fit = particle.splitting == Splitting::None
+        && majorants.cells().3.len() <= MOST_CELLS
         && request.buffer.values.len() == tally.channels().len();
     if !is_fit {
         return Some(request);

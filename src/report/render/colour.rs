@@ -17,15 +17,35 @@ const DIVERGING: [[f64; 3]; 9] = [
 /// Steps to either side of white: files stay small.
 const STEPS: f64 = 24.0;
 
-/// A radiance in grey, for screens with the sRGB curve: 1 is white, and nothing is darker than black.
-pub fn grey(radiance: f64) -> [u8; 3] {
-    let x = radiance.clamp(0.0, 1.0);
-    let shown = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
-    [byte(255.0 * shown); 3]
+/// A pixel's radiance in grey, or in red, green and blue, for screens with the sRGB curve: 1 is white, and nothing
+/// is darker than black.
+pub fn radiance(channels: &[f64]) -> [u8; 3] {
+    let shown = |radiance: f64| {
+        let x = radiance.clamp(0.0, 1.0);
+        let shown = if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * x.powf(1.0 / 2.4) - 0.055 };
+        byte(255.0 * shown)
+    };
+    each(channels, shown)
 }
 
-/// A difference from −1, blue, to 1, red.
-pub fn signed(difference: f64) -> [u8; 3] {
+/// A pixel's difference. In one channel: from −1, blue, over 0, white, to 1, red. In three: each by itself, from
+/// −1, none of it, over 0, half of it, to 1, all of it: what is grey has the right colour.
+pub fn difference(channels: &[f64]) -> [u8; 3] {
+    if let &[one] = channels {
+        return signed(one);
+    }
+    each(channels, |x| byte(127.5 * (1.0 + x.clamp(-1.0, 1.0))))
+}
+
+/// Three channels by a rule, or three times the first.
+fn each(channels: &[f64], shown: impl Fn(f64) -> u8) -> [u8; 3] {
+    match *channels {
+        [red, green, blue] => [red, green, blue].map(shown),
+        _ => [shown(channels.first().copied().unwrap_or_default()); 3],
+    }
+}
+
+fn signed(difference: f64) -> [u8; 3] {
     let x = (difference.clamp(-1.0, 1.0) * STEPS).round() / STEPS;
     let place = (x + 1.0) * 0.5 * (DIVERGING.len() - 1) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 0 to 8
@@ -47,9 +67,10 @@ mod tests {
 
     #[test]
     fn black_white_and_the_middle() {
-        assert_eq!([grey(-1.0)[0], grey(0.0)[0], grey(1.0)[0], grey(9.0)[0]], [0, 0, 255, 255]);
+        assert_eq!([-1.0, 0.0, 1.0, 9.0].map(|x| radiance(&[x])[0]), [0, 0, 255, 255]);
         // ((128/255 + 0.055)/1.055)^2.4
-        assert_eq!(grey(0.215_861), [128; 3]);
+        assert_eq!(radiance(&[0.215_861]), [128; 3]);
+        assert_eq!(radiance(&[0.215_861, 0.0, 1.0]), [128, 0, 255]);
     }
 
     #[test]
@@ -57,6 +78,12 @@ mod tests {
         assert_eq!(signed(0.0), [255; 3]);
         assert_eq!([signed(-7.0), signed(1.0)], [[33, 102, 172], [178, 24, 43]]);
         // A quarter to red.
-        assert_eq!(signed(0.25), [253, 219, 199]);
+        assert_eq!(difference(&[0.25]), [253, 219, 199]);
+    }
+
+    #[test]
+    fn in_colours_each_channel_has_its_own_difference_and_none_is_grey() {
+        assert_eq!(difference(&[0.0; 3]), [128; 3]);
+        assert_eq!(difference(&[-3.0, 0.0, 1.0]), [0, 128, 255]);
     }
 }

@@ -25,7 +25,7 @@ pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
         vec![Artifact { path: PathBuf::from(format!("{}.png", record.name)), bytes: png }];
     let mut keep = |name: &str, image: &[f64]| {
         let path = PathBuf::from(format!("{}/{name}.pfm", record.name));
-        files.push(Artifact { path, bytes: pfm::encode(record.size, image) });
+        files.push(Artifact { path, bytes: pfm::encode(record.size, record.channels, image) });
     };
     keep("reference", &record.reference.image);
     for (number, exposure) in (1..).zip(&record.exposures) {

@@ -113,7 +113,8 @@ fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
     let steps = 49_u32;
     for step in 0..steps {
         let at = |i: u32| low + (high - low) * f64::from(i) / f64::from(steps);
-        let [r, g, b] = colour::signed(2.0 * f64::from(step) / f64::from(steps - 1) - 1.0);
+        let shown = 2.0 * f64::from(step) / f64::from(steps - 1) - 1.0;
+        let [r, g, b] = colour::difference(&[shown; 3][..record.channels]);
         let (y, end) = (at(step), at(step + 1));
         let corners = vec![[bar[0], y], [bar[1], y], [bar[1], end], [bar[0], end]];
         sheet.area(corners, crate::report::plots::style::ink(r, g, b));
@@ -130,7 +131,7 @@ fn legend(sheet: &mut Sheet, record: &PictureRecord, place: &Column) {
         sheet.path(vec![[bar[1], y], [bar[1] + 5.0, y]], 1.0, GREY);
         sheet.text([bar[1] + 9.0, y], text, LETTER, DARK, Align::Start);
     }
-    let words = "image − reference";
+    let words = if record.channels > 1 { "by channel" } else { "image − reference" };
     sheet.text([left + 0.5 * size[0], top + 10.0], words, LETTER, DARK, Align::Middle);
 }
 
@@ -208,13 +209,15 @@ fn frame(sheet: &mut Sheet, left: f64, top: f64, size: [f64; 2]) {
 }
 
 fn picture(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2]) -> Image {
-    let pixels = image.iter().map(|x| colour::grey(x / record.white)).collect();
+    let shown: Vec<f64> = image.iter().map(|x| x / record.white).collect();
+    let pixels = shown.chunks_exact(record.channels).map(colour::radiance).collect();
     Image { at, size, columns: record.size[0], pixels }
 }
 
 fn difference(record: &PictureRecord, image: &[f64], at: [f64; 2], size: [f64; 2]) -> Image {
     let pairs = image.iter().zip(&record.reference.image);
-    let pixels = pairs.map(|(x, truth)| colour::signed((x - truth) / record.strongest)).collect();
+    let apart: Vec<f64> = pairs.map(|(x, truth)| (x - truth) / record.strongest).collect();
+    let pixels = apart.chunks_exact(record.channels).map(colour::difference).collect();
     Image { at, size, columns: record.size[0], pixels }
 }
 
