@@ -33,8 +33,10 @@ pub mod single_scattering;
 pub mod slab;
 pub mod space;
 pub mod spectral;
+pub mod spectral_furnace;
 pub mod spectral_lit_rod;
 pub mod spectral_rod;
+pub mod spectral_single_scattering;
 pub mod sphere;
 pub mod streams;
 pub mod target;
@@ -50,8 +52,9 @@ use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Problem,
-    Rod, SingleScattering, Slab, SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance,
-    Sphere, Transmittance, TransmittanceCurve, each_problem,
+    Rod, SingleScattering, Slab, SpectralFurnace, SpectralLitRod, SpectralRod,
+    SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
+    TransmittanceCurve, each_problem,
 };
 use crate::rng::Stream;
 
@@ -160,7 +163,9 @@ mutable! {
     LitSlab: lit_slab::mutants();
     SpectralLitRod: spectral_lit_rod::mutants();
     SingleScattering: single_scattering::mutants(), null_paths::mutants();
+    SpectralSingleScattering: spectral_single_scattering::mutants();
     Furnace: space::in_furnace();
+    SpectralFurnace: spectral_furnace::mutants();
     Lambertian: space::under_light();
     InfiniteMedium: space::in_infinite_medium();
     Slab: slab::mutants();

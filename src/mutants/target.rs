@@ -181,6 +181,14 @@ pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/magnet", 3, "spectral-mi
 /// The same.
 pub const SPECTRAL_SLAB_TRACKING: Target =
     on("spectral-slab/magnet", 1, "spectral-tracking (average)");
+/// The same scattering a point light once, exact shadow rays.
+pub const SPECTRAL_SINGLE_EXACT: Target =
+    on("spectral-single-scattering/magnet", 2, "spectral-mis (exact shadow)");
+/// Tracked shadow rays.
+pub const SPECTRAL_SINGLE_RATIO: Target =
+    on("spectral-single-scattering/magnet", 3, "spectral-mis (ratio shadow)");
+/// Three channels of different σ_t, σ̂, albedo and phase function in a furnace.
+pub const SPECTRAL_FURNACE: Target = on("spectral-furnace/magnet", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
 pub const SPECTRAL_LIT_HITS: Target = on("spectral-lit-rod/three-colours", 1, "spectral-mis");
 /// The same by hits and shadow rays.

@@ -62,10 +62,21 @@ macro_rules! phases {
                 let names: Vec<String> =
                     CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
                 let (index, page) = settings.chosen("phase", &names)?;
+                Self::read_page(index, &page)
+            }
+
+            /// Reads `{ NAME = { … } }` of a list.
+            pub fn read_listed(table: &Settings) -> Option<Self> {
+                let names: Vec<String> =
+                    CATALOGUE.pages.iter().map($crate::catalogue::Page::name).collect();
+                table.choice(&names).and_then(|(index, page)| Self::read_page(index, &page))
+            }
+
+            fn read_page(index: usize, page: &Settings) -> Option<Self> {
                 let readers = [$(
                     |s: &Settings| <$module::$Page as PhaseFunction>::read(s).map(Self::$Page)
                 ),*];
-                let phase = readers[index](&page);
+                let phase = readers[index](page);
                 page.close();
                 phase
             }

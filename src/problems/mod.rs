@@ -10,8 +10,10 @@ pub mod lit_slab;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
+pub mod spectral_furnace;
 pub mod spectral_lit_rod;
 pub mod spectral_rod;
+pub mod spectral_single_scattering;
 pub mod spectral_slab;
 pub mod spectral_transmittance;
 pub mod sphere;
@@ -41,8 +43,10 @@ pub use scene::{Albedo, Scene};
 pub use single_scattering::SingleScattering;
 pub use sky::Sky;
 pub use slab::Slab;
+pub use spectral_furnace::SpectralFurnace;
 pub use spectral_lit_rod::SpectralLitRod;
 pub use spectral_rod::SpectralRod;
+pub use spectral_single_scattering::SpectralSingleScattering;
 pub use spectral_slab::SpectralSlab;
 pub use spectral_transmittance::SpectralTransmittance;
 pub use sphere::Sphere;
@@ -66,7 +70,9 @@ macro_rules! each_problem {
             slab::Slab,
             spectral_slab::SpectralSlab,
             single_scattering::SingleScattering,
+            spectral_single_scattering::SpectralSingleScattering,
             furnace::Furnace,
+            spectral_furnace::SpectralFurnace,
             lambertian::Lambertian,
             infinite_medium::InfiniteMedium,
             sphere::Sphere,

@@ -27,6 +27,7 @@ pub mod single;
 pub mod slab;
 pub mod space;
 pub mod spectral;
+pub mod spectral_furnace;
 pub mod spectral_lit_rod;
 pub mod spectral_rod;
 pub mod spectral_slab;

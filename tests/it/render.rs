@@ -284,7 +284,7 @@ fn a_coloured_picture_has_the_right_colours_and_errors() {
     }
     let files = report::artifacts(&record).expect("files");
     assert!(files[1].bytes.starts_with(b"PF\n32 32\n"));
-    assert_eq!(files[1].bytes.len(), 15 + 4 * 3 * 32 * 32);
+    assert_eq!(files[1].bytes.len(), 14 + 4 * 3 * 32 * 32);
 }
 
 #[test]

@@ -61,8 +61,10 @@ impl Absorption {
 /// Scattering at the first real collision.
 #[derive(Debug, Clone)]
 pub struct DeltaTracking {
-    absorption: Absorption,
-    shadow: Tracking,
+    /// What absorption does.
+    pub absorption: Absorption,
+    /// How shadow rays are tracked.
+    pub shadow: Tracking,
 }
 
 /// The end of a walk.
@@ -100,6 +102,22 @@ pub fn collide(
     }
 }
 
+impl DeltaTracking {
+    /// The moments of its draws.
+    pub fn points(&self, setup: &Setup<SingleScattering>) -> Points {
+        let collisions = self.absorption.collisions(setup);
+        let technique = Technique {
+            density: &|node| collisions.density(node),
+            gain: &|node| collisions.worth(node),
+            blur: &|node| node.error[1],
+            found: Some(&collisions),
+            weighted: None,
+        };
+        let connection = Connection { camera: CameraTracking::Exact, shadow: self.shadow };
+        Points::of(&connection.scene(setup, setup.sampling.knots().to_vec()), &technique)
+    }
+}
+
 impl Estimator<SingleScattering> for DeltaTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
     in_packets!(self => (Kind::Collision(self.absorption), self.shadow));
@@ -121,17 +139,7 @@ impl Estimator<SingleScattering> for DeltaTracking {
     }
 
     fn predict(&self, setup: &Setup<SingleScattering>) -> Prediction {
-        let collisions = self.absorption.collisions(setup);
-        let technique = Technique {
-            density: &|node| collisions.density(node),
-            gain: &|node| collisions.worth(node),
-            blur: &|node| node.error[1],
-            found: Some(&collisions),
-            weighted: None,
-        };
-        let connection = Connection { camera: CameraTracking::Exact, shadow: self.shadow };
-        let scene = connection.scene(setup, setup.sampling.knots().to_vec());
-        Points::of(&scene, &technique).prediction()
+        self.points(setup).prediction()
     }
 
     #[inline(always)]

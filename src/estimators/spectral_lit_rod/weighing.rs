@@ -19,7 +19,6 @@
 use crate::estimators::Setup;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
-use crate::problems::SpectralLitRod;
 use crate::setup::heroes::Heroes;
 
 /// Where the transmittance of the last piece through σ̂ is.
@@ -105,23 +104,28 @@ impl Path {
         self.last = piece;
     }
 
+    /// `q_λ/q_h` of a path of a length.
+    #[inline(always)]
+    pub fn common<P>(&self, setup: &Setup<P>, channel: usize, length: f64) -> f64 {
+        let (own, hero) = (&setup.channels[channel], &setup.channels[self.hero]);
+        let log = f64::from(self.collisions) * (own.ln_majorant - hero.ln_majorant);
+        self.weights[channel] * Lane::exp(log - (own.majorant - hero.majorant) * length)
+    }
+
     /// What it scores.
     #[inline(always)]
-    pub fn score(
+    pub fn score<P>(
         &self,
-        setup: &Setup<SpectralLitRod>,
+        setup: &Setup<P>,
         heroes: &Heroes,
         by: Weighing,
     ) -> [f64; MOST_CHANNELS] {
         let count = setup.channels.len();
-        let hero = &setup.channels[self.hero];
         let has_last = by.last_piece == LastPiece::Everywhere;
         let length = if has_last { self.length } else { self.length - self.last };
         let (mut found, mut density) = ([0.0; MOST_CHANNELS], 0.0);
         for (channel, own) in setup.channels.iter().enumerate() {
-            let log = f64::from(self.collisions) * (own.ln_majorant - hero.ln_majorant);
-            let common =
-                self.weights[channel] * Lane::exp(log - (own.majorant - hero.majorant) * length);
+            let common = self.common(setup, channel, length);
             let direction = common * self.phases[channel];
             let by_hit = direction * self.nulls[channel];
             found[channel] = by_hit * self.excess[channel];

@@ -1,0 +1,64 @@
+//! Furnaces in several channels: the radiance is 1 in each, whatever the media are, and what is refused.
+
+use trueflight::harness::record::Verdict;
+
+use crate::common::{failing, mistakes, none, predicted, rows};
+
+const BALL: &str = include_str!("../../cases/spectral-furnace/magnet.toml");
+const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
+
+#[test]
+fn every_channel_is_as_bright_as_the_walls() {
+    for (text, channels) in [(BALL, 3), (NOISE, 2)] {
+        let rows = rows(text, 400_000);
+        none(&failing(&rows));
+        for row in &rows {
+            assert_eq!(row.truth, Some(1.0));
+            assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        }
+        let of_balance = rows.iter().filter(|row| row.estimator.starts_with("spectral-mis"));
+        let heroes = (text.matches("{ spectral-mis").count(), channels);
+        assert_eq!(of_balance.clone().count(), heroes.0 * heroes.1);
+        for row in of_balance {
+            let spread = row.variance.expect("drawn");
+            assert!(spread < 1.0, "{}: {spread}", row.estimator);
+        }
+    }
+}
+
+/// `Var X_λ = 1/w_λ − 1` of one channel a draw: w = .2126, .7152, .0722.
+#[test]
+fn one_channel_a_draw_costs_what_its_chance_says() {
+    let text = BALL.replace("{ independent = {} }", "{ independent = { hero = \"luminance\" } }");
+    let rows = predicted(&text);
+    for (row, weight) in rows.iter().zip([0.2126, 0.7152, 0.0722]) {
+        let variance = row.predicted_variance.expect("known");
+        assert!((variance - (1.0 / weight - 1.0)).abs() < 1e-12 / weight, "{}", row.estimator);
+    }
+}
+
+#[test]
+fn mistakes_and_what_is_out_of_reach_are_told() {
+    let said = |from: &str, to: &str| {
+        mistakes(&BALL.replacen(from, to, 1)).expect("a mistake").render(false)
+    };
+    let expected = [
+        (
+            "albedos = [0.9, 0.5, 0.7]",
+            "albedos = [0.9, 0.5]",
+            "`albedos` lists 2 channels, and the",
+        ),
+        ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
+        ("{ isotropic = {} }", "{ isotopic = {} }", "did you mean `isotropic`"),
+        ("origin = [0.2, 0.1, -2]", "origin = [3, 0.1, -2]", "the ray misses the volume"),
+        ("radius = 1", "radius = 0.9", "do not fill the same part"),
+    ];
+    for (from, to, words) in expected {
+        let said = said(from, to);
+        assert!(said.contains(words), "{words}:\n{said}");
+    }
+    let low = predicted(&BALL.replacen("constant.value = 0.8", "constant.value = 0.7", 1));
+    let row = low.iter().find(|row| row.estimator == "spectral-mis").expect("a row");
+    let words = "σ̂ = 0.700000 and σ_t is bounded by 0.800000 in channel 2";
+    assert!(row.reason.contains(words), "{}", row.reason);
+}

@@ -1,0 +1,77 @@
+//! Single scattering in several channels: the answers of the channels by themselves, and what is refused.
+
+use trueflight::harness::record::{Row, Verdict};
+
+use crate::common::{mistakes, predicted, rows};
+
+const BALL: &str = include_str!("../../cases/spectral-single-scattering/magnet.toml");
+
+/// The second channel of [`BALL`] by itself.
+const SECOND: &str = "title = \"green\"
+    [problem.single-scattering]
+    volume.constant = { extinction = 0.8, bounds.sphere = { centre = [0, 0, 0], radius = 1 } }
+    ray = { origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }
+    light = { position = [0.9, -0.3, 0.4], power = 10 }
+    albedo = 0.5
+    phase.isotropic = {}
+    estimators = [
+      { delta-tracking = { absorption = \"analog\", sampling.constant.value = 1 } },
+      { delta-tracking = { absorption = \"analog\", shadow.ratio.sampling = 1, sampling.constant.value = 1 } },
+    ]";
+
+fn second(rows: &[Row], estimator: &str) -> Row {
+    let is_it = |row: &&Row| row.estimator == estimator && row.channel == "channel 2";
+    rows.iter().find(is_it).expect("a row").clone()
+}
+
+#[test]
+fn every_estimator_finds_the_answer_of_each_channel() {
+    let rows = rows(BALL, 800_000);
+    for row in &rows {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+    }
+}
+
+/// `E[X²] = E[x²]/w` with a third of the draws for each channel.
+#[test]
+fn one_channel_a_draw_has_the_moments_of_that_channel_by_itself() {
+    let (all, alone) = (predicted(BALL), predicted(SECOND));
+    for (estimator, own) in ["exact", "ratio"].into_iter().zip(&alone) {
+        let row = second(&all, &format!("independent ({estimator} shadow)"));
+        assert_eq!(row.truth, own.truth);
+        let (mean, variance) = (own.truth.expect("known"), own.predicted_variance.expect("known"));
+        let expected = 3.0 * (variance + mean * mean) - mean * mean;
+        let found = row.predicted_variance.expect("known");
+        assert!((found / expected - 1.0).abs() < 1e-9, "{estimator}: {found} for {expected}");
+    }
+}
+
+/// Multiple importance sampling is better than one channel a draw, and costs the same lookups.
+#[test]
+fn colour_noise_is_gone_for_the_same_lookups() {
+    let rows = rows(BALL, 400_000);
+    for shadow in ["exact", "ratio"] {
+        let independent = second(&rows, &format!("independent ({shadow} shadow)"));
+        let balanced = second(&rows, &format!("spectral-mis ({shadow} shadow)"));
+        assert_eq!(independent.predicted_lookups, balanced.predicted_lookups);
+        let (one, all) = (independent.variance.expect("drawn"), balanced.variance.expect("drawn"));
+        assert!(all < 0.5 * one, "{shadow}: {all} and {one}");
+    }
+}
+
+#[test]
+fn mistakes_and_what_is_out_of_reach_are_told() {
+    let expected = [
+        ("albedos = [0.9, 0.5, 0.7]", "albedos = [0.9, 0, 0.7]", "nothing is scattered in a"),
+        ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
+        ("position = [0.9, -0.3, 0.4]", "position = [0.2, 0.1, 0.4]", "move it off the line"),
+    ];
+    for (from, to, words) in expected {
+        let said = mistakes(&BALL.replacen(from, to, 1)).expect("a mistake").render(false);
+        assert!(said.contains(words), "{words}:\n{said}");
+    }
+    let low = predicted(&BALL.replacen("constant.value = 1 }", "constant.value = 0.7 }", 1));
+    let row = low.iter().find(|row| row.estimator == "spectral-mis (exact shadow)").expect("a row");
+    let words = "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2";
+    assert!(row.reason.contains(words), "{}", row.reason);
+}
