@@ -50,6 +50,8 @@ pub mod geometry;
 pub mod harness;
 pub mod judge;
 #[cfg(feature = "library")]
+pub mod kernels;
+#[cfg(feature = "library")]
 pub mod media;
 #[cfg(feature = "library")]
 pub mod mutants;

@@ -12,10 +12,7 @@ pub mod lambertian;
 pub mod lit_rod;
 pub mod lit_slab;
 pub mod multiple_scattering;
-pub mod order_free;
-pub mod packet;
 pub mod rod;
-pub mod scoring;
 pub mod single_scattering;
 pub mod slab;
 pub mod space;
@@ -29,11 +26,11 @@ pub mod sphere;
 pub mod transmittance;
 pub mod transmittance_curve;
 pub mod trial;
-pub mod walk;
 
 use fearless_simd::Level;
 
 use crate::catalogue::{Catalogue, Settings};
+use crate::kernels::{order_free, packet};
 use crate::media::Lookups;
 use crate::problems::{Problem, each_problem};
 use crate::recipes::controls;
@@ -43,28 +40,9 @@ use crate::theory::Prediction;
 pub use crate::recipes::{Refusal, Site};
 pub use crate::setup::Setup;
 
+pub use crate::kernels::{Draw, DrawBuffer};
 pub use transmittance_curve::RayView;
-pub use trial::{DrawBuffer, Experiment, Kernel, Order};
-
-/// One realisation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Draw<V = [f64; 1]> {
-    /// The value, one number per channel.
-    pub value: V,
-    /// How many times σ_t was evaluated.
-    pub lookups: u32,
-    /// By how much the draw breaks a law that holds for every single draw, relative to what the law
-    /// is about: rounding where all is well, and 0 where there is no such law.
-    pub defect: f64,
-}
-
-impl<V> Draw<V> {
-    /// A draw of an estimator without a law that holds draw by draw.
-    #[inline(always)]
-    pub fn free(value: V, lookups: u32) -> Self {
-        Self { value, lookups, defect: 0.0 }
-    }
-}
+pub use trial::{Experiment, Kernel, Order};
 
 /// What an estimator takes beside the medium.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -240,15 +218,15 @@ macro_rules! product_draws {
             medium: &$crate::media::Lookups,
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw {
-            $crate::estimators::walk::product(setup, &$rule, medium, rng)
+            $crate::kernels::walk::product(setup, &$rule, medium, rng)
         }
 
         fn order_free<'a>(
             &'a $this,
             setup: &'a $crate::estimators::Setup<Transmittance>,
-            request: $crate::estimators::order_free::Request<'a>,
-        ) -> Option<Box<dyn $crate::estimators::order_free::OrderFree + 'a>> {
-            $crate::estimators::order_free::product(setup, $rule, request)
+            request: $crate::kernels::order_free::Request<'a>,
+        ) -> Option<Box<dyn $crate::kernels::order_free::OrderFree + 'a>> {
+            $crate::kernels::order_free::product(setup, $rule, request)
         }
 
         fn draw_packets<'a>(
@@ -256,9 +234,9 @@ macro_rules! product_draws {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<Transmittance>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
-            $crate::estimators::packet::product(level, setup, &$rule, medium, request)
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
+            $crate::kernels::packet::product(level, setup, &$rule, medium, request)
         }
     };
 }
@@ -294,7 +272,7 @@ macro_rules! scored {
                 medium: &$crate::media::Lookups,
                 rng: &mut $crate::rng::Stream,
             ) -> $crate::estimators::Draw {
-                $crate::estimators::scoring::walk(setup, self, medium, rng)
+                $crate::kernels::scoring::walk(setup, self, medium, rng)
             }
 
             fn draw_packets<'a>(
@@ -302,9 +280,9 @@ macro_rules! scored {
                 level: fearless_simd::Level,
                 setup: &Setup<Transmittance>,
                 medium: &$crate::media::Lookups,
-                request: $crate::estimators::packet::Request<'a>,
-            ) -> Option<$crate::estimators::packet::Request<'a>> {
-                $crate::estimators::packet::score(level, setup, self, medium, request)
+                request: $crate::kernels::packet::Request<'a>,
+            ) -> Option<$crate::kernels::packet::Request<'a>> {
+                $crate::kernels::packet::score(level, setup, self, medium, request)
             }
         }
     };

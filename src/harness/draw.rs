@@ -14,7 +14,7 @@ use super::checks::batch::Batch;
 use super::plan::{BLOCK, Planned};
 use super::ready::Ready;
 use crate::estimators::DrawBuffer;
-use crate::estimators::order_free::{OrderFree, Request};
+use crate::kernels::order_free::{OrderFree, Request};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::rng::Streams;

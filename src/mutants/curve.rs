@@ -10,8 +10,8 @@
 
 use super::target::{CURVE, CURVE_CONTROL};
 use super::{About, Mutant, with};
-use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Setup};
+use crate::kernels::walk::Invariant;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::{Lane, Span};
 use crate::problems::TransmittanceCurve;

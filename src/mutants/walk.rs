@@ -1,4 +1,4 @@
-//! The walks of `estimators/walk.rs` and `estimators/free_flight/woodcock.rs`, step by step.
+//! The walks of `kernels/walk.rs` and `estimators/free_flight/woodcock.rs`, step by step.
 //!
 //! ```text
 //! X = T_c ∏ W(tᵢ),  tᵢ a Poisson process of rate σ̂ on the support
@@ -11,8 +11,8 @@
 
 use super::fault::{Fault, Memory, RIGHT};
 use super::{About, Mutant, Target, with};
-use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Setup};
+use crate::kernels::walk::Invariant;
 use crate::media::Lookups;
 use crate::problems::{FreeFlight, Problem, Transmittance};
 use crate::rng::Stream;

@@ -22,6 +22,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("theory", 3),
     ("recipes", 4),
     ("setup", 4),
+    ("kernels", 4),
     ("estimators", 4),
     ("mutants", 4),
     ("harness", 5),
@@ -36,7 +37,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("main", 8),
 ];
 
-/// The edges that are allowed on one floor: everything counts, recipes make what estimators work on, the setup holds it,
+/// The edges that are allowed on one floor: everything counts, recipes make what estimators work on, the setup holds it, kernels draw by it,
 /// mutants are twins of estimators, what judges foreign draws is tested by itself, a bench is stored as a run is, and
 /// `main` is nothing but the door to `cli`.
 const SIDEWAYS: &[(&str, &str)] = &[
@@ -45,9 +46,12 @@ const SIDEWAYS: &[(&str, &str)] = &[
     ("mutants", "estimators"),
     ("setup", "recipes"),
     ("estimators", "recipes"),
+    ("kernels", "setup"),
     ("estimators", "setup"),
+    ("estimators", "kernels"),
     ("mutants", "recipes"),
     ("mutants", "setup"),
+    ("mutants", "kernels"),
     ("main", "cli"),
     ("self_test", "judge"),
     ("bench", "baseline"),
@@ -61,6 +65,7 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ("problems", "rng"),
     ("theory", "rng"),
     ("theory", "stats"),
+    ("kernels", "stats"),
     ("estimators", "stats"),
     ("report", "numeric"),
     ("report", "geometry"),
@@ -70,6 +75,7 @@ const FORBIDDEN: &[(&str, &str)] = &[
     ("report", "stats"),
     ("report", "problems"),
     ("report", "theory"),
+    ("report", "kernels"),
     ("report", "estimators"),
 ];
 
@@ -409,15 +415,15 @@ fn what_is_drawn_never_calls_the_platforms_functions() {
     for file in File::all() {
         let whole = [
             "theory/rules.rs",
-            "estimators/scoring.rs",
-            "estimators/walk.rs",
+            "kernels/scoring.rs",
+            "kernels/walk.rs",
             "transmittance/next_flight.rs",
             "transmittance/unidirectional_mis.rs",
             "rng.rs",
         ];
         let module = file.module();
         let drawing = module == "phase" || whole.iter().any(|path| file.path.ends_with(path));
-        if drawing || ["estimators", "mutants"].contains(&module.as_str()) {
+        if drawing || ["kernels", "estimators", "mutants"].contains(&module.as_str()) {
             let found = calls(&file, drawing);
             wrong.extend(found.iter().map(|call| format!("{}: {call}", file.name())));
         }

@@ -12,8 +12,8 @@
 
 use fearless_simd::Level;
 
-use crate::estimators::packet::{self, Request};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::{self, Request};
 use crate::media::{Extinction, Lookups};
 use crate::problems::{FreeFlight, Problem};
 use crate::rng::Stream;

@@ -10,8 +10,8 @@ pub mod walk;
 use fearless_simd::Level;
 
 use crate::catalogue::Settings;
-use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::problems::{LitRod, Problem};
 use crate::rng::Stream;
@@ -145,8 +145,8 @@ macro_rules! walks {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<P>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             P::packets(level, $techniques, setup, medium, request)
         }
     };

@@ -10,8 +10,8 @@ pub mod walk;
 use fearless_simd::Level;
 
 use super::lit_rod::Lit;
-use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::problems::LitSlab;
 use crate::rng::Stream;

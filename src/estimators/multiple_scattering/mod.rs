@@ -5,14 +5,14 @@ pub mod splitting;
 
 use fearless_simd::{Level, Simd, mask64x8};
 
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::walks;
 use crate::estimators::space::tally::{Departure, add_where};
 use crate::estimators::space::{self, By, Particle, Start, Sums, Tally, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::Point;
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::Numbers;
 use crate::numeric::{Known, Lane};
 use crate::problems::MultipleScattering;
 use crate::rng::Stream;

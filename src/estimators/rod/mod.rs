@@ -91,8 +91,8 @@ macro_rules! walks {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<$crate::problems::Rod>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             $crate::estimators::rod::packet::walks(level, setup, ($rule, None), medium, request)
         }
     };

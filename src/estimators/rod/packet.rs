@@ -10,9 +10,9 @@
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::Fate;
-use crate::estimators::packet::bank::{Numbers, Particles, Slot, Slots};
-use crate::estimators::packet::{Request, line};
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::packet::bank::{Numbers, Particles, Slot, Slots};
+use crate::kernels::packet::{Request, line};
 use crate::media::Lookups;
 use crate::media::course::BothWays;
 use crate::numeric::Lane;

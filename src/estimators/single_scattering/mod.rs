@@ -28,8 +28,8 @@ macro_rules! in_packets {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<$crate::problems::SingleScattering>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             $crate::estimators::single_scattering::packet::walks(level, setup, $kind, medium, request)
         }
     };

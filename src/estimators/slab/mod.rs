@@ -119,8 +119,8 @@ macro_rules! walks {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<$crate::problems::Slab>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             $crate::estimators::slab::packet::walks(level, setup, $rule, medium, request)
         }
     };

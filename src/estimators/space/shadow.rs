@@ -12,8 +12,8 @@
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::exit::{Points, chords, one_by_one, rows};
-use crate::estimators::packet::bank::Numbers;
 use crate::geometry::{Bounds, Point, Ray};
+use crate::kernels::packet::bank::Numbers;
 use crate::media::Volume;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};

@@ -5,8 +5,8 @@ use fearless_simd::{Simd, f64x8, mask64x8};
 use super::exit::Points;
 use super::shadow::{Found, Light, ShadowRays};
 use super::walk::Sink;
-use crate::estimators::packet::bank::Numbers;
 use crate::geometry::Point;
+use crate::kernels::packet::bank::Numbers;
 use crate::numeric::Lane;
 use crate::problems::Values;
 

@@ -4,8 +4,8 @@ use fearless_simd::Level;
 
 use super::{By, Particle};
 use crate::catalogue::Settings;
-use crate::estimators::packet::Request;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::problems::Problem;
 use crate::rng::Stream;

@@ -9,9 +9,9 @@
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::relative_density;
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::pack::{self, Task, WIDTH};

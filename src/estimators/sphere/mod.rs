@@ -8,10 +8,10 @@ pub mod particle;
 use fearless_simd::Level;
 
 use crate::catalogue::rounded;
-use crate::estimators::packet::Request;
 use crate::estimators::space::{self, By, Particle, Start, Steps, Walked};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::{Point, frame};
+use crate::kernels::packet::Request;
 use crate::media::Majorants;
 use crate::media::majorants::Flight;
 use crate::numeric::Known;

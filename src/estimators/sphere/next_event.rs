@@ -27,10 +27,10 @@ use fearless_simd::Level;
 
 use super::Honest;
 use crate::catalogue::Settings;
-use crate::estimators::packet::Request;
 use crate::estimators::single_scattering::connection;
 use crate::estimators::space::Particle;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::problems::Sphere;
 use crate::rng::Stream;

@@ -6,14 +6,14 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use super::connect::{UP, light};
 use crate::estimators::Setup;
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::exit::{Points, splat};
 use crate::estimators::space::packet::walks;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays};
 use crate::estimators::space::tally::{Departure, add_where};
 use crate::estimators::space::{Particle, Tally};
 use crate::geometry::{Bounds, Point};
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::Numbers;
 use crate::numeric::Lane;
 use crate::problems::Sphere;
 use crate::problems::sphere::{self, Sought};

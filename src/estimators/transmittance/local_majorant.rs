@@ -19,8 +19,8 @@
 use fearless_simd::Level;
 
 use super::woodcock::{ZERO_OR_ONE, zero_or_one};
-use crate::estimators::packet::{self, Request};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::{self, Request};
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::problems::Transmittance;

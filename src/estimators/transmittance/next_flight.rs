@@ -17,8 +17,8 @@
 //! I. Georgiev et al., *Integral formulations of volumetric transmittance*, ACM Transactions on
 //! Graphics 38 (2019).
 
-use crate::estimators::scoring::Share;
 use crate::estimators::{Setup, scored};
+use crate::kernels::scoring::Share;
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::theory::volterra::{ORDERS, Source, binomial, power};

@@ -22,9 +22,9 @@
 use fearless_simd::{Level, Simd, SimdBase, f64x8};
 
 use crate::catalogue::Settings;
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::quadrature::GaussLegendre;

@@ -15,8 +15,8 @@
 //! Source: I. Georgiev, Z. Misso, T. Hachisuka, D. Nowrouzezahrai, J. Křivánek, W. Jarosz,
 //! *Integral formulations of volumetric transmittance*, ACM Transactions on Graphics 38 (2019).
 
-use crate::estimators::scoring::Share;
 use crate::estimators::{Setup, scored};
+use crate::kernels::scoring::Share;
 use crate::numeric::Lane;
 use crate::problems::Transmittance;
 use crate::theory::volterra::{ORDERS, Source, binomial, power};

@@ -21,9 +21,9 @@ use fearless_simd::Level;
 
 use super::packet;
 use super::ray_view::{self, RayView};
-use crate::estimators::packet::Request;
-use crate::estimators::walk::Invariant;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
+use crate::kernels::walk::Invariant;
 use crate::media::{Extinction, Lookups, Medium};
 use crate::problems::TransmittanceCurve;
 use crate::problems::transmittance_curve::{MOST, Values};

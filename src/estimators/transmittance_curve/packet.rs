@@ -14,12 +14,12 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slot, Slots};
-use crate::estimators::packet::product::Subtracted;
-use crate::estimators::packet::{Request, pays};
+use crate::kernels::packet::bank::{self, Numbers, Particles, Slot, Slots};
+use crate::kernels::packet::product::Subtracted;
+use crate::kernels::packet::{Request, pays};
 
-use crate::estimators::walk::Invariant;
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::walk::Invariant;
 use crate::media::Lookups;
 use crate::media::course::{Course, Even, Pieces};
 use crate::numeric::Lane;

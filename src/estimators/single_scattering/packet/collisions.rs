@@ -4,10 +4,10 @@ use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
 use super::{Page, Sums};
-use crate::estimators::packet::bank::Numbers;
 use crate::estimators::single_scattering::delta_tracking::Absorption;
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
+use crate::kernels::packet::bank::Numbers;
 use crate::numeric::Lane;
 
 /// Eight walks to the first real collision.

@@ -23,8 +23,8 @@ pub use bank::{Kind, walks};
 
 use fearless_simd::{Simd, f64x8, mask64x8};
 
-use crate::estimators::packet::bank::Numbers;
 use crate::estimators::space::shadow::Found;
+use crate::kernels::packet::bank::Numbers;
 
 /// What eight draws have come to.
 #[derive(Clone, Copy)]

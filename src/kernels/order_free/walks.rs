@@ -5,7 +5,7 @@ use rand_distr::{Binomial, Distribution};
 
 use super::collisions::{Collisions, Weights};
 use super::{BATCH, Sites};
-use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::DrawBuffer;
 use crate::media::{Control, Lookups, Placement};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::twin::PAIR;
@@ -13,6 +13,7 @@ use crate::numeric::{Lane, Twin};
 use crate::problems::Problem;
 use crate::rng::xoshiro::SCALE;
 use crate::rng::{Lanes, Stream, Xoshiro};
+use crate::setup::Setup;
 use crate::theory::rules::{Collision, Met};
 
 /// Walks with as many collisions behind them, which do not care in which order they came.

@@ -8,10 +8,11 @@
 //!
 //! A step takes one random number, that of the flight.
 
-use super::{Draw, Setup};
+use super::Draw;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::rng::Stream;
+use crate::setup::Setup;
 
 /// What a place scores, as one formula for every lane type.
 pub trait Share {

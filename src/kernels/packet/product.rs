@@ -1,6 +1,6 @@
 //! The packet kernel of the product walk.
 //!
-//! Specification: draw j is, bit for bit, the draw that [`crate::estimators::walk::product`] makes from
+//! Specification: draw j is, bit for bit, the draw that [`crate::kernels::walk::product`] makes from
 //! stream j mod 16.
 
 use std::marker::PhantomData;
@@ -9,13 +9,13 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::survival::Survivals;
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
-use crate::estimators::Setup;
-use crate::estimators::packet::event_queue::{Reader, Row};
-use crate::estimators::walk::Invariant;
+use crate::kernels::packet::event_queue::{Reader, Row};
+use crate::kernels::walk::Invariant;
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Twin};
+use crate::setup::Setup;
 use crate::theory::rules::{Collision, Met};
 
 /// The draws of a product estimator, on the hardware of a level; a request is handed back where the
@@ -125,7 +125,7 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
 
 /// σ_c as the walks ask for it.
 #[derive(Clone, Copy)]
-pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
+pub struct Subtracted<'a, S: Simd> {
     control: &'a Control,
     /// Its value, where there is only one.
     constant: Option<f64x8<S>>,
@@ -134,14 +134,14 @@ pub(in crate::estimators) struct Subtracted<'a, S: Simd> {
 impl<'a, S: Simd> Subtracted<'a, S> {
     /// What does not change is found here, not in every step.
     #[inline(always)]
-    pub(in crate::estimators) fn new(simd: S, control: &'a Control) -> Self {
+    pub fn new(simd: S, control: &'a Control) -> Self {
         let constant = control.single_value().map(|value| f64x8::splat(simd, value));
         Self { control, constant }
     }
 
     /// At the places reached.
     #[inline(always)]
-    pub(in crate::estimators) fn at(&self, t: f64x8<S>) -> f64x8<S> {
+    pub fn at(&self, t: f64x8<S>) -> f64x8<S> {
         match self.constant {
             Some(constant) => constant,
             None => self.control.extinction(t),

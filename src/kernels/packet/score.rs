@@ -1,18 +1,18 @@
 //! The packet kernel of the walk that next-flight estimators share.
 //!
-//! Specification: draw j is, bit for bit, the draw that [`crate::estimators::scoring::walk`] makes from
+//! Specification: draw j is, bit for bit, the draw that [`crate::kernels::scoring::walk`] makes from
 //! stream j mod 16.
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
-use crate::estimators::Setup;
-use crate::estimators::packet::event_queue::{Reader, Row};
-use crate::estimators::scoring::{Score, Share};
+use crate::kernels::packet::event_queue::{Reader, Row};
+use crate::kernels::scoring::{Score, Share};
 use crate::media::course::{Course, Even};
 use crate::media::{Lookups, even};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
+use crate::setup::Setup;
 
 /// The draws of a next-flight estimator, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or σ̂ is not constant.

@@ -6,13 +6,13 @@
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, pays, run};
-use crate::estimators::Setup;
-use crate::estimators::packet::event_queue::{Reader, Row};
+use crate::kernels::packet::event_queue::{Reader, Row};
 use crate::media::course::{Course, Even, Pieces};
 use crate::media::{Control, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
+use crate::setup::Setup;
 
 /// Free flights by Woodcock tracking, on the hardware of a level, or handed back where one draw after the
 /// other is faster.

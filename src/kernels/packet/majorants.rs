@@ -6,11 +6,11 @@
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::{Ends, Numbers, Request, Walks, ends, run};
-use crate::estimators::Setup;
-use crate::estimators::packet::event_queue::{Reader, Row};
+use crate::kernels::packet::event_queue::{Reader, Row};
 use crate::media::Lookups;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{self, Lane};
+use crate::setup::Setup;
 
 /// The draws of local-majorant tracking, on the hardware of a level; a request is handed back where the
 /// hardware is too narrow or no segment has an extinction.

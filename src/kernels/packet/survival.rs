@@ -11,8 +11,8 @@ use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 
 use super::product::{Site, met};
 use super::{Ends, Numbers, Walks, ends};
-use crate::estimators::packet::event_queue::{Reader, Row};
-use crate::estimators::walk::Invariant;
+use crate::kernels::packet::event_queue::{Reader, Row};
+use crate::kernels::walk::Invariant;
 use crate::media::Course;
 use crate::numeric::Lane;
 use crate::theory::rules::Collision;

@@ -42,7 +42,7 @@ pub use score::score;
 const MOST_PIECES: usize = 8;
 
 /// Whether packets are faster than one draw after the other.
-pub(super) fn pays(medium: &Lookups, sampling: &Piecewise, control: &Control) -> bool {
+pub fn pays(medium: &Lookups, sampling: &Piecewise, control: &Control) -> bool {
     let controls = if let Control::Pieces(pieces) = control { pieces.count() } else { 0 };
     let few = sampling.count() <= MOST_PIECES && controls <= MOST_PIECES;
     medium.is_costly() || sampling.even().is_some() || few

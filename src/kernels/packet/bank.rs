@@ -13,7 +13,7 @@
 use fearless_simd::{Simd, f64x8, u64x8};
 
 use super::Request;
-use crate::estimators::DrawBuffer;
+use crate::kernels::DrawBuffer;
 use crate::media::Lookups;
 use crate::numeric::Twin;
 use crate::numeric::pack::WIDTH;

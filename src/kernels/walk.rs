@@ -16,10 +16,11 @@
 //! X(S) + Σᵢ X(tᵢ⁻)(1 − (1 − rᵢ)/qᵢ) = T_c
 //! ```
 
-use super::{Draw, Setup};
+use super::Draw;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
 use crate::rng::Stream;
+use crate::setup::Setup;
 use crate::theory::rules::{Collision, Met};
 
 /// Walks to the end of the support or of the particle.

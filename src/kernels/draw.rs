@@ -1,0 +1,90 @@
+//! Draws, one by one and in a buffer.
+
+/// One realisation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Draw<V = [f64; 1]> {
+    /// The value, one number per channel.
+    pub value: V,
+    /// How many times σ_t was evaluated.
+    pub lookups: u32,
+    /// By how much the draw breaks a law that holds for every single draw, relative to what the law
+    /// is about: rounding where all is well, and 0 where there is no such law.
+    pub defect: f64,
+}
+
+impl<V> Draw<V> {
+    /// A draw of an estimator without a law that holds draw by draw.
+    #[inline(always)]
+    pub fn free(value: V, lookups: u32) -> Self {
+        Self { value, lookups, defect: 0.0 }
+    }
+}
+
+/// A buffer of draws: one array per channel, one for the lookups, one for the defects.
+#[derive(Debug, Clone, Default)]
+pub struct DrawBuffer {
+    /// `values[channel][draw]`.
+    pub values: Vec<Vec<f64>>,
+    /// `lookups[draw]`.
+    pub lookups: Vec<u32>,
+    /// `defects[draw]`, see [`Draw::defect`].
+    pub defects: Vec<f64>,
+}
+
+impl DrawBuffer {
+    /// How many draws of one channel a buffer holds: with what a question makes of them half a mebibyte, small
+    /// enough for most second-level caches, and so many that the lanes of a packet seldom wait for the slowest.
+    pub const LENGTH: usize = 16_384;
+
+    /// The fewest, however many channels.
+    const LEAST: usize = Self::LENGTH / 4;
+
+    /// An empty buffer for draws of the given number of channels.
+    pub fn new(channels: usize) -> Self {
+        Self { values: vec![Vec::new(); channels], lookups: Vec::new(), defects: Vec::new() }
+    }
+
+    /// How many draws of so many channels a buffer is to be filled with.
+    pub fn length(channels: usize) -> usize {
+        (Self::LENGTH / channels.next_power_of_two()).max(Self::LEAST)
+    }
+
+    /// For draws of so many channels from now on.
+    pub fn set_channels(&mut self, channels: usize) {
+        self.values.resize_with(channels, Vec::new);
+    }
+
+    /// Removes the draws.
+    pub fn clear(&mut self) {
+        self.values.iter_mut().for_each(Vec::clear);
+        self.lookups.clear();
+        self.defects.clear();
+    }
+
+    /// Adds a draw.
+    #[inline]
+    pub fn push<V: AsRef<[f64]>>(&mut self, draw: &Draw<V>) {
+        for (channel, &value) in self.values.iter_mut().zip(draw.value.as_ref()) {
+            channel.push(value);
+        }
+        self.lookups.push(draw.lookups);
+        self.defects.push(draw.defect);
+    }
+}
+
+impl DrawBuffer {
+    /// Makes room for exactly so many draws of one channel, and hands out values, lookups and
+    /// defects to be written anew; `None` where a draw has no channel.
+    pub fn one_channel(&mut self, count: usize) -> Option<(&mut [f64], &mut [u32], &mut [f64])> {
+        self.make_room(count);
+        let values = self.values.first_mut()?;
+        Some((values, &mut self.lookups, &mut self.defects))
+    }
+
+    /// Makes room for exactly so many draws, to be written anew.
+    pub fn make_room(&mut self, count: usize) {
+        self.values.iter_mut().for_each(|channel| channel.resize(count, 0.0));
+        self.lookups.resize(count, 0);
+        self.defects.resize(count, 0.0);
+    }
+}

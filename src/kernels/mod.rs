@@ -1,0 +1,14 @@
+//! Kernels: loops that make draws, whatever the estimator. Floor 4.
+//!
+//! [`walk`] and [`scoring`] go from collision to collision, one draw at a time; [`packet`] lets sixteen of these walks fly,
+//! look up and collide together, and is the particle bank of walks that take as many random numbers as they need;
+//! [`order_free`] takes all walks of a request through one collision after the other. What happens at a collision is
+//! the estimator's.
+
+pub mod draw;
+pub mod order_free;
+pub mod packet;
+pub mod scoring;
+pub mod walk;
+
+pub use draw::{Draw, DrawBuffer};
