@@ -21,7 +21,7 @@ use crate::theory::particle::Event;
 
 /// The steps of a walk that a known bug may replace.
 pub trait Steps {
-    /// What an event multiplies f by in a channel: the ratio σ_t/σ̂, the albedo, and the density of the new
+    /// What an event multiplies f by in a channel: the ratio `σ_t/σ̂`, the albedo, and the density of the new
     /// direction are those of this channel.
     #[inline(always)]
     fn factor(&self, event: Event, ratio: f64, albedo: f64, density: f64) -> f64 {
@@ -95,7 +95,7 @@ pub fn walk(
     }
 }
 
-/// σ_t/σ̂ of each channel at a place.
+/// `σ_t/σ̂` of each channel at a place.
 #[inline(always)]
 fn ratios(
     steps: &impl Steps,
