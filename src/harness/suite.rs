@@ -71,6 +71,10 @@ const CASES: BuiltIn = cases![
     "lambertian/magnet-cells",
     "infinite-medium/magnet",
     "sphere/magnet",
+    "sphere/magnet-paths",
+    "sphere/techniques",
+    "sphere/techniques-homogeneous",
+    "sphere/techniques-lamp",
     "sphere/environment",
     "bidirectional-rod/magnet",
 ];

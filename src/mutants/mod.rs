@@ -38,6 +38,7 @@ pub mod spectral_lit_rod;
 pub mod spectral_rod;
 pub mod spectral_single_scattering;
 pub mod sphere;
+pub mod sphere_paths;
 pub mod streams;
 pub mod target;
 pub mod tracking;
@@ -170,7 +171,7 @@ mutable! {
     InfiniteMedium: space::in_infinite_medium();
     Slab: slab::mutants();
     SpectralSlab: spectral_rod::in_slab();
-    Sphere: sphere::mutants();
+    Sphere: sphere::mutants(), sphere_paths::mutants();
     BidirectionalRod: bidirectional_rod::mutants();
 }
 

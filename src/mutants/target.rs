@@ -156,6 +156,22 @@ pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ra
 pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
 /// The same ball in an environment.
 pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");
+/// A black light sphere in a ball that thins out, by directions.
+pub const SPHERE_DIRECTIONAL: Target =
+    on("sphere/magnet-paths", 0, "directional-mis (analog, delta shadow 2.5)");
+/// The same by null-scattering paths.
+pub const SPHERE_FULL: Target = on("sphere/magnet-paths", 1, "full-mis (analog, ratio shadow)");
+/// The same, the power heuristic.
+pub const SPHERE_POWER: Target =
+    on("sphere/magnet-paths", 2, "full-mis (analog, ratio shadow, power)");
+/// The same, with connections.
+pub const SPHERE_BIDIRECTIONAL: Target =
+    on("sphere/magnet-paths", 3, "bidirectional (independent subpaths)");
+/// In an environment, by null-scattering paths.
+pub const SPHERE_FULL_SKY: Target = on("sphere/techniques", 3, "full-mis (analog, ratio shadow)");
+/// The same with connections.
+pub const SPHERE_BIDIRECTIONAL_SKY: Target =
+    on("sphere/techniques", 6, "bidirectional (independent subpaths)");
 /// Three layers in three channels, one channel a draw.
 pub const SPECTRAL_INDEPENDENT: Target =
     on("spectral-transmittance/layers", 0, "independent (delta)");

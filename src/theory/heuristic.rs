@@ -43,4 +43,38 @@ impl Heuristic {
             Self::Power => (own * own + other * other) / own,
         }
     }
+
+    /// The weight of one of several techniques, by the densities of all of them for the same path, in any unit. Its
+    /// own is positive.
+    #[inline(always)]
+    pub fn weight<L: Lane, const N: usize>(self, own: usize, densities: [L; N]) -> L {
+        let one = densities[own].each(1.0);
+        let mut sum = one;
+        for (technique, density) in densities.into_iter().enumerate() {
+            // A density beyond all numbers is so beside its own.
+            if technique != own {
+                sum = sum + self.raised(density / densities[own]);
+            }
+        }
+        one / sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_of_all_techniques_sum_to_one() {
+        for heuristic in [Heuristic::Balance, Heuristic::Power] {
+            for densities in [[1.0, 3.0, 0.25], [0.0, 2.0, 7.0], [1.0, 1.0, 0.0]] {
+                let own = (0..3).filter(|&own| densities[own] > 0.0);
+                let sum: f64 = own.map(|own| heuristic.weight(own, densities)).sum();
+                assert!((sum - 1.0).abs() < 1e-15);
+            }
+            assert_eq!(heuristic.weight(0, [1.0, f64::INFINITY]), 0.0);
+            assert_eq!(heuristic.weight(1, [1.0, f64::INFINITY]), 1.0);
+        }
+        assert!((Heuristic::Power.weight(1, [1.0, 3.0]) - 0.9).abs() < 1e-15);
+    }
 }

@@ -41,6 +41,7 @@ mod spectral_furnace;
 mod spectral_lit_rod;
 mod spectral_single_scattering;
 mod sphere;
+mod sphere_techniques;
 mod stress;
 mod threads;
 mod value_stability;

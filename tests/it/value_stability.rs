@@ -13,7 +13,7 @@ use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
     BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Rod, Slab,
-    SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance, Transmittance,
+    SpectralLitRod, SpectralRod, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
     TransmittanceCurve,
 };
 
@@ -228,12 +228,17 @@ fn balls() -> Vec<Case> {
         text(
             "environment = {}",
             "{ particle.rule = \"analog\" }, { particle.rule = \"non-terminating\" },
-            { next-event = { rule = \"weighted\", shadow.ratio = { sampling = 2, control = 1 } } }",
+            { next-event = { rule = \"weighted\", shadow.ratio = { sampling = 2, control = 1 } } },
+            { full-mis = { rule = \"non-terminating\", heuristic = \"power\" } },
+            { bidirectional.subpaths = \"shared\" }",
         ),
         text(
             "black-sphere.radius = 0.5",
             "{ particle.rule = \"weighted\" },
-            { next-event = { rule = \"analog\", shadow.delta = { sampling = 2 } } }",
+            { next-event = { rule = \"analog\", shadow.delta = { sampling = 2 } } },
+            { directional-mis = { rule = \"analog\", shadow.delta = { sampling = 2 } } },
+            { full-mis = { rule = \"analog\", sampling.local-majorants.grid = [3, 3, 3] } },
+            { bidirectional = {} }",
         ),
     ]
 }
@@ -347,6 +352,7 @@ fn every_estimator_of_the_catalogue_is_there() {
         (Furnace::CATALOGUE, ["furnace", "furnace"]),
         (Lambertian::CATALOGUE, ["lambertian", "lambertian"]),
         (InfiniteMedium::CATALOGUE, ["infinite-medium", "infinite-medium"]),
+        (Sphere::CATALOGUE, ["ball-envir", "ball-black"]),
         (BidirectionalRod::CATALOGUE, ["bidirectional-rod", "bidirectional-rod"]),
     ] {
         for page in pages {

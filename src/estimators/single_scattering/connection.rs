@@ -218,6 +218,11 @@ pub fn shadow(
     transmittance(problem.volume(), &ray, inside, tracking, rng)
 }
 
+/// The transmittance of a stretch of a ray within the bounds of a volume, in closed form.
+pub fn exact(volume: &Volume, ray: &Ray, inside: Span) -> f64 {
+    Lane::exp(-volume.along(ray, inside).optical_depth(inside).value)
+}
+
 /// The transmittance of a stretch of a ray within the bounds of a volume, and its lookups.
 pub fn transmittance(
     volume: &Volume,
@@ -227,10 +232,7 @@ pub fn transmittance(
     rng: &mut Stream,
 ) -> (f64, u32) {
     let (sampling, control) = match tracking {
-        Tracking::Exact => {
-            let profile = volume.along(ray, inside);
-            return (Lane::exp(-profile.optical_depth(inside).value), 0);
-        }
+        Tracking::Exact => return (exact(volume, ray, inside), 0),
         Tracking::Ratio { sampling, control } => (sampling, Some(control)),
         Tracking::Delta { sampling } => (sampling, None),
     };

@@ -6,6 +6,7 @@ mod grazing;
 mod pack;
 pub mod packet;
 pub mod particle;
+pub mod segment;
 pub mod shadow;
 pub mod tally;
 pub mod walk;

@@ -122,7 +122,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
             let numbers = &mut self.numbers;
             let found = self.shadows.collide(rays, numbers, (place, casts & inside), extinction);
-            world.tally.lit(&mut self.sums, found);
+            world.tally.lit(&mut self.sums, found, self.shadows.through);
             self.lit = found.0;
         }
         let (inside, left) =
@@ -172,13 +172,14 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             (if begins_turned { sets_out } else { self.scattered }, sets_out);
         if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
             let zero = self.weight.each(0.0);
+            world.tally.scattered(&mut self.sums, turns, self.flights.origin);
             let is_nothing = self.weight.at_most(zero) & zero.at_most(self.weight);
             let casts = turns & !is_nothing;
             if casts.to_bitmask() != 0 {
                 let origin = self.flights.origin;
                 let light = world.tally.light(&mut self.numbers, casts, origin);
                 let found = self.shadows.cast(rays, casts, &light, (origin, self.weight));
-                world.tally.lit(&mut self.sums, found);
+                world.tally.lit(&mut self.sums, found, zero.each(1.0));
             }
             turns = (turns | self.lit) & !self.shadows.on;
             sets_out = (sets_out | self.lit) & !self.shadows.on;

@@ -51,7 +51,8 @@ pub struct Shadows<S: Simd> {
     direction: Points<S>,
     t: f64x8<S>,
     end: f64x8<S>,
-    through: f64x8<S>,
+    /// T̂ so far, where it is tracked.
+    pub through: f64x8<S>,
     /// The weight times what the light is worth.
     worth: f64x8<S>,
 }

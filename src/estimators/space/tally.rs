@@ -104,10 +104,16 @@ pub trait Tally<const SUMS: usize> {
         Light { direction: place, share: nothing, distance: nothing }
     }
 
-    /// Shadow rays found light.
+    /// Those that a mask names are scattered at places, or begin there as if they were.
     #[inline(always)]
-    fn lit<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], found: Found<S>) {
-        let _ = (sums, found);
+    fn scattered<L: Lane>(&self, sums: &mut [L; SUMS], which: L::Mask, place: [L; 3]) {
+        let _ = (sums, which, place);
+    }
+
+    /// Shadow rays found light through tracked transmittances.
+    #[inline(always)]
+    fn lit<S: Simd>(&self, sums: &mut [f64x8<S>; SUMS], found: Found<S>, through: f64x8<S>) {
+        let _ = (sums, found, through);
     }
 
     /// Which sum each channel of a draw is.

@@ -104,6 +104,61 @@ pub fn light<L: Lane>(
     }
 }
 
+/// A shadow ray.
+#[derive(Debug, Clone, Copy)]
+pub struct ShadowRay {
+    /// What its light is worth without a medium.
+    pub share: f64,
+    /// From where, and where to.
+    pub ray: Ray,
+    /// Where on it the medium is.
+    pub inside: Span,
+}
+
+impl ShadowRay {
+    /// From a place to a light that is chosen by uniform numbers.
+    pub fn cast(sphere: &Sphere, connect: &dyn Connect, place: Point, rng: &mut Stream) -> Self {
+        let shadow::Light { direction, mut share, distance } =
+            light(sphere, place.0, || rng.uniform());
+        if let Light::BlackSphere(core) = sphere.light {
+            share = connect.share(core, (sphere.centre - place).norm());
+        }
+        let ray = Ray { origin: place, direction: Point(direction), length: f64::INFINITY };
+        let within = sphere.scene.volume.bounds().clip(&ray);
+        Self { share, ray, inside: connect.reach(within, distance) }
+    }
+
+    /// What comes through the medium, and the lookups that it takes to know.
+    pub fn transmittance(&self, sphere: &Sphere, shadow: Tracking, rng: &mut Stream) -> (f64, u32) {
+        if self.inside.is_empty() {
+            return (1.0, 0);
+        }
+        connection::transmittance(&*sphere.scene.volume, &self.ray, self.inside, shadow, rng)
+    }
+}
+
+/// Whether a walk that left at a place has met the light.
+pub fn is_met(sphere: &Sphere, at: Point) -> bool {
+    match sphere.light {
+        Light::Environment => true,
+        Light::Distant(_) => false,
+        Light::BlackSphere(core) => {
+            let middle = 0.5 * (core + sphere.radius);
+            (at - sphere.centre).norm() < middle
+        }
+    }
+}
+
+/// What finds light along a walk.
+pub trait Finder: Sink {
+    /// The walk begins: at a place whose mean intensity is sought, in a direction of any odds alike, or else along a
+    /// ray. Answers how many lookups it took what is estimated from there.
+    fn begin(&mut self, sought: Option<Point>, rng: &mut Stream) -> u32;
+
+    /// What it has found.
+    fn found(&self) -> f64;
+}
+
 /// A walk that looks for light.
 pub struct Seeker<'a> {
     sphere: &'a Sphere,
@@ -117,17 +172,6 @@ impl<'a> Seeker<'a> {
         Self { sphere, connect, found: 0.0 }
     }
 
-    /// What it has found.
-    pub fn found(&self) -> f64 {
-        self.found
-    }
-
-    /// The shadow ray of a point whose mean intensity is sought, and its lookups.
-    pub fn look_around(&mut self, place: Point, rng: &mut Stream) -> u32 {
-        let Some((connect, shadow)) = self.connect else { return 0 };
-        self.cast(connect, shadow, (place, 1.0), rng)
-    }
-
     /// Casts a shadow ray from a place with a weight.
     fn cast(
         &mut self,
@@ -139,23 +183,21 @@ impl<'a> Seeker<'a> {
         if weight == 0.0 {
             return 0;
         }
-        let sphere = self.sphere;
-        let shadow::Light { direction, mut share, distance } =
-            light(sphere, place.0, || rng.uniform());
-        if let Light::BlackSphere(core) = sphere.light {
-            share = connect.share(core, (sphere.centre - place).norm());
-        }
-        let ray = Ray { origin: place, direction: Point(direction), length: f64::INFINITY };
-        let within = sphere.scene.volume.bounds().clip(&ray);
-        let inside = connect.reach(within, distance);
-        if inside.is_empty() {
-            self.found += weight * share;
-            return 0;
-        }
-        let volume = &sphere.scene.volume;
-        let (through, lookups) = connection::transmittance(&**volume, &ray, inside, shadow, rng);
-        self.found += weight * share * through;
+        let ray = ShadowRay::cast(self.sphere, connect, place, rng);
+        let (through, lookups) = ray.transmittance(self.sphere, shadow, rng);
+        self.found += weight * ray.share * through;
         lookups
+    }
+}
+
+impl Finder for Seeker<'_> {
+    fn begin(&mut self, sought: Option<Point>, rng: &mut Stream) -> u32 {
+        let (Some(place), Some((connect, shadow))) = (sought, self.connect) else { return 0 };
+        self.cast(connect, shadow, (place, 1.0), rng)
+    }
+
+    fn found(&self) -> f64 {
+        self.found
     }
 }
 
@@ -167,14 +209,6 @@ impl Sink for Seeker<'_> {
     }
 
     fn escaped(&mut self, at: Point, _: Point, weight: f64, order: u32) {
-        let is_light = match self.sphere.light {
-            Light::Environment => true,
-            Light::Distant(_) => false,
-            Light::BlackSphere(core) => {
-                let middle = 0.5 * (core + self.sphere.radius);
-                (at - self.sphere.centre).norm() < middle
-            }
-        };
         let counts = match self.connect {
             None => true,
             Some((connect, _)) => {
@@ -182,7 +216,7 @@ impl Sink for Seeker<'_> {
                 connect.counts(order + u32::from(is_point))
             }
         };
-        if is_light && counts {
+        if counts && is_met(self.sphere, at) {
             self.found += weight;
         }
     }

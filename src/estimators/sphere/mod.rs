@@ -1,8 +1,14 @@
 //! Walks from an eye in or before a ball to its light.
 
+pub mod bidirectional;
+pub mod combined;
 pub mod connect;
+pub mod directional_mis;
+pub mod emission;
+pub mod full_mis;
 pub mod next_event;
 mod packet;
+pub mod page;
 pub mod particle;
 
 use fearless_simd::Level;
@@ -19,10 +25,14 @@ use crate::problems::Sphere;
 use crate::problems::sphere::{Light, Sought};
 use crate::rng::Stream;
 use crate::theory::single::Tracking;
-use crate::theory::sphere::{Answer, Lights, Observable, Scene, Spread, cached};
+use crate::theory::sphere::{
+    Answer, Lights, Observable, Scene, Spread, Spreads, Techniques, cached,
+};
 use crate::theory::{Channel, Law, Moments, Odds, ParticleRule, Prediction, Tails};
 
-pub use connect::{Connect, Honest, Seeker};
+pub use connect::{Connect, Finder, Honest, Seeker};
+pub use page::Page;
+use page::pages;
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
 pub const BLURRED: f64 = 1e-4;
@@ -150,7 +160,9 @@ fn connected(setup: &Setup<Sphere>, particle: &Particle, shadow: Tracking) -> Re
 /// No answer: what is refused is not predicted.
 const UNKNOWN: Answer = Answer {
     value: Known { value: f64::NAN, error: f64::INFINITY },
-    spread: Spread { unscattered: f64::NAN, lit: f64::NAN, crossed: f64::NAN },
+    spreads: Spreads(
+        [Spread { unscattered: f64::NAN, lit: f64::NAN, rest: f64::NAN }; Techniques::ALL.len()],
+    ),
 };
 
 fn prediction(value: Known, square: f64) -> Prediction {
@@ -171,10 +183,18 @@ fn all_or_nothing(value: Known) -> Prediction {
     Prediction { law, ..Prediction::uncounted(channel) }
 }
 
-/// Next-event estimation.
-fn predict_connected(setup: &Setup<Sphere>, shadow: Tracking) -> Prediction {
+/// Techniques together, with shadow rays that are tracked somehow.
+fn predict_together(setup: &Setup<Sphere>, techniques: Techniques, shadow: Tracking) -> Prediction {
     let answer = truth(&setup.problem).unwrap_or(UNKNOWN);
-    prediction(answer.value, answer.spread.square(gain_in(&setup.problem, shadow)))
+    let spread = answer.spreads.of(techniques);
+    prediction(answer.value, spread.square(gain_in(&setup.problem, shadow)))
+}
+
+/// The same where nobody knows the variance: that of pilot draws stands in for it.
+fn predict_by_pilots(setup: &Setup<Sphere>) -> Prediction {
+    let value = truth(&setup.problem).unwrap_or(UNKNOWN).value;
+    let channel = Channel::unbiased(value, None, Tails::LIGHT);
+    Prediction::uncounted(Channel { by_pilots: true, ..channel })
 }
 
 /// A particle that a black sphere stops.
@@ -223,21 +243,30 @@ pub fn draw_by(
     setup: &Setup<Sphere>,
     rng: &mut Stream,
 ) -> Draw {
-    let sphere = &*setup.problem;
     let Some(majorants) = setup.space.as_deref() else { return Draw::free([f64::NAN], 0) };
-    let mut seeker = Seeker::new(sphere, connect);
-    let (place, mut lookups) = (sphere.entry(), 0);
-    let direction = match sphere.sought {
-        Sought::Radiance => sphere.direction(),
-        Sought::MeanIntensity => {
-            lookups += seeker.look_around(place, rng);
-            frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
-        }
+    let mut seeker = Seeker::new(&setup.problem, connect);
+    find(particle, &mut seeker, (&setup.problem, majorants), rng)
+}
+
+/// Makes a draw of what finds light along a walk through σ̂.
+fn find(
+    particle: &Particle,
+    finder: &mut impl Finder,
+    (sphere, majorants): (&Sphere, &Majorants),
+    rng: &mut Stream,
+) -> Draw {
+    let place = sphere.entry();
+    let is_point = sphere.sought == Sought::MeanIntensity;
+    let mut lookups = finder.begin(is_point.then_some(place), rng);
+    let direction = if is_point {
+        frame::turned(Point([0.0, 0.0, 1.0]), 2.0 * rng.uniform() - 1.0, rng.uniform())
+    } else {
+        sphere.direction()
     };
     let steps = Stopped { particle, core: core(sphere) };
     let start = Start { place, direction, weight: 1.0 };
-    lookups += space::walk(By::Steps(&steps), &sphere.scene, majorants, start, &mut seeker, rng);
-    Draw::free([seeker.found()], lookups)
+    lookups += space::walk(By::Steps(&steps), &sphere.scene, majorants, start, finder, rng);
+    Draw::free([finder.found()], lookups)
 }
 
 impl Walked for Sphere {
@@ -285,6 +314,9 @@ estimators! {
     Sphere:
     particle::Walker,
     next_event::NextEvent,
+    directional_mis::DirectionalMis,
+    full_mis::FullMis,
+    bidirectional::Bidirectional,
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.3; J. Novák, A. Selle, W. Jarosz,
 //! *Residual ratio tracking for estimating attenuation in participating media*, ACM Transactions on
-//! Graphics 33 (2014). The bound is derived in `theory/sphere/mod.rs`.
+//! Graphics 33 (2014). The bound is derived in `theory/sphere/spread.rs`.
 
 use fearless_simd::Level;
 
@@ -36,6 +36,7 @@ use crate::problems::Sphere;
 use crate::rng::Stream;
 use crate::theory::Prediction;
 use crate::theory::single::Tracking;
+use crate::theory::sphere::Techniques;
 
 /// A walk with shadow rays.
 #[derive(Debug, Clone)]
@@ -63,7 +64,7 @@ impl Estimator<Sphere> for NextEvent {
     }
 
     fn predict(&self, setup: &Setup<Sphere>) -> Prediction {
-        super::predict_connected(setup, self.shadow)
+        super::predict_together(setup, Techniques::NextEvent, self.shadow)
     }
 
     #[inline]

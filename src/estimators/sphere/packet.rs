@@ -1,15 +1,18 @@
 //! Walks from an eye to its light by packets: what they begin with, and what they find.
 //!
-//! Specification: draw j is, bit for bit, the draw that [`super::draw_by`] makes from stream j mod 16.
+//! Specification: draw j is, bit for bit, the draw that [`super::draw_by`], or [`Page::draw`], makes from stream
+//! j mod 16.
 
 use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
-use super::connect::{UP, light};
+use super::Page;
+use super::combined::Sharing;
+use super::connect::{UP, cone, light};
 use crate::estimators::Setup;
-use crate::estimators::space::exit::{Points, splat};
+use crate::estimators::space::exit::{Points, dot, splat};
 use crate::estimators::space::packet::walks;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays};
-use crate::estimators::space::tally::{Departure, add_where};
+use crate::estimators::space::tally::{Collision, Departure, add_where};
 use crate::estimators::space::{Particle, Tally};
 use crate::geometry::{Bounds, Point};
 use crate::kernels::packet::Request;
@@ -17,7 +20,9 @@ use crate::kernels::packet::bank::Numbers;
 use crate::numeric::Lane;
 use crate::problems::Sphere;
 use crate::problems::sphere::{self, Sought};
+use crate::theory::lit_rod::Densities;
 use crate::theory::single::Tracking;
+use crate::theory::{Heuristic, ParticleRule};
 
 /// Whether particles that have left have met the light.
 #[inline(always)]
@@ -94,13 +99,140 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
     }
 
     #[inline(always)]
-    fn lit<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], (which, light): Found<S>) {
+    fn lit<S: Simd>(&self, [found]: &mut [f64x8<S>; 1], (which, light): Found<S>, _: f64x8<S>) {
         add_where(found, which, light);
     }
 
     fn channels(&self) -> &[usize] {
         &[0]
     }
+}
+
+/// Walks whose hits and shadow rays share what they find: the light, q where a walk was scattered last, and the chance
+/// of the null collisions since.
+struct Sharers<'a> {
+    seekers: Seekers<'a, true>,
+    rule: ParticleRule,
+    densities: Densities,
+    heuristic: Heuristic,
+}
+
+impl Sharers<'_> {
+    /// The densities of a hit and of a shadow ray.
+    #[inline(always)]
+    fn densities<L: Lane>(&self, share: L, chance: L) -> [L; 2] {
+        let is_full = self.densities == Densities::Full;
+        let chance = if is_full { chance } else { chance.each(1.0) };
+        let is_distant = matches!(self.seekers.sphere.light, sphere::Light::Distant(_));
+        let hit = share.each(if is_distant { 0.0 } else { 1.0 });
+        [hit, share.each(1.0) / (share * chance)]
+    }
+}
+
+impl Tally<3> for Sharers<'_> {
+    const CASTS: bool = true;
+
+    #[inline(always)]
+    fn begin<S: Simd>(
+        &self,
+        simd: S,
+        numbers: &mut Numbers<S>,
+        which: mask64x8<S>,
+    ) -> [Points<S>; 2] {
+        self.seekers.begin(simd, numbers, which)
+    }
+
+    fn begins_turned(&self) -> bool {
+        self.seekers.begins_turned()
+    }
+
+    #[inline(always)]
+    fn collided<L: Lane>(&self, [_, _, chance]: &mut [L; 3], at: &Collision<L>) {
+        if self.densities == Densities::Full {
+            let passed = *chance * self.rule.odds(at.ratio, at.albedo).transmit;
+            *chance = L::select(at.inside, passed, *chance);
+        }
+    }
+
+    #[inline(always)]
+    fn scattered<L: Lane>(
+        &self,
+        [_, share, chance]: &mut [L; 3],
+        which: L::Mask,
+        [x, y, z]: [L; 3],
+    ) {
+        let (Sphere { centre: Point([a, b, c]), light, .. }, one) =
+            (self.seekers.sphere, x.each(1.0));
+        let seen = match *light {
+            sphere::Light::BlackSphere(core) => {
+                let [x, y, z] = [one.each(*a) - x, one.each(*b) - y, one.each(*c) - z];
+                cone(core, dot([x, y, z], [x, y, z]).root()) * 0.5
+            }
+            sphere::Light::Environment | sphere::Light::Distant(_) => one,
+        };
+        *share = L::select(which, seen, *share);
+        *chance = L::select(which, one, *chance);
+    }
+
+    /// What was never scattered can be hit only.
+    #[inline(always)]
+    fn escaped<L: Lane>(&self, [found, share, chance]: &mut [L; 3], at: &Departure<L>) {
+        let one = at.weight.each(1.0);
+        let weight = self.heuristic.weight(0, self.densities(*share, *chance));
+        let weight = match self.seekers.sphere.sought {
+            Sought::Radiance => L::select(at.unscattered, one, weight),
+            Sought::MeanIntensity => weight,
+        };
+        add_where(found, meets_light(self.seekers.sphere, at), at.weight * weight);
+    }
+
+    fn core(&self) -> Option<(Point, f64)> {
+        self.seekers.core()
+    }
+
+    fn shadow_rays(&self) -> Option<ShadowRays<'_>> {
+        self.seekers.shadow_rays()
+    }
+
+    #[inline(always)]
+    fn light<S: Simd>(
+        &self,
+        numbers: &mut Numbers<S>,
+        which: mask64x8<S>,
+        place: Points<S>,
+    ) -> Light<f64x8<S>> {
+        self.seekers.light(numbers, which, place)
+    }
+
+    #[inline(always)]
+    fn lit<S: Simd>(
+        &self,
+        [found, share, _]: &mut [f64x8<S>; 3],
+        (which, light): Found<S>,
+        through: f64x8<S>,
+    ) {
+        let weight = self.heuristic.weight(1, self.densities(*share, through));
+        add_where(found, which, light * weight);
+    }
+
+    fn channels(&self) -> &[usize] {
+        &[0]
+    }
+}
+
+/// Makes draws by packets that share what hits and shadow rays of some tracking find.
+pub(super) fn share_by_packets<'a>(
+    level: Level,
+    page: &Page,
+    shadow: Tracking,
+    setup: &Setup<Sphere>,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let sphere = &*setup.problem;
+    let Sharing { densities, heuristic, .. } = page.sharing;
+    let (seekers, rule) = (Seekers { sphere, shadow }, page.particle.rule);
+    let sharers = Sharers { seekers, rule, densities, heuristic };
+    walks(level, &sharers, &page.particle, (&sphere.scene, setup.space.as_ref()), request)
 }
 
 /// Makes draws by packets, without shadow rays or with them.

@@ -2,7 +2,7 @@
 
 use super::ball::Ball;
 use super::shells::Resolution;
-use super::{Lights, Observable, Spread, centre_of, solved};
+use super::{Lights, Observable, Spreads, centre_of, solved};
 use crate::numeric::Known;
 use crate::theory::memo::Memo;
 
@@ -28,8 +28,8 @@ pub struct Scene {
 pub struct Answer {
     /// The value.
     pub value: Known,
-    /// How far draws of next-event estimation stray from it.
-    pub spread: Spread,
+    /// How far draws stray from it.
+    pub spreads: Spreads,
 }
 
 static ANSWERS: Memo<Vec<u64>, Option<Answer>> = Memo::new(1024);
@@ -58,7 +58,7 @@ impl Scene {
         let resolution = Resolution::COARSE.about(centre, self.radius);
         let solved = solved(&ball, self.albedo, self.lights, resolution)?;
         let value = resolution.known(solved.each_ref().map(|s| s.answer(self.observable)));
-        Some(Answer { value, spread: solved[0].spread(self.observable, self.is_distant)? })
+        Some(Answer { value, spreads: solved[0].spreads(self.observable, self.is_distant)? })
     }
 }
 

@@ -24,6 +24,7 @@ pub mod ball;
 pub mod cache;
 pub mod point;
 pub mod shells;
+pub mod spread;
 pub mod views;
 
 use crate::numeric::Known;
@@ -31,8 +32,10 @@ use crate::numeric::matrix::Matrix;
 
 use ball::Ball;
 use shells::{Centre, Resolution, Row, Rules, Shells};
+use spread::Vertex;
 
 pub use cache::{Answer, Scene, cached};
+pub use spread::{Spread, Spreads, Techniques};
 
 /// The radiances at the ends of lines of sight.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -151,65 +154,49 @@ impl<'a> Solved<'a> {
         direct + product(&weights, &self.source)
     }
 
-    /// What bounds the square of what next-event estimation says, see [`Spread`].
-    fn spread(&self, observable: Observable, is_distant: bool) -> Option<Spread> {
-        let brightest = |r2: f64| match self.ball.centre {
+    /// What bounds the squares of what techniques say together, see [`spread`].
+    fn spreads(&self, observable: Observable, is_distant: bool) -> Option<Spreads> {
+        let share = |r2: f64| match self.ball.centre {
             Centre::Black(core) => 0.5 * (1.0 - (1.0 - core * core / r2).max(0.0).sqrt()),
             _ => 1.0,
         };
-        let crossed = |most: f64, direct: f64, all: f64| {
-            2.0 * (all - direct).max(0.0) * if is_distant { most } else { direct }
+        let largest = if matches!(self.ball.centre, Centre::Black(_)) { 0.5 } else { 1.0 };
+        let scores = |r2: f64, direct: f64, all: f64| -> Vec<f64> {
+            let all = all.max(direct);
+            let at = Vertex { share: share(r2), largest, direct, all };
+            let each = Techniques::ALL.into_iter();
+            if is_distant {
+                // Seen from one place it is seen whole or not at all; on average as often as an even one.
+                return each.flat_map(|_| [direct, 2.0 * (all - direct)]).collect();
+            }
+            each.flat_map(|techniques| techniques.scores(&at)).collect()
         };
-        let (mut lit_scores, mut crossed_scores) = (Vec::new(), Vec::new());
         let scattered = self.matrix.applied(&self.source);
-        for ((&r2, &direct), &more) in self.nodes.iter().zip(&self.direct).zip(&scattered) {
-            lit_scores.push(brightest(r2) * direct);
+        let nodes = self.nodes.iter().zip(&self.direct).zip(&scattered);
+        let mut scored = Vec::new();
+        for ((&r2, &direct), &more) in nodes {
             // The matrix has the albedo in it.
             let all = if self.albedo > 0.0 { direct + more / self.albedo } else { direct };
-            crossed_scores.push(crossed(brightest(r2), direct, all));
+            scored.extend(scores(r2, direct, all).iter().map(|score| self.albedo * score));
         }
+        let columns = 2 * Techniques::ALL.len();
+        let scored = Matrix::new(self.nodes.len(), columns, |i, j| scored[i * columns + j]);
+        let gathered = self.matrix.series_times(&scored)?;
         let (direct, weights) = self.arriving(observable);
-        let lit = product(&weights, &self.gathered(&lit_scores)?);
-        let more = product(&weights, &self.gathered(&crossed_scores)?);
-        let found = Spread { unscattered: 0.0, lit, crossed: more };
-        Some(match observable {
-            Observable::Radiance { .. } => Spread { unscattered: direct, ..found },
-            Observable::Mean(r) => {
-                let (most, all) = (brightest(r * r), direct + product(&weights, &self.source));
-                let lit = lit + most * direct;
-                Spread { lit, crossed: more + crossed(most, direct, all), ..found }
-            }
-        })
-    }
-}
-
-/// What bounds `E[X²]` of next-event estimation by walks whose weights stay in `[0, 1]`.
-///
-/// With h what a shadow ray brings at a scattering and X' what is still to come there, in units of the
-/// weight w, `X = Σ w h` and
-///
-/// ```text
-/// E[X²] = E[Σ w² (h² + 2 h̄ (X̄' − h̄))] ≤ unscattered + G lit + crossed
-/// lit = E[Σ w H h̄],   crossed = E[Σ w 2 h̄ (J − h̄)],   h̄ = J₀, H the brightest that h may be untracked
-/// ```
-///
-/// since `w² ≤ w` and, for a tracked transmittance T̂, `E[T̂²] ≤ G T`. Both sums are answers of the same
-/// equation. For walks of weight 0 or 1 and delta-tracked shadow rays, `G = 1`, both sides are equal. A
-/// distant light is not even, `h̄ ≤ H` instead of J₀.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spread {
-    /// What arrives without a scattering.
-    pub unscattered: f64,
-    /// `E[Σ w H h̄]`.
-    pub lit: f64,
-    /// `E[Σ w 2 h̄ (J − h̄)]`.
-    pub crossed: f64,
-}
-
-impl Spread {
-    /// The bound on `E[X²]`, given that on `E[T̂²]/T`.
-    pub fn square(&self, gain: f64) -> f64 {
-        self.unscattered + gain * self.lit + self.crossed
+        let mut sums = vec![0.0; columns];
+        for (i, weight) in weights.iter().enumerate() {
+            sums.iter_mut().zip(gathered.row(i)).for_each(|(sum, x)| *sum += weight * x);
+        }
+        let mut unscattered = direct;
+        if let Observable::Mean(r) = observable {
+            // The place is a vertex.
+            let all = direct + product(&weights, &self.source);
+            sums.iter_mut().zip(scores(r * r, direct, all)).for_each(|(sum, x)| *sum += x);
+            unscattered = 0.0;
+        }
+        let spread = |i: usize| Spread { unscattered, lit: sums[2 * i], rest: sums[2 * i + 1] };
+        let is_finite = sums.iter().all(|sum| sum.is_finite());
+        is_finite.then(|| Spreads(std::array::from_fn(spread)))
     }
 }
 
@@ -323,8 +310,9 @@ mod tests {
         let ball = Ball { radius: 1.0, centre: Centre::Medium, extinction: &|_| 1e-6 };
         let solved = Solved::new(&ball, 1.0, SKY, Resolution::COARSE).expect("a medium");
         let through = Observable::Radiance { offset: 0.0, from: f64::NEG_INFINITY };
-        let spread = solved.spread(through, false).expect("finite");
+        let spreads = solved.spreads(through, false).expect("finite");
+        let spread = spreads.of(Techniques::NextEvent);
         assert!((spread.square(1.0) - 1.0).abs() < 1e-10, "{spread:?}");
-        assert!((spread.lit - 2e-6).abs() < 1e-11 && spread.crossed < 1e-11);
+        assert!((spread.lit - 2e-6).abs() < 1e-11 && spread.rest < 1e-11);
     }
 }
