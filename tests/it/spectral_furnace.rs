@@ -9,7 +9,7 @@ const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
 
 #[test]
 fn every_channel_is_as_bright_as_the_walls() {
-    for (text, channels) in [(BALL, 3), (NOISE, 2)] {
+    for (text, channels) in [(BALL, 3_u8), (NOISE, 2)] {
         let rows = rows(text, 400_000);
         for row in &rows {
             assert_eq!(row.truth, Some(1.0));
@@ -17,10 +17,18 @@ fn every_channel_is_as_bright_as_the_walls() {
         }
         let of_balance = rows.iter().filter(|row| row.estimator.starts_with("spectral-mis"));
         let heroes = (text.matches("{ spectral-mis").count(), channels);
-        assert_eq!(of_balance.clone().count(), heroes.0 * heroes.1);
+        assert_eq!(of_balance.clone().count(), heroes.0 * usize::from(heroes.1));
+        // The bound of theory, 1/w − 1, is never reached: all channels score something in most walks.
         for row in of_balance {
-            let spread = row.variance.expect("drawn");
-            assert!(spread < 1.0, "{}: {spread}", row.estimator);
+            let weights: &[f64] = match row.estimator.as_str() {
+                "spectral-mis" => &[1.0 / f64::from(channels); 3],
+                "spectral-mis (hero by luminance)" => &[0.2126, 0.7152, 0.0722],
+                "spectral-mis (hero 0.8 0.2)" => &[0.8, 0.2],
+                _ => &[0.6, 0.2, 0.2],
+            };
+            let channel: usize = row.channel["channel ".len()..].parse().expect("its number");
+            let (spread, bound) = (row.variance.expect("drawn"), 1.0 / weights[channel - 1] - 1.0);
+            assert!(spread < 0.85 * bound, "{}: {spread} of {bound}", row.estimator);
         }
     }
 }
