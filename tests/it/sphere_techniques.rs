@@ -91,7 +91,7 @@ fn all_combinations_meet_the_exact_answer() {
 }
 
 #[test]
-#[ignore = "long: 78 experiments of 4e6 draws, 8 minutes of two cores"]
+#[ignore = "long: 78 experiments of 4e6 draws, 4 minutes of two cores"]
 fn all_combinations_meet_the_exact_answer_closely() {
     let (wrong, squares) = drawn(&SCENES, 4_000_000);
     none(&wrong);
