@@ -158,3 +158,10 @@ pub struct Times {
     /// Seconds of the plain loop there.
     pub plain_seconds: Vec<f64>,
 }
+
+impl Times {
+    /// TTUV, the time to unit variance: variance · seconds of a draw, the efficiency upside down.
+    pub fn ttuv(&self) -> Option<f64> {
+        self.efficiency.map(f64::recip)
+    }
+}

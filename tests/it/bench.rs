@@ -65,6 +65,7 @@ fn the_figures_of_a_row_agree_with_each_other() {
         near(times.draws_per_second, 1.0 / seconds);
         near(times.ns_per_lookup.expect("lookups"), times.ns_per_draw.median / lookups);
         near(times.efficiency.expect("a variance"), 1.0 / (variance * seconds));
+        near(times.ttuv().expect("a variance"), variance * seconds);
         near(row.fom.expect("lookups"), 1.0 / (variance * lookups));
         for (time, error) in times.seconds_to.expect("a variance").into_iter().zip(ERRORS) {
             near(time, variance / (error * truth).powi(2) * seconds);

@@ -28,6 +28,7 @@ const COLUMNS: &[Spec<BenchRow>] = &[
     ("to 1e-3", true, 2, |row| figure(row, |times| Some(time(times.seconds_to?[1])))),
     ("to 1e-4", true, 3, |row| figure(row, |times| Some(time(times.seconds_to?[2])))),
     ("1/Vt", true, 4, |row| figure(row, |times| Some(fixed(times.efficiency?, 3)))),
+    ("Vt", true, 8, |row| figure(row, |times| Some(time(times.ttuv()?)))),
     ("1/VN", true, 5, |row| row.fom.map(|fom| fixed(fom, 3)).unwrap_or_default()),
     ("speedup", true, 1, |row| spread(row, |times| Some(times.speedup), |s| fixed(s.median, 3))),
     ("least–most", true, 6, |row| spread(row, |times| Some(times.speedup), range)),

@@ -74,6 +74,7 @@ fn columns<'a>() -> Vec<Column<Joined<'a>>> {
         "seconds_to_1e-4" = |joined| joined.timed(|times| Some(times.seconds_to?[2]));
         "efficiency" = |joined| joined.timed(|times| times.efficiency);
         "reason" = |joined| &joined.row.reason;
+        "ttuv" = |joined| joined.timed(Times::ttuv);
     }
 }
 
