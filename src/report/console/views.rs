@@ -16,6 +16,9 @@ const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 /// The headings of z.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
 
+/// log₁₀ of variance · lookups, for problems with channels.
+const LTUV: &str = "lg LTUV";
+
 const RUN: &[Spec] = &[
     ("mean", true, 6, |row| digits(row.mean, 6)),
     ("z", true, 1, |row| score(row, "z_mean", row.z_mean)),
@@ -25,6 +28,7 @@ const RUN: &[Spec] = &[
     ("z_N", true, 4, |row| score(row, "z_lookups", row.z_lookups)),
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
+    (LTUV, true, 10, |row| of_channel(row, row.log10_ltuv())),
 ];
 
 const PREDICT: &[Spec] = &[
@@ -33,6 +37,7 @@ const PREDICT: &[Spec] = &[
     ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
     ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
+    (LTUV, true, 10, |row| of_channel(row, row.predicted_log10_ltuv())),
     ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
     ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
     ("best σ\u{302}", true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
@@ -113,6 +118,9 @@ pub(in crate::report) fn swept_apart(swept: Option<&str>) -> Option<&'static str
         "sampling-scale" => Some("σ\u{302} scale"),
         "albedo" => Some("albedo"),
         "points" => Some("points"),
+        "density" => Some("density"),
+        "albedo-scale" => Some("albedo scale"),
+        "contrast" => Some("contrast"),
         _ => Some("swept"),
     }
 }
@@ -177,6 +185,12 @@ fn loss(row: &Row, k: usize) -> String {
 
 fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
+}
+
+/// What is shown of problems with several channels alone, with two decimals.
+fn of_channel(row: &Row, value: Option<f64>) -> String {
+    let value = value.filter(|_| !row.channel.is_empty());
+    value.map(signed).unwrap_or_default()
 }
 
 /// A z, in parentheses where it is not to be read as normal.
