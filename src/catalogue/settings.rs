@@ -42,6 +42,11 @@ impl<'a> Settings<'a> {
         self.table.iter().find(|entry| entry.key == key)
     }
 
+    /// What the table says.
+    pub fn entries(&self) -> &'a [Entry] {
+        self.table
+    }
+
     /// Whether the file has the key.
     pub fn has(&self, key: &'static str) -> bool {
         self.entry(key).is_some()

@@ -26,7 +26,9 @@
 //! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
 //! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::addresses;
@@ -35,8 +37,8 @@ use super::options::Tolerance;
 use super::problem;
 use super::scenario::Scenario;
 use super::source::{CaseError, Source};
-use super::sweep::SweepAxis;
-use crate::catalogue::{Domain, Page, Settings};
+use super::sweep::{SweepAxis, What};
+use crate::catalogue::{Domain, Entry, Fault, Node, Page, Settings, Value, number};
 use crate::media::Body;
 use crate::problems;
 use crate::rng::{Address, name_hash};
@@ -88,24 +90,7 @@ impl Case {
             return None;
         }
         let title = root.text("title");
-        let expect_biased = read_expect(root);
-        let order = read_kernel(root);
-        let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
-        let problem = root.chosen("problem", &names).and_then(|(index, settings)| {
-            let kind = problem::kind(index);
-            let body = Body::read_for(&settings, kind.ray);
-            let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
-            let sweep = read_sweep(&settings);
-            let defaults = Defaults {
-                expect_biased: expect_biased.unwrap_or_default(),
-                order: order.unwrap_or_default(),
-                sampling: false,
-            };
-            let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
-            let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults, swept);
-            settings.close();
-            Some((names[index].clone(), scenario?, sweep?))
-        });
+        let problem = read_problem(root).and_then(|read| read.swept(root));
         let tolerance = match root.table_if("tolerance") {
             Some(settings) => read_tolerance(&settings),
             None => Some(Tolerance::default()),
@@ -117,9 +102,7 @@ impl Case {
         };
         let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
         root.close();
-        let (problem, scenario, sweep) = problem?;
-        expect_biased?;
-        order?;
+        let Problem { name: problem, scenario, sweep, .. } = problem?;
         Some(Self {
             name: source.name.clone(),
             path: source.path.clone(),
@@ -164,6 +147,90 @@ impl Case {
         }
         if errors.is_empty() { Ok(cases) } else { Err(errors) }
     }
+}
+
+/// `[problem.NAME]`, read.
+struct Problem {
+    name: String,
+    scenario: Scenario,
+    sweep: Option<SweepAxis>,
+    /// Where the sweep is written.
+    place: Range<usize>,
+}
+
+/// Reads `expect`, `kernel` and `problem`, and not what is beside them.
+fn read_problem(root: &Settings) -> Option<Problem> {
+    let (expect_biased, order) = (read_expect(root), read_kernel(root));
+    let names: Vec<String> = problems::CATALOGUE.pages.iter().map(Page::name).collect();
+    let (index, settings) = root.chosen("problem", &names)?;
+    let kind = problem::kind(index);
+    let body = Body::read_for(&settings, kind.ray);
+    let body = body.filter(|body| kind.spectral || has_one_channel(&settings, body));
+    let sweep = read_sweep(&settings);
+    let defaults = Defaults {
+        expect_biased: expect_biased.unwrap_or_default(),
+        order: order.unwrap_or_default(),
+        sampling: false,
+    };
+    let swept = sweep.as_ref().and_then(|sweep| sweep.as_ref()).map(|axis| axis.what);
+    let scenario = Scenario::read(&kind, &settings, body.as_ref(), defaults, swept);
+    settings.close();
+    let (scenario, sweep) = (scenario?, sweep?);
+    expect_biased.and(order)?;
+    let none_has = |what| !(0..scenario.estimators()).any(|e| scenario.depends_on(e, what));
+    if swept.is_some_and(|what| what == What::Albedo && none_has(what)) {
+        let help = "those of colours are swept by `albedo-scale`";
+        settings.fault("sweep", "no estimator of this case has an albedo", help);
+        return None;
+    }
+    let place = settings.entry("sweep").map_or(0..0, |entry| entry.node.span.clone());
+    Some(Problem { name: names[index].clone(), scenario, sweep, place })
+}
+
+impl Problem {
+    /// The same with the scenarios of a sweep of the medium; `None` after a mistake in one of them.
+    fn swept(self, root: &Settings) -> Option<Self> {
+        let axis = self.sweep.as_ref().and_then(|axis| Some((axis, axis.what.rewrite()?)));
+        let Some((axis, rewrite)) = axis else { return Some(self) };
+        let (written, folder) = (root.entries().to_vec(), root.folder.to_owned());
+        let read = move |value: f64| {
+            let mut written = written.clone();
+            rewrite(problem_table(&mut written), value).map_err(|fault| vec![fault])?;
+            let faults = RefCell::default();
+            let read = read_problem(&Settings::new(&written, &folder, &faults));
+            read.map(|read| read.scenario).ok_or_else(|| faults.into_inner())
+        };
+        let mut known = Vec::with_capacity(axis.values.len());
+        for &value in &axis.values {
+            match read(value) {
+                Ok(scenario) => known.push((value, scenario)),
+                Err(faults) => {
+                    for Fault { span, path, message, help } in faults {
+                        let span = if span.is_empty() { self.place.clone() } else { span };
+                        let own = || format!("problem.{}.sweep.{}", self.name, axis.what.key());
+                        let path = if path.is_empty() { own() } else { path };
+                        let at = format!("at {} = {}: {message}", axis.what.key(), number(value));
+                        root.fault_at(span, &path, at, help);
+                    }
+                    return None;
+                }
+            }
+        }
+        Some(Self { scenario: self.scenario.with_variants(Box::new(read), known), ..self })
+    }
+}
+
+/// The table `[problem.NAME]` of a case.
+fn problem_table(root: &mut [Entry]) -> &mut [Entry] {
+    let mut table = root;
+    for key in [Some("problem"), None] {
+        let entry = table.iter_mut().find(|entry| key.is_none_or(|key| entry.key == key));
+        let Some(Entry { node: Node { value: Value::Table(inner), .. }, .. }) = entry else {
+            return &mut [];
+        };
+        table = inner;
+    }
+    table
 }
 
 /// Refuses a spectral medium where a problem is about one wavelength.

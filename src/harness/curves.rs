@@ -46,13 +46,15 @@ pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Swe
         let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
         if curves.is_empty() { vec![refused(names)] } else { curves }
     });
-    Some(Sweep {
-        what: axis.what.key().to_owned(),
-        axis: axis.what.axis().to_owned(),
-        log: axis.log,
-        z_limit,
-        curves: curves.into_iter().flatten().collect(),
-    })
+    let curves = curves.into_iter().flatten().collect();
+    self::axis(case).map(|sweep| Sweep { z_limit, curves, ..sweep })
+}
+
+/// What a case sweeps, without lines.
+pub fn axis(case: &Case) -> Option<Sweep> {
+    let axis = case.sweep.as_ref()?;
+    let (what, title) = (axis.what.key().to_owned(), axis.what.axis().to_owned());
+    Some(Sweep { what, axis: title, log: axis.log, z_limit: None, curves: Vec::new() })
 }
 
 /// The best constant σ̂ of each experiment of a case, channel by channel; empty for those that take none, or

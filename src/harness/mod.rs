@@ -7,7 +7,7 @@
 //! A file imports only files before it in this list:
 //!
 //! ```text
-//! words       source  sweep  names  filter  options  addresses  normality  suite
+//! words       source  rewrite  sweep  names  filter  options  addresses  normality  suite
 //! case        ready  estimator  problem  scenario  case
 //! plan        checks  levels  plan  mutation
 //! draws       draw  drawn  cache  run
@@ -40,6 +40,7 @@ pub mod qualify;
 pub mod ready;
 pub mod record;
 mod repeat;
+pub mod rewrite;
 pub mod run;
 pub mod scenario;
 pub mod source;

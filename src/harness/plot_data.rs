@@ -5,7 +5,7 @@ use serde::Serialize;
 /// The axis of a sweep and the theory's curves along it.
 #[derive(Debug, Clone, Serialize)]
 pub struct Sweep {
-    /// What is swept: `sampling`, `sampling-scale`, `albedo`, `control` or `points`.
+    /// What is swept, by its key in case files, as `sampling` or `density`.
     pub what: String,
     /// The axis title with symbol and unit.
     pub axis: String,
@@ -13,7 +13,7 @@ pub struct Sweep {
     pub log: bool,
     /// The z-score that is as rare as a false alarm of the gate.
     pub z_limit: Option<f64>,
-    /// One curve per estimator and channel.
+    /// One curve per estimator and channel; none where nothing is drawn.
     pub curves: Vec<Curve>,
 }
 

@@ -7,7 +7,7 @@ use super::names::Names;
 use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
-use crate::catalogue::Settings;
+use crate::catalogue::{Fault, Settings};
 use crate::estimators::{Experiment, Order, RayView, Refusal, Site};
 use crate::media::{Body, Medium, Piecewise};
 use crate::recipes::{controls, sampling};
@@ -24,6 +24,17 @@ pub struct Scenario {
     /// That of each channel.
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
+    variants: Option<Variants>,
+}
+
+/// Reads the scenario at a value of the sweep; the error lists the mistakes.
+pub type ReadVariant = Box<dyn Fn(f64) -> Result<Scenario, Vec<Fault>> + Send + Sync>;
+
+/// What a scenario is along a sweep of the medium.
+struct Variants {
+    read: ReadVariant,
+    /// At the values of the case.
+    known: Vec<(f64, Scenario)>,
 }
 
 impl Scenario {
@@ -46,7 +57,37 @@ impl Scenario {
             estimators = Estimators::read(settings, body, catalogue, reader, defaults, &accept);
         });
         let (problem, estimators, body) = (problem?, estimators?, body?.clone());
-        Some(Self { body, problem, meshes: OnceLock::new(), estimators })
+        Some(Self { body, problem, meshes: OnceLock::new(), estimators, variants: None })
+    }
+
+    /// The same along a sweep of the medium, with what is known at the values of the case.
+    #[must_use]
+    pub fn with_variants(self, read: ReadVariant, known: Vec<(f64, Self)>) -> Self {
+        Self { variants: Some(Variants { read, known }), ..self }
+    }
+
+    /// What `ask` says of the scenario at a value of a sweep of the medium; `None` where something else varies.
+    fn varied<T>(
+        &self,
+        variation: Variation,
+        ask: impl FnOnce(&Self) -> T,
+    ) -> Option<Result<T, Refusal>> {
+        let (_, value) = variation.filter(|(what, _)| what.rewrite().is_some())?;
+        let variants = self.variants.as_ref()?;
+        if let Some((_, known)) = variants.known.iter().find(|(known, _)| *known == value) {
+            return Some(Ok(ask(known)));
+        }
+        let read = (variants.read)(value).map(|mut other| {
+            for (other, own) in other.estimators.list.iter_mut().zip(&self.estimators.list) {
+                other.order = own.order;
+            }
+            ask(&other)
+        });
+        let needs = "a case that can be read at this value of the sweep";
+        Some(read.map_err(|faults| {
+            let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
+            Refusal::mismatch(needs, found)
+        }))
     }
 
     /// The field's name in the catalogue.
@@ -69,6 +110,9 @@ impl Scenario {
         for estimator in &mut self.estimators.list {
             estimator.order = order;
         }
+        for (_, known) in self.variants.iter_mut().flat_map(|variants| &mut variants.known) {
+            known.draw_by(order);
+        }
     }
 
     /// Whether an estimator depends on a swept quantity.
@@ -84,11 +128,15 @@ impl Scenario {
                 let control = self.estimators.given_control(parsed);
                 control.is_some_and(|control| control.with_points(2).is_some())
             }
+            What::Density | What::AlbedoScale | What::Contrast => true,
         }
     }
 
     /// How an experiment is called in tables.
     pub fn names(&self, estimator: usize, variation: Variation) -> Names {
+        if let Some(Ok(names)) = self.varied(variation, |other| other.names(estimator, None)) {
+            return names;
+        }
         let parsed = &self.estimators.list[estimator];
         let swept_albedo = matches!(variation, Some((What::Albedo, _)));
         let control = self.with_control(estimator, variation, |recipe| recipe.label());
@@ -125,6 +173,10 @@ impl Scenario {
         variation: Variation,
         address: Address,
     ) -> Result<Ready, Refusal> {
+        let prepared = self.varied(variation, |other| other.prepare(estimator, None, address));
+        if let Some(prepared) = prepared {
+            return prepared?;
+        }
         let parts = self.parts(estimator, variation, None, address)?;
         let parsed = &self.estimators.list[estimator];
         let ready = self.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
@@ -140,6 +192,10 @@ impl Scenario {
         what_if: Option<f64>,
         pilots: Address,
     ) -> Option<Prediction> {
+        let ask = |other: &Self| other.predict(estimator, None, what_if, pilots);
+        if let Some(predicted) = self.varied(variation, ask) {
+            return predicted.ok()?;
+        }
         let parts = self.parts(estimator, variation, what_if, pilots).ok()?;
         self.problem.predict(estimator, parts, self.estimators.list[estimator].order())
     }
@@ -152,6 +208,10 @@ impl Scenario {
         variation: Variation,
         address: Address,
     ) -> Option<(RayView, Vec<[f64; 2]>)> {
+        if let Some(view) = self.varied(variation, |other| other.ray_view(estimator, None, address))
+        {
+            return view.ok()?;
+        }
         let parts = self.parts(estimator, variation, None, address).ok()?;
         let ray_view = self.problem.ray_view(estimator, parts, address)?;
         let site = self.site(address);
@@ -161,6 +221,9 @@ impl Scenario {
 
     /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.
     pub fn natural_scale(&self, estimator: usize, variation: Variation) -> f64 {
+        if let Some(scale) = self.varied(variation, |other| other.natural_scale(estimator, None)) {
+            return scale.unwrap_or_default();
+        }
         let parts = self.parts(estimator, variation, None, NOWHERE);
         let control = parts.and_then(|parts| self.problem.fitting_control(estimator, parts));
         let Ok(control) = control else { return 0.0 };
@@ -177,6 +240,10 @@ impl Scenario {
         name: &str,
         walk: Walk,
     ) -> Option<Result<Box<dyn Experiment>, Refusal>> {
+        let ask = |other: &Self| other.mutated(estimator, None, address, name, walk);
+        if let Some(mutated) = self.varied(variation, ask) {
+            return mutated.unwrap_or_else(|refusal| Some(Err(refusal)));
+        }
         let parts = self.parts(estimator, variation, None, address);
         self.problem.mutant(estimator, parts, name, walk)
     }

@@ -7,10 +7,22 @@
 //! | `sweep.albedo` | the albedo, of the medium or of estimators that have one of their own | 0 to 1 |
 //! | `sweep.control` | a constant control, for estimators that take one and have none of their own | 1/length |
 //! | `sweep.points` | the number of explorer points, for controls through explorers | whole, ≥ 2 |
+//! | `sweep.density` | a factor s on σ_t, σ̂ and σ_c, wherever they are given in 1/length | > 0 |
+//! | `sweep.albedo-scale` | a factor s on the medium's albedos, which stay within [0, 1] | ≥ 0 |
+//! | `sweep.contrast` | the contrast c of what is listed channel by channel: σ_t, σ̂, albedos and p_f | ≥ 0 |
+//!
+//! ```text
+//! contrast   x_λ → (1 − c) x̄ + c x_λ,  x̄ the mean over the channels: grey at c = 0, as written at c = 1
+//! ```
+//!
+//! The channels are the same field then, with other extinctions. An estimator's σ̂ for all channels moves likewise about
+//! the mean of the case's `sampling` list, and the largest of the list stays the largest. The last three sweeps change
+//! the answer: every estimator is drawn at every value.
 //!
 //! Each is `{ values = [ … ] }`, or `{ from, to, points, scale }` with `scale = "linear"` or `"log"`,
 //! `points` values from end to end. Estimators that do not depend on it are drawn once.
 
+use super::rewrite::{self, Rewrite};
 use crate::catalogue::{Domain, Settings};
 
 /// The quantity that a sweep varies.
@@ -26,19 +38,38 @@ pub enum What {
     Control,
     /// The number of explorer points, for controls through explorers.
     Points,
+    /// A factor on all extinctions.
+    Density,
+    /// A factor on the medium's albedos.
+    AlbedoScale,
+    /// How far the channels are from their mean.
+    Contrast,
 }
 
 /// One value of a sweep.
 pub type Variation = Option<(What, f64)>;
 
-/// Every quantity with its key in case files, the axis title and the numbers it takes.
-const KINDS: [(What, &str, &str, Domain); 5] = [
-    (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Domain::Positive),
-    (What::SamplingScale, "sampling-scale", "factor on σ̂", Domain::Positive),
-    (What::Albedo, "albedo", "albedo a", Domain::Unit),
-    (What::Control, "control", "control σ_c [1/length]", Domain::Finite),
-    (What::Points, "points", "explorer points", Domain::Positive),
-];
+/// Every quantity with its key in case files, the axis title, the numbers it takes, and how it changes the case where
+/// it is the medium that varies.
+const KINDS: [(What, &str, &str, Domain, Option<Rewrite>); 8] = {
+    use Domain::{Finite, NonNegative, Positive, Unit};
+    [
+        (What::Sampling, "sampling", "sampling extinction σ̂ [1/length]", Positive, None),
+        (What::SamplingScale, "sampling-scale", "factor on σ̂", Positive, None),
+        (What::Albedo, "albedo", "albedo a", Unit, None),
+        (What::Control, "control", "control σ_c [1/length]", Finite, None),
+        (What::Points, "points", "explorer points", Positive, None),
+        (What::Density, "density", "density: factor on σₜ and σ̂", Positive, Some(rewrite::density)),
+        (
+            What::AlbedoScale,
+            "albedo-scale",
+            "factor on the albedos",
+            NonNegative,
+            Some(rewrite::albedo_scale),
+        ),
+        (What::Contrast, "contrast", "colour contrast c", NonNegative, Some(rewrite::contrast)),
+    ]
+};
 
 /// A sweep: what, and its values.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +93,12 @@ impl What {
         self.kind().2
     }
 
-    fn kind(self) -> &'static (What, &'static str, &'static str, Domain) {
+    /// How a case is changed whose medium varies.
+    pub fn rewrite(self) -> Option<Rewrite> {
+        self.kind().4
+    }
+
+    fn kind(self) -> &'static (What, &'static str, &'static str, Domain, Option<Rewrite>) {
         KINDS.iter().find(|kind| kind.0 == self).unwrap_or(&KINDS[0])
     }
 }
@@ -72,7 +108,7 @@ impl SweepAxis {
     pub fn read(settings: &Settings) -> Option<Self> {
         let names: Vec<String> = KINDS.iter().map(|kind| kind.1.to_owned()).collect();
         let (index, sweep) = settings.choice(&names)?;
-        let (what, _, _, domain) = KINDS[index];
+        let (what, _, _, domain, _) = KINDS[index];
         let read = if sweep.has("values") {
             let values = sweep.numbers("values", domain, 1);
             sweep.close();

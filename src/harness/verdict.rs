@@ -28,7 +28,8 @@ pub fn planned(plan: &Plan) -> Record {
         });
         rows.collect()
     };
-    let mut record = record(plan, plan.cases.iter().map(|case| (rows(case), None, None)));
+    let mut record =
+        record(plan, plan.cases.iter().map(|case| (rows(case), curves::axis(case.case), None)));
     for (case, planned_case) in record.results.cases.iter_mut().zip(&plan.cases) {
         let draws = planned_case.experiments.iter().flat_map(|planned| {
             let draws = planned.outcome.is_ok().then_some(planned.draws);
@@ -44,7 +45,7 @@ pub fn predicted(plan: &Plan) -> Record {
     let rows = |case: &PlannedCase| -> Vec<Row> {
         case.experiments.iter().flat_map(|planned| theory_rows(case, planned)).collect()
     };
-    record(plan, plan.cases.iter().map(|case| (rows(case), None, None)))
+    record(plan, plan.cases.iter().map(|case| (rows(case), curves::axis(case.case), None)))
 }
 
 /// The same with the best constant σ̂ of each experiment and channel, which takes a hundred predictions.

@@ -16,7 +16,7 @@
 //! | `lowest` | the lowest | 0, or 1 of reflected light |
 //! | `shares` | whether the contribution of each technique is a channel beside their sum | true |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! A path of r scatterings has r + 2 vertices, light and sensor included, and can be made in r + 3 ways: its

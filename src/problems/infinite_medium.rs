@@ -13,7 +13,7 @@
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `radii` | up to 8 distances R > 0 from the source, for isotropic scattering | none |
 //! | `sampling` | σ̂ of every estimator without its own: `constant` | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! Here a walk has nothing but flights, directions and the end of it: wrong frames of direction show in the

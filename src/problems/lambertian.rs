@@ -13,7 +13,7 @@
 //! | `albedo` | a in [0, 1]: a number, or a field in space such as `sines = { … }` | required unless swept |
 //! | `phase.NAME = { … }` | a phase function: `trueflight list phases` | required |
 //! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! V and S are volume and surface of the bounds, whatever is in them: light from all sides fills a body that

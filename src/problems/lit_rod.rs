@@ -13,7 +13,7 @@
 //! | `albedo` | a in [0, 1]: a number, or a field as in `rod` | required unless swept |
 //! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction; likewise | 0.5 |
 //! | `sampling` | σ̂ of every estimator without its own; a majorant | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The emitter touches the medium: a ray that ends beyond the field's bounds, or on which nothing is

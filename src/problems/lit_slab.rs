@@ -17,7 +17,7 @@
 //! | `light.distant = { cosine = μ₀ }` | a beam of irradiance 1, 0 < μ₀ ≤ 1: no direction is ever met by chance | is |
 //! | `light.point = { distance }` | a point of intensity 1 on the ray, so far behind the slab | required |
 //! | `sampling` | σ̂ of every estimator without its own, as a function of the depth; a majorant | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! Unscattered light is left out, and light that is scattered twice. Shadow rays choose the directions of a cap evenly,

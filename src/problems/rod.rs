@@ -16,7 +16,7 @@
 //! | `flux` | up to 4: the mean flux, forward and backward together, in so many equal parts of the rod are channels too, scored at every tentative collision: Σ w/(σ̂ width) | none |
 //! | `orders` | K, up to 6: reflectance and transmittance by order of scattering, 0 to K, are channels too | none |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! A field of numbers along the rod is `{ piecewise-linear = { knots, values } }` or

@@ -16,7 +16,7 @@
 //! | `incidence.collimated = { cosine = μ₀ }` | light from one direction, 0 < μ₀ ≤ 1; 1 is straight down | one of the two |
 //! | `incidence.diffuse = {}` | light evenly from all sides, the Lambertian law 2μ₀ dμ₀ | is required |
 //! | `sampling` | σ̂ of every estimator without its own, as a function of the depth | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The answer depends on the optical depth of the slab, a, the phase function and the incidence only,

@@ -12,7 +12,7 @@
 //! | `albedos` | a in [0, 1], one for each channel: numbers, or fields as in `rod` | required |
 //! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction: a number, or a list with one for each channel | 0.5 |
 //! | `sampling` | σ̂ ≥ σ_t of every estimator without its own: a table for all channels, or a list with one for each | required unless swept |
-//! | `sweep` | one of `sampling` (the same σ̂ for all channels), `sampling-scale` | none |
+//! | `sweep` | one of `sampling` (the same σ̂ for all channels), `sampling-scale`, `density`, `albedo-scale`, `contrast` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The emitter touches the medium in every channel. Means, variances and the covariances of neighbouring channels

@@ -12,7 +12,7 @@
 //! | `albedos` | 1 to 8 numbers in [0, 1], one for each channel | required |
 //! | `forward` | `p_f` in [0, 1], the probability that scattering keeps the direction | 0.5 |
 //! | `sampling` | σ̂ ≥ σ_t of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `density`, `albedo-scale`, `contrast` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The channels of a draw are the reflectances that are not 0 and the transmittances. All moments of all

@@ -14,7 +14,7 @@
 //! | `incidence.collimated = { cosine = μ₀ }` | light from one direction, 0 < μ₀ ≤ 1; 1 is straight down | one of the two |
 //! | `incidence.diffuse = {}` | light evenly from all sides, the Lambertian law 2μ₀ dμ₀ | is required |
 //! | `sampling` | σ̂ ≥ σ_t of every estimator without its own | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `density`, `albedo-scale`, `contrast` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The channels of a draw are the reflectances that are not 0 and the transmittances. All moments of all

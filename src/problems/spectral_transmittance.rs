@@ -9,7 +9,7 @@
 //! | `medium = [{ NAME = { … } }, …]` with `span = [from, to]` | a field in 1-D for each of 1 to 8 channels | one of the two |
 //! | `volume = [{ NAME = { … } }, …]` with `ray = { origin, direction, length }` | a field in 3-D for each channel, within the same bounds | is required |
 //! | `sampling` | σ̂ of every estimator without its own: a table for all channels, or a list with one for each | required unless swept |
-//! | `sweep` | one of `sampling` (the same σ̂ for all channels), `sampling-scale` | none |
+//! | `sweep` | one of `sampling` (the same σ̂ for all channels), `sampling-scale`, `density`, `contrast` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The channels of a draw are the N transmittances and, for N > 1, the luminance Y: with weights l =

@@ -16,7 +16,7 @@
 //! | `light.black-sphere = { radius }` | a black sphere at the centre: it shines with radiance 1 and absorbs what meets it | these three |
 //! | `light.distant = { direction }` | a light in one direction, of the fluence of that environment, 4π | is required |
 //! | `sampling` | σ̂ in space of every estimator without its own: `constant`, or `local-majorants` with a `grid` | required unless swept |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `density`, `albedo-scale` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! The mean intensity in an environment is the chance to escape of what sets out from that point in any

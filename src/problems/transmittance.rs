@@ -10,7 +10,7 @@
 //! | `volume` with `ray = { origin, direction, length }` | a field in 3-D and a ray through it | is required |
 //! | `sampling` | σ̂ of every estimator without its own | required unless swept |
 //! | `control` | σ_c of every estimator that takes one and has none of its own | none |
-//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `control`, `points` | none |
+//! | `sweep` | one of `sampling`, `sampling-scale`, `albedo`, `control`, `points`, `density` | none |
 //! | `estimators` | what is tested | required |
 //!
 //! Beyond `τ = 300` the square of T is no longer a double: draws, truth and moments are then in units

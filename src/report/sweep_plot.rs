@@ -1,5 +1,6 @@
 //! `CASE.svg` and `CASE.png`: variance, cost, efficiency and z-scores along a sweep, theory as
-//! lines and measurements as points with error bars.
+//! lines and measurements as points with error bars. Where the medium is swept, the efficiency is upside down: LTUV, the
+//! lookups to unit variance of Miller et al. 2019.
 
 use plotters::style::Color;
 
@@ -43,7 +44,7 @@ struct Quantity {
     theory: fn(&CurvePoint) -> f64,
 }
 
-const QUANTITIES: [Quantity; 3] = [
+const VARIANCE_AND_COST: [Quantity; 2] = [
     Quantity {
         head: "(a) Variance of one draw",
         title: "variance V",
@@ -60,15 +61,25 @@ const QUANTITIES: [Quantity; 3] = [
         predicted: |row| row.predicted_lookups,
         theory: |point| point.lookups,
     },
-    Quantity {
-        head: "(c) Efficiency",
-        title: "figure of merit 1/(V·N)",
-        measured: |row| row.fom,
-        deviation: |_| None,
-        predicted: |row| row.predicted_fom,
-        theory: |point| point.fom,
-    },
 ];
+
+const EFFICIENCY: Quantity = Quantity {
+    head: "(c) Efficiency",
+    title: "figure of merit 1/(V·N)",
+    measured: |row| row.fom,
+    deviation: |_| None,
+    predicted: |row| row.predicted_fom,
+    theory: |point| point.fom,
+};
+
+const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
+    head: "(c) Lookups to unit variance",
+    title: "LTUV = V·N",
+    measured: |row| row.fom.map(f64::recip),
+    deviation: |_| None,
+    predicted: |row| row.predicted_fom.map(f64::recip),
+    theory: |point| point.fom.recip(),
+};
 
 fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
@@ -76,22 +87,39 @@ fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportEr
     let mut notes = vec![z_panel::note(sweep)];
     notes.extend(z_panel::legend_of_hollow(&series));
     notes.extend(series.iter().filter_map(Series::note));
+    notes.extend(left_out(case, &series));
     let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
     let titles = [&*case.title, &subtitle(case, seed)];
     let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
     figure.sheet.height -= 6.0;
     let Figure { face, sheet, .. } = &mut figure;
     let x = x_axis(sweep, &series);
-    for (i, quantity) in QUANTITIES.iter().enumerate() {
+    let of_medium = ["density", "albedo-scale", "contrast"].contains(&&*sweep.what);
+    let efficiency = if of_medium { LOOKUPS_TO_UNIT_VARIANCE } else { EFFICIENCY };
+    for (i, quantity) in VARIANCE_AND_COST.iter().chain([&efficiency]).enumerate() {
         let panel = place(i, &x, y_axis(quantity, &series));
         draw(sheet, &panel, quantity, &series);
-        if i == 2 && optima(sheet, &panel, &series) {
+        if i == 2 && !of_medium && optima(sheet, &panel, &series) {
             let key = [(Some(Marker::Star), "predicted optimum".to_owned())];
             legend::keys(face, sheet, [panel.right, panel.top - 15.0], &key);
         }
     }
     z_panel::draw(face, sheet, place(3, &x, x.clone()), &series, sweep);
     Ok(figure.close(&foot))
+}
+
+/// The channels that a crowded plot leaves out, in words.
+fn left_out(case: &CaseRecord, series: &[Series]) -> Option<String> {
+    let shown: Vec<&str> =
+        series.iter().flat_map(|one| &one.rows).map(|row| row.channel.as_str()).collect();
+    let mut missing: Vec<&str> = Vec::new();
+    for row in case.rows.iter().filter(|row| !row.channel.is_empty()) {
+        if !shown.contains(&&*row.channel) && !missing.contains(&&*row.channel) {
+            missing.push(&row.channel);
+        }
+    }
+    let missing = missing.join("; ");
+    (!missing.is_empty()).then(|| format!("In the CSV only, for lack of room: {missing}"))
 }
 
 fn subtitle(case: &CaseRecord, seed: u64) -> String {

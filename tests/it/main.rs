@@ -43,6 +43,7 @@ mod spectral_single_scattering;
 mod sphere;
 mod sphere_techniques;
 mod stress;
+mod sweeps;
 mod threads;
 mod value_stability;
 mod verdicts;

@@ -19,7 +19,8 @@ impl Spectral {
 impl Recipe for Spectral {
     fn label(&self) -> String {
         let labels = self.recipes.iter().map(|recipe| match recipe.constant() {
-            Some(value) => value.to_string(),
+            // To six digits: blended channels have sixteen.
+            Some(value) => format!("{value:.5e}").parse().unwrap_or(value).to_string(),
             None => recipe.label(),
         });
         labels.collect::<Vec<_>>().join(", ")

@@ -70,6 +70,9 @@ impl Series<'_> {
 /// may be what is swept.
 type Key<'a> = (&'a str, &'a str, usize);
 
+/// Of more series than these a plot shows the last channel of each estimator, as the luminance of chromatic media.
+const CROWD: usize = 12;
+
 /// The series of a case, in the order of its rows; a curve without rows is a series, too.
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
     let mut groups: Vec<(Key, Vec<&Row>)> = Vec::new();
@@ -99,6 +102,9 @@ pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
             groups.push(((estimator, channel, nth), Vec::new()));
         }
     }
+    if groups.len() > CROWD {
+        keep_last_channels(&mut groups);
+    }
     let series = groups.into_iter().enumerate().map(|(i, ((estimator, channel, nth), rows))| {
         let curve = curves(estimator, channel).get(nth).copied();
         let label = label(estimator, channel, &rows, curve);
@@ -126,6 +132,19 @@ fn join_refused<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
     }
 }
 
+/// Leaves the last channel of each estimator, with the experiments that are refused.
+fn keep_last_channels<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
+    let keys: Vec<Key> = groups.iter().map(|(key, _)| *key).collect();
+    let last = |key: &Key| keys.iter().rposition(|other| (other.0, other.2) == (key.0, key.2));
+    for index in 0..keys.len() {
+        if let Some(last) = last(&keys[index]).filter(|&last| last != index) {
+            let rows = std::mem::take(&mut groups[index].1);
+            groups[last].1.extend(rows.into_iter().filter(|row| row.channel.is_empty()));
+        }
+    }
+    groups.retain(|(key, _)| last(key).is_some_and(|last| keys[last] == *key));
+}
+
 fn label(estimator: &str, channel: &str, rows: &[&Row], curve: Option<&Curve>) -> String {
     let first = rows.first().map(|row| row.control.as_str());
     let constant = rows.iter().all(|row| Some(row.control.as_str()) == first);
@@ -146,6 +165,29 @@ mod tests {
     fn case(rows: Vec<Row>) -> CaseRecord {
         let [name, title, problem, medium] = [const { String::new() }; 4];
         CaseRecord { name, title, problem, medium, rows, ..CaseRecord::default() }
+    }
+
+    #[test]
+    fn of_a_crowd_each_estimator_shows_its_last_channel() {
+        let empty = String::new;
+        let sweep =
+            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
+        let channels = |estimator: &str, count: usize| -> Vec<Row> {
+            let channel = |i| Row { channel: format!("{i}"), ..row(estimator, "", Some(1.0)) };
+            (1..=count).map(channel).collect()
+        };
+        let labels = |rows: Vec<Row>| -> Vec<String> {
+            collect(&case(rows), &sweep).into_iter().map(|one| one.label).collect()
+        };
+        assert_eq!(labels([channels("a", 8), channels("b", 4)].concat()).len(), 12);
+        assert_eq!(labels([channels("a", 8), channels("b", 5)].concat()), ["a, 8", "b, 5"]);
+        // Two experiments of one name are two series, of which each shows its last channel.
+        let twins = [channels("a", 8), channels("a", 8)].concat();
+        assert_eq!(labels(twins), ["a, 8", "a, 8"]);
+        // What is refused stands with it.
+        let crowd = case([vec![row("a", "", Some(2.0))], channels("a", 13)].concat());
+        let series = collect(&crowd, &sweep);
+        assert_eq!((series.len(), series[0].label.as_str(), series[0].rows.len()), (1, "a, 13", 2));
     }
 
     #[test]

@@ -1,0 +1,292 @@
+//! Sweeps of the medium: at every value a case is what one is that has its numbers written out.
+
+use trueflight::catalogue::Page;
+use trueflight::harness::record::{Row, Verdict};
+use trueflight::harness::rewrite::EXTINCTIONS;
+use trueflight::harness::{Plan, curves, verdict};
+use trueflight::media;
+use trueflight::recipes::{controls, sampling};
+
+use crate::common::{case, failing, mistakes, none, options, predicted, rows};
+
+/// A case with a sweep, and the same without it for some of its values.
+type Written = (&'static str, &'static str, &'static [(f64, &'static str)]);
+
+const WRITTEN: [Written; 6] = [
+    (
+        "transmittance]\nmedium.exponential = { extinction = 1.5, rate = 0.5, base = 0.25 }\nspan = [0, 2]\n\
+         sampling.piecewise-linear = { knots = [0, 2], values = [2, 1] }\ncontrol.constant.value = 0.5\n",
+        "density.values = [0.5, 2]\nestimators = [{ ratio = {} }, { residual-ratio = {} }, \
+         { woodcock.sampling.constant.value = 2 }]",
+        &[(
+            0.5,
+            "transmittance]\nmedium.exponential = { extinction = 0.75, rate = 0.5, base = 0.125 }\nspan = [0, 2]\n\
+             sampling.piecewise-linear = { knots = [0, 2], values = [1, 0.5] }\ncontrol.constant.value = 0.25\n\
+             estimators = [{ ratio = {} }, { residual-ratio = {} }, { woodcock.sampling.constant.value = 1 }]",
+        )],
+    ),
+    (
+        "transmittance]\nvolume.gaussian = { peak = 1, centre = [0, 0, 2], width = 0.7 }\n\
+         ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }\nsampling.constant.value = 1.25\n\
+         control.field.volume.radial = { centre = [0, 0, 2], radius = 2, coefficients = [0.5, -0.5] }\n",
+        "density.values = [2, 3]\nestimators = [{ double = {} }]",
+        &[(
+            3.0,
+            "transmittance]\nvolume.gaussian = { peak = 3, centre = [0, 0, 2], width = 0.7 }\n\
+             ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 4 }\nsampling.constant.value = 3.75\n\
+             control.field.volume.radial = { centre = [0, 0, 2], radius = 2, coefficients = [1.5, -1.5] }\n\
+             estimators = [{ double = {} }]",
+        )],
+    ),
+    (
+        "spectral-transmittance]\nmedium = [\n\
+         { piecewise-constant = { breaks = [0, 1, 2], values = [1, 0.2] } },\n\
+         { piecewise-constant = { values = [0.2, 0.4], breaks = [0, 1, 2] } },\n]\nspan = [0, 2]\n\
+         sampling = [{ constant.value = 1.2 }, { constant.value = 0.6 }]\n",
+        "contrast.values = [0, 0.5, 1]\nestimators = [{ spectral-mis.collisions = \"delta\" }, \
+         { independent.sampling = [{ constant.value = 2 }, { constant.value = 1 }] }, \
+         { spectral-tracking.sampling.constant.value = 1.2 }]",
+        &[
+            (
+                0.0,
+                "spectral-transmittance]\nmedium = [\n\
+                 { piecewise-constant = { breaks = [0, 1, 2], values = [0.6, 0.3] } },\n\
+                 { piecewise-constant = { breaks = [0, 1, 2], values = [0.6, 0.3] } },\n]\nspan = [0, 2]\n\
+                 sampling = [{ constant.value = 0.9 }, { constant.value = 0.9 }]\n\
+                 estimators = [{ spectral-mis.collisions = \"delta\" }, \
+                 { independent.sampling = [{ constant.value = 1.5 }, { constant.value = 1.5 }] }, \
+                 { spectral-tracking.sampling.constant.value = 0.9 }]",
+            ),
+            (
+                0.5,
+                "spectral-transmittance]\nmedium = [\n\
+                 { piecewise-constant = { breaks = [0, 1, 2], values = [0.8, 0.25] } },\n\
+                 { piecewise-constant = { breaks = [0, 1, 2], values = [0.4, 0.35] } },\n]\nspan = [0, 2]\n\
+                 sampling = [{ constant.value = 1.05 }, { constant.value = 0.75 }]\n\
+                 estimators = [{ spectral-mis.collisions = \"delta\" }, \
+                 { independent.sampling = [{ constant.value = 1.75 }, { constant.value = 1.25 }] }, \
+                 { spectral-tracking.sampling.constant.value = 1.05 }]",
+            ),
+        ],
+    ),
+    (
+        "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.8, 0.4, 0.6]\n\
+         sampling.constant.value = 1.2\n",
+        "contrast.values = [0.5, 1]\nestimators = [{ spectral-mis = {} }, { spectral-tracking = {} }]",
+        &[(
+            0.5,
+            "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [0.7, 0.5, 0.6]\n\
+             sampling.constant.value = 1.2\nestimators = [{ spectral-mis = {} }, { spectral-tracking = {} }]",
+        )],
+    ),
+    (
+        "spectral-lit-rod]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
+         albedos = [{ piecewise-constant = { breaks = [0, 1, 2], values = [1, 0.5] } }, \
+         { piecewise-linear = { knots = [0, 2], values = [0.2, 0.8] } }]\nsampling.constant.value = 1.2\n",
+        "albedo-scale.values = [0.5, 1]\nestimators = [{ independent = {} }]",
+        &[(
+            0.5,
+            "spectral-lit-rod]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.5 }]\nspan = [0, 2]\n\
+             albedos = [{ piecewise-constant = { breaks = [0, 1, 2], values = [0.5, 0.25] } }, \
+             { piecewise-linear = { knots = [0, 2], values = [0.1, 0.4] } }]\nsampling.constant.value = 1.2\n\
+             estimators = [{ independent = {} }]",
+        )],
+    ),
+    (
+        "lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.9\nsampling.constant.value = 1.5\n",
+        "albedo-scale.values = [0.5]\nestimators = [{ unidirectional = {} }, { full-mis = {} }]",
+        &[(
+            0.5,
+            "lit-rod]\nmedium.constant.extinction = 1\nspan = [0, 2]\nalbedo = 0.45\nsampling.constant.value = 1.5\n\
+             estimators = [{ unidirectional = {} }, { full-mis = {} }]",
+        )],
+    ),
+];
+
+fn titled(text: &str) -> String {
+    format!("title = \"a sweep\"\n[problem.{text}")
+}
+
+/// What theory says of a row.
+fn theory(row: &Row) -> (String, String, [Option<f64>; 4]) {
+    let Row { truth, predicted_variance, predicted_lookups, predicted_kurtosis, .. } = row;
+    let numbers = [*truth, *predicted_variance, *predicted_lookups, *predicted_kurtosis];
+    (row.estimator.clone(), row.channel.clone(), numbers)
+}
+
+#[test]
+fn a_swept_medium_is_the_one_that_is_written_out() {
+    let mut count = 0;
+    for (head, sweep, written) in WRITTEN {
+        let swept = predicted(&titled(&format!("{head}sweep.{sweep}")));
+        for (value, text) in written {
+            let at: Vec<_> =
+                swept.iter().filter(|row| row.swept == Some(*value)).map(theory).collect();
+            let own: Vec<_> = predicted(&titled(text)).iter().map(theory).collect();
+            assert!(own.iter().all(|(_, _, numbers)| numbers[0].is_some() && numbers[1].is_some()));
+            assert_eq!(at, own, "{head} at {value}");
+            count += own.len();
+        }
+    }
+    assert_eq!(count, 38);
+}
+
+#[test]
+fn the_whole_numbers_of_a_sweep_leave_a_case_as_it_is() {
+    for (head, sweep, _) in WRITTEN {
+        let (what, rest) = sweep.split_once('.').expect("a sweep");
+        let (_, estimators) = rest.split_once('\n').expect("estimators");
+        let swept = predicted(&titled(&format!("{head}sweep.{what}.values = [1]\n{estimators}")));
+        let plain = predicted(&titled(&format!("{head}{estimators}")));
+        let of = |rows: &[Row]| rows.iter().map(theory).collect::<Vec<_>>();
+        assert_eq!(of(&swept), of(&plain), "{head}");
+    }
+}
+
+#[test]
+fn swept_media_are_drawn_as_predicted() {
+    for ((head, sweep, _), draws) in [(WRITTEN[0], 2_000_000), (WRITTEN[2], 400_000)] {
+        none(&failing(&rows(&titled(&format!("{head}sweep.{sweep}")), draws)));
+    }
+}
+
+#[test]
+fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
+    let (head, sweep, _) = WRITTEN[2];
+    let cases = [case("test", &titled(&format!("{head}sweep.{sweep}")))];
+    let options = options(1, 1000);
+    let record = verdict::predicted(&Plan::new(&cases, &options));
+    let case = &record.results.cases[0];
+    assert_eq!(case.sweep.as_ref().map(|sweep| &*sweep.what), Some("contrast"));
+    let curves = curves::sweep(&cases[0], &options, None).expect("a sweep").curves;
+    assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
+    for row in &case.rows {
+        let is_own = |curve: &&_| {
+            let curve: &trueflight::harness::record::Curve = curve;
+            curve.estimator == row.estimator && curve.channel == row.channel
+        };
+        let curve = curves.iter().find(is_own).expect("a line");
+        assert!(curve.points.len() > 40, "{}: {}", curve.estimator, curve.points.len());
+        let at = curve.points.iter().find(|point| Some(point.x) == row.swept).expect("a point");
+        assert_eq!(
+            (Some(at.variance), Some(at.lookups)),
+            (row.predicted_variance, row.predicted_lookups)
+        );
+    }
+}
+
+/// What is said of a case that is wrong.
+fn said(text: &str) -> String {
+    mistakes(&titled(text)).unwrap_or_else(|| panic!("{text} is well written")).render(false)
+}
+
+#[test]
+fn a_sweep_that_does_not_apply_says_where_and_why() {
+    let rod = "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\nalbedos = [0.8, 0.4]\n\
+               sampling.constant.value = 1\nestimators = [{ spectral-mis = {} }]\n";
+    let channels =
+        "span = [0, 1]\nsampling.constant.value = 1\nestimators = [{ independent = {} }]\n";
+    let one = "transmittance]\nmedium.constant.extinction = 1\nspan = [0, 1]\n\
+               sampling.constant.value = 1\nestimators = [{ ratio = {} }]\n";
+    let cases: [(String, &[&str]); 10] = [
+        (
+            "transmittance]\nvolume.eq21 = {}\nsweep.density.values = [2]\n\
+             ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }\n\
+             sampling.constant.value = 1\nestimators = [{ ratio = {} }]\n"
+                .into(),
+            &["at density = 2: this field has no extinction to scale", "3 | volume.eq21", "a field that has one"],
+        ),
+        (
+            format!("{rod}sweep.albedo-scale.values = [1, 1.5]\n"),
+            &["at albedo-scale = 1.5: 1.2", "stands in `albedos`", "problem.spectral-rod.albedos", "from 0 to 1"],
+        ),
+        (
+            format!("{one}sweep.albedo-scale.values = [0.5]\n"),
+            &["at albedo-scale = 0.5: the medium has no albedo", "sweep.albedo-scale", "give `albedo`"],
+        ),
+        (
+            format!("{one}sweep.contrast.values = [0.5]\n"),
+            &["at contrast = 0.5: no channel differs", "channel by channel"],
+        ),
+        (
+            format!("{rod}sweep.albedo.values = [0.5]\n"),
+            &["no estimator of this case has an albedo", "`albedo-scale`"],
+        ),
+        (
+            format!(
+                "spectral-transmittance]\nmedium = [{{ constant.extinction = 1 }}, \
+                 {{ exponential = {{ extinction = 1, rate = 1 }} }}]\n{channels}sweep.contrast.values = [0.5]\n"
+            ),
+            &["at contrast = 0.5: this differs from the first in more than its extinctions", "the same field"],
+        ),
+        (
+            format!(
+                "spectral-transmittance]\nmedium = [{{ piecewise-constant = {{ breaks = [0, 1], values = [1] }} }}, \
+                 {{ piecewise-constant = {{ breaks = [0, 2], values = [1] }} }}]\n{channels}sweep.contrast.values = [0.5]\n"
+            ),
+            &["at contrast = 0.5: this differs from the first in more than its extinctions"],
+        ),
+        (
+            format!(
+                "spectral-transmittance]\nmedium = [{{ constant.extinction = 1 }}, {{ constant.extinction = 0.2 }}]\n\
+                 {channels}sweep.contrast.values = [0.5, 4]\n"
+            ),
+            &["at contrast = 4: `extinction` is -1", "not negative"],
+        ),
+        (
+            "spectral-transmittance]\nmedium = [{ constant.extinction = 1 }, { constant.extinction = 0.2 }]\n\
+             span = [0, 1]\nsampling = [{ constant.value = 1 }, { constant.value = 0.5 }]\n\
+             estimators = [{ independent.sampling.local-majorants.segments = 2 }]\nsweep.contrast.values = [0.5]\n"
+                .into(),
+            &["at contrast = 0.5: this differs from the first", "6 | estimators"],
+        ),
+        (format!("{one}sweep.density.values = [0]\n"), &["above 0"]),
+    ];
+    for (text, words) in cases {
+        let said = said(&text);
+        for word in words {
+            assert!(said.contains(word), "{word} is not said of\n{text}\n{said}");
+        }
+    }
+}
+
+/// What a field, a σ̂ or a control has in 1/length and is not proportional to.
+const RATES: [&str; 2] = ["rate", "frequency"];
+
+#[test]
+fn every_extinction_of_a_page_is_one_that_sweeps_scale() {
+    let catalogues = [media::CATALOGUE, sampling::CATALOGUE, controls::CATALOGUE];
+    let mut seen = Vec::new();
+    for page in catalogues.iter().flat_map(|catalogue| catalogue.pages) {
+        let text = Page::text(page);
+        let settings = text.lines().filter(|line| line.contains("| 1/length |"));
+        for line in settings {
+            let name = line.split('`').nth(1).expect("a name").to_owned();
+            let is_known = EXTINCTIONS.contains(&&*name) || RATES.contains(&&*name);
+            assert!(is_known, "{}: `{name}` is in 1/length", page.name());
+            seen.push(name);
+        }
+    }
+    for name in EXTINCTIONS {
+        assert!(seen.iter().any(|seen| seen == name), "no page has `{name}`");
+    }
+}
+
+#[test]
+fn an_infinite_variance_along_a_sweep_is_refused_where_it_begins() {
+    // P_s = 1/2 whatever the contrast, and E[w²] is that of a rod of albedo a' = (1 + c)²/2, infinite from the length
+    // atan2(w, a'/2 − 1)/w, w² = a' − 1, on: 6.96 at c = 0.5, 1.87 at 0.9, π/2 at 1.
+    let text = titled(
+        "spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1.5]\nalbedos = [1, 0]\n\
+         sampling.constant.value = 1\nsweep.contrast.values = [0, 0.5, 0.9, 1]\n\
+         estimators = [{ spectral-tracking = {} }]\n",
+    );
+    assert!(predicted(&text).iter().all(|row| row.verdict != Some(Verdict::Refused)));
+    let longer = text.replace("span = [0, 1.5]", "span = [0, 2]");
+    let refused: Vec<f64> = predicted(&longer)
+        .iter()
+        .filter(|row| row.verdict == Some(Verdict::Refused))
+        .filter_map(|row| row.swept)
+        .collect();
+    assert_eq!(refused, [0.9, 1.0]);
+}
