@@ -178,6 +178,7 @@ fn cases(matrix: Matrix) -> Vec<Case> {
             );
             cases.push(case(&format!("{name}-lit"), &lit));
             cases.extend(lit_slabs(name, &medium));
+            cases.extend(coloured(name, &medium));
             let roulette = format!(
                 "title = \"{name}, roulette\"\n[problem.rod]\n{medium}\nforward = 0.7\nalbedo = 0.8\norders = 1
                 sampling.constant.value = 1.6
@@ -224,6 +225,26 @@ fn lit_slabs(name: &str, medium: &str) -> Vec<Case> {
         case(&format!("{name}-lit-slab"), &slab)
     };
     lights.map(of).into()
+}
+
+/// A field as a rod and as slabs of coloured scatterers.
+fn coloured(name: &str, medium: &str) -> Vec<Case> {
+    let bodies = [
+        ("rod", "forward = 0.7"),
+        ("slab", "phase.isotropic = {}\nincidence.collimated.cosine = 0.8"),
+        ("slab", "phase.henyey-greenstein = { g = 0.4 }\nincidence.diffuse = {}"),
+    ];
+    let of = |(body, settings)| {
+        let text = format!(
+            "title = \"{name}, coloured {body}\"\n[problem.spectral-{body}]\n{medium}\n{settings}
+            albedos = [0.9, 0, 0.6]\nsampling.constant.value = 1.6
+            estimators = [{{ independent = {{}} }}, {{ independent.hero = [0.1, 0.2, 0.7] }},
+                {{ spectral-mis = {{}} }}, {{ spectral-mis.sampling.local-majorants.segments = 5 }},
+                {{ spectral-tracking = {{}} }}, {{ spectral-tracking.probabilities = \"maximum\" }}]"
+        );
+        case(&format!("{name}-coloured-{body}"), &text)
+    };
+    bodies.map(of).into()
 }
 
 /// All that an experiment draws, as bits, and its streams afterwards.

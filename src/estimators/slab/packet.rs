@@ -72,7 +72,7 @@ impl<'a> line::Walks for Walks<'a> {
 /// The cosines with which particles enter; those that a mask names take a number for it where light is
 /// diffuse.
 #[inline(always)]
-fn entering<S: Simd>(
+pub fn entering<S: Simd>(
     light: Light,
     numbers: &mut Numbers<S>,
     which: mask64x8<S>,

@@ -12,13 +12,10 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::{Coloured, spectrum, walk};
+use super::{Coloured, scored, spectrum, walk};
 use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Lookups;
+use crate::estimators::{Estimator, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::spectral_rod::Values;
-use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral_rod::Tracker;
@@ -29,8 +26,27 @@ pub struct Independent {
     heroes: Heroes,
 }
 
+impl walk::Scores for Independent {
+    #[inline(always)]
+    fn heroes(&self) -> Option<&Heroes> {
+        Some(&self.heroes)
+    }
+
+    #[inline(always)]
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+        albedos[hero]
+    }
+
+    #[inline(always)]
+    fn weights(&self, albedos: &[f64], hero: usize, _: u32) -> [f64; MOST_CHANNELS] {
+        let mut weights = [0.0; MOST_CHANNELS];
+        weights[hero] = 1.0 / self.heroes.probability(albedos.len(), hero);
+        weights
+    }
+}
+
 impl<P: Coloured> Estimator<P> for Independent {
-    const INPUTS: Inputs = Inputs::SAMPLING;
+    scored!();
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { heroes: Heroes::read(settings)? })
@@ -47,15 +63,5 @@ impl<P: Coloured> Estimator<P> for Independent {
     fn predict(&self, setup: &Setup<P>) -> Prediction {
         let heroes = self.heroes.of(setup.problem.colours().albedos.len());
         spectrum(setup, heroes, Tracker::Independent).predict()
-    }
-
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let colours = setup.problem.colours();
-        let hero = self.heroes.choose(colours.albedos.len(), rng.uniform());
-        let left = P::walk(setup, medium, rng, colours.albedos[hero]);
-        let mut weights = [0.0; MOST_CHANNELS];
-        weights[hero] = 1.0 / self.heroes.probability(colours.albedos.len(), hero);
-        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

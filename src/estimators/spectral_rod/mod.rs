@@ -1,6 +1,7 @@
 //! Walks through a rod of coloured scatterers, all channels by one draw.
 
 pub mod independent;
+pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
@@ -27,6 +28,9 @@ pub trait Coloured: Problem<Value = Values> {
     /// What theory knows of it.
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_>;
 
+    /// Where walks take place, for packets.
+    fn place(&self) -> packet::Place<'_>;
+
     /// Walks with a chance to be scattered at a real collision.
     fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left;
 }
@@ -44,6 +48,10 @@ impl Coloured for SpectralRod {
         Box::new(Rods::new(&setup.problem, &setup.mesh, &setup.sampling))
     }
 
+    fn place(&self) -> packet::Place<'_> {
+        packet::Place::Rod(self.forward)
+    }
+
     #[inline(always)]
     fn walk(setup: &Setup<Self>, medium: &Lookups, rng: &mut Stream, scatter: f64) -> walk::Left {
         walk::walk(setup, medium, rng, scatter)
@@ -54,6 +62,35 @@ impl Coloured for SpectralRod {
 fn spectrum<P: Coloured>(setup: &Setup<P>, heroes: Vec<f64>, tracker: Tracker) -> Spectrum<'_> {
     Spectrum::new(P::body(setup), setup.problem.colours(), heroes, tracker)
 }
+
+/// The draws of a page: all that differs are its [`walk::Scores`].
+macro_rules! scored {
+    () => {
+        const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
+
+        #[inline(always)]
+        fn draw(
+            &self,
+            setup: &$crate::estimators::Setup<P>,
+            medium: &$crate::media::Lookups,
+            rng: &mut $crate::rng::Stream,
+        ) -> $crate::estimators::Draw<$crate::problems::spectral_rod::Values> {
+            $crate::estimators::spectral_rod::walk::draw(self, setup, medium, rng)
+        }
+
+        fn draw_packets<'a>(
+            &self,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<P>,
+            medium: &$crate::media::Lookups,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::spectral_rod::packet::walks(level, setup, self, medium, request)
+        }
+    };
+}
+use scored;
 
 estimators! {
     SpectralRod:

@@ -15,13 +15,10 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.
 
-use super::{Coloured, spectrum, walk};
+use super::{Coloured, scored, spectrum, walk};
 use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Lookups;
+use crate::estimators::{Estimator, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::spectral_rod::Values;
-use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral_rod::Tracker;
@@ -32,8 +29,40 @@ pub struct SpectralMis {
     heroes: Heroes,
 }
 
+impl walk::Scores for SpectralMis {
+    #[inline(always)]
+    fn heroes(&self) -> Option<&Heroes> {
+        Some(&self.heroes)
+    }
+
+    #[inline(always)]
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+        albedos[hero]
+    }
+
+    #[inline(always)]
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+        let count = albedos.len();
+        let mut weights = [1.0; MOST_CHANNELS];
+        for _ in 0..order {
+            // Relative to the hero's, which was scattered so often.
+            for (weight, albedo) in weights.iter_mut().zip(albedos) {
+                *weight *= albedo / albedos[hero];
+            }
+        }
+        let mut density = 0.0;
+        for (channel, weight) in weights[..count].iter().enumerate() {
+            density += self.heroes.probability(count, channel) * weight;
+        }
+        for weight in &mut weights[..count] {
+            *weight /= density;
+        }
+        weights
+    }
+}
+
 impl<P: Coloured> Estimator<P> for SpectralMis {
-    const INPUTS: Inputs = Inputs::SAMPLING;
+    scored!();
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { heroes: Heroes::read(settings)? })
@@ -50,28 +79,5 @@ impl<P: Coloured> Estimator<P> for SpectralMis {
     fn predict(&self, setup: &Setup<P>) -> Prediction {
         let heroes = self.heroes.of(setup.problem.colours().albedos.len());
         spectrum(setup, heroes, Tracker::Mis).predict()
-    }
-
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let colours = setup.problem.colours();
-        let count = colours.albedos.len();
-        let hero = self.heroes.choose(count, rng.uniform());
-        let left = P::walk(setup, medium, rng, colours.albedos[hero]);
-        let mut weights = [1.0; MOST_CHANNELS];
-        for _ in 0..left.order {
-            // Relative to the hero's, which was scattered so often.
-            for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
-                *weight *= albedo / colours.albedos[hero];
-            }
-        }
-        let mut density = 0.0;
-        for (channel, weight) in weights[..count].iter().enumerate() {
-            density += self.heroes.probability(count, channel) * weight;
-        }
-        for weight in &mut weights[..count] {
-            *weight /= density;
-        }
-        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

@@ -17,13 +17,10 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
 
-use super::{Coloured, spectrum, walk};
+use super::{Coloured, scored, spectrum, walk};
 use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Lookups;
+use crate::estimators::{Estimator, Refusal, Setup};
 use crate::media::body::MOST_CHANNELS;
-use crate::problems::spectral_rod::Values;
-use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral_rod::{Spectrum, Tracker};
@@ -54,8 +51,32 @@ impl SpectralTracking {
     }
 }
 
+impl walk::Scores for SpectralTracking {
+    #[inline(always)]
+    fn heroes(&self) -> Option<&Heroes> {
+        None
+    }
+
+    #[inline(always)]
+    fn chance(&self, albedos: &[f64], _: usize) -> f64 {
+        self.scatter(albedos)
+    }
+
+    #[inline(always)]
+    fn weights(&self, albedos: &[f64], _: usize, order: u32) -> [f64; MOST_CHANNELS] {
+        let scatter = self.scatter(albedos);
+        let mut weights = [1.0; MOST_CHANNELS];
+        for _ in 0..order {
+            for (weight, albedo) in weights.iter_mut().zip(albedos) {
+                *weight *= albedo / scatter;
+            }
+        }
+        weights
+    }
+}
+
 impl<P: Coloured> Estimator<P> for SpectralTracking {
-    const INPUTS: Inputs = Inputs::SAMPLING;
+    scored!();
 
     fn read(settings: &Settings) -> Option<Self> {
         let word = settings.word_or("probabilities", &["average", "maximum"], "average")?;
@@ -73,19 +94,5 @@ impl<P: Coloured> Estimator<P> for SpectralTracking {
 
     fn predict(&self, setup: &Setup<P>) -> Prediction {
         self.spectrum(setup).predict()
-    }
-
-    #[inline(always)]
-    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<Values> {
-        let colours = setup.problem.colours();
-        let scatter = self.scatter(&colours.albedos);
-        let left = P::walk(setup, medium, rng, scatter);
-        let mut weights = [1.0; MOST_CHANNELS];
-        for _ in 0..left.order {
-            for (weight, albedo) in weights.iter_mut().zip(&colours.albedos) {
-                *weight *= albedo / scatter;
-            }
-        }
-        Draw::free(colours.values(left.end, &weights), left.lookups)
     }
 }

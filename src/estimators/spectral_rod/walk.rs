@@ -5,13 +5,15 @@
 //! 1 − r, r = σ_t/σ̂, is scattered with a r, and absorbed otherwise; scattered, it turns round with 1 − p_f
 //! ```
 //!
-//! A flight and what happens at its end take a random number each; a scattering takes a third.
+//! A flight and what happens at its end take a random number each; a scattering takes a third, the choice of a hero
+//! the first of all. Eight at a time: [`super::packet`].
 
 use super::Coloured;
-use crate::estimators::{Refusal, Setup};
+use crate::estimators::{Draw, Refusal, Setup};
+use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
 use crate::problems::SpectralRod;
-use crate::problems::spectral_rod::End;
+use crate::problems::spectral_rod::{End, Values};
 use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
 
@@ -53,6 +55,35 @@ pub fn walk(setup: &Setup<SpectralRod>, medium: &Lookups, rng: &mut Stream, scat
         order += 1;
         is_forward ^= rng.uniform() >= setup.problem.forward;
     }
+}
+
+/// Whose walk it is, and what it is worth in every channel.
+pub trait Scores {
+    /// The law of the hero; `None` where one walk is that of all channels, number 0.
+    fn heroes(&self) -> Option<&Heroes>;
+
+    /// A hero's chance to be scattered at a real collision.
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64;
+
+    /// What its walk is worth in every channel where it leaves after so many scatterings.
+    fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];
+}
+
+/// Makes one draw.
+#[inline(always)]
+pub fn draw<P: Coloured>(
+    page: &impl Scores,
+    setup: &Setup<P>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    let colours = setup.problem.colours();
+    let albedos = &colours.albedos;
+    let heroes = page.heroes();
+    let hero = heroes.map_or(0, |heroes| heroes.choose(albedos.len(), rng.uniform()));
+    let left = P::walk(setup, medium, rng, page.chance(albedos, hero));
+    let weights = page.weights(albedos, hero, left.order);
+    Draw::free(colours.values(left.end, &weights), left.lookups)
 }
 
 /// σ̂ ≥ σ_t, few collisions, one hero probability for each channel, and an answer.

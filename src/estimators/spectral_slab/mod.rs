@@ -5,6 +5,7 @@ pub mod spectral_mis;
 pub mod spectral_tracking;
 
 use super::spectral_rod::Coloured;
+use super::spectral_rod::packet::Place;
 use super::spectral_rod::walk::Left;
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators, slab};
@@ -43,6 +44,10 @@ impl Coloured for SpectralSlab {
     fn body(setup: &Setup<Self>) -> Box<dyn Body + '_> {
         let fields = (&*setup.mesh, &setup.sampling);
         Box::new(Slabs::new(&setup.problem, fields, setup.laws))
+    }
+
+    fn place(&self) -> Place<'_> {
+        Place::Slab(&self.incidence)
     }
 
     #[inline(always)]
