@@ -57,6 +57,13 @@ impl<'a, S: Simd> Even<'a, S> {
         let rate = f64x8::splat(simd, field.value);
         Self { field, begin, end, rate, path, way: begin }
     }
+
+    /// At its end.
+    #[must_use]
+    #[inline(always)]
+    pub fn from_end(self) -> Self {
+        Self { way: self.end, ..self }
+    }
 }
 
 impl<S: Simd> Course<S> for Even<'_, S> {
@@ -137,22 +144,22 @@ impl<'a, S: Simd> Pieces<'a, S> {
         let packs =
             [&mut self.knot, &mut self.end, &mut self.left, &mut self.right, &mut self.slope];
         let mut rows = [[0.0; WIDTH]; 5];
-        for (row, pack) in rows.iter_mut().zip(&packs) {
-            pack.store_slice(row);
+        for (number, row) in rows.iter_mut().enumerate() {
+            packs[number].store_slice(row);
         }
         for (lane, &piece) in self.piece.iter().enumerate() {
             if which >> lane & 1 == 1 {
                 let (knot, end) = (self.field.knots[piece], self.field.knots[piece + 1]);
                 let (left, slope) = (self.field.left[piece], self.field.slope[piece]);
                 let values = [knot, end, left, self.field.line(piece, end), slope];
-                for (row, value) in rows.iter_mut().zip(values) {
-                    row[lane] = value;
+                for (number, row) in rows.iter_mut().enumerate() {
+                    row[lane] = values[number];
                 }
             }
         }
         let simd = self.t.token();
-        for (pack, row) in packs.into_iter().zip(&rows) {
-            *pack = f64x8::from_slice(simd, row);
+        for (number, pack) in packs.into_iter().enumerate() {
+            *pack = f64x8::from_slice(simd, &rows[number]);
         }
     }
 
@@ -254,9 +261,9 @@ impl<S: Simd> BothWays<S> for Pieces<'_, S> {
         if bits == 0 {
             return;
         }
-        for (lane, (piece, &there)) in self.piece.iter_mut().zip(&other.piece).enumerate() {
+        for (lane, piece) in self.piece.iter_mut().enumerate() {
             if bits >> lane & 1 == 1 {
-                *piece = there;
+                *piece = other.piece[lane];
             }
         }
         self.knot = Lane::select(which, other.knot, self.knot);

@@ -168,9 +168,9 @@ impl Tally<SUMS> for InfiniteMedium {
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;
         let radii = &self.radii;
-        for (sum, radius) in sums.iter_mut().zip(radii) {
+        for (number, radius) in radii.iter().enumerate() {
             let within = square.below(square.each(radius * radius));
-            add_where(sum, at.inside & within, real);
+            add_where(&mut sums[number], at.inside & within, real);
         }
         let rest = at.albedo.each(1.0) - at.albedo;
         add_where(&mut sums[radii.len()], at.inside, real * rest * square);

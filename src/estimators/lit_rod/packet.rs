@@ -7,7 +7,7 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::walk::transmittance;
+use super::walk::log_transmittance;
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::kernels::packet::bank::{Numbers, Particles, Slots};
@@ -105,7 +105,7 @@ struct InLitRod<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> InLitRod<'_, S, C> {
-    /// The exact transmittances to the emitter from where some are.
+    /// The exact transmittances to the emitter from where some are; those of the others mean nothing.
     #[inline(always)]
     fn transmittances(&self, which: mask64x8<S>) -> f64x8<S> {
         let (mut row, bits) = ([0.0; WIDTH], which.to_bitmask());
@@ -114,9 +114,9 @@ impl<S: Simd, C: BothWays<S>> InLitRod<'_, S, C> {
         }
         self.t.store_slice(&mut row);
         for (lane, t) in row.iter_mut().enumerate() {
-            *t = if bits >> lane & 1 == 1 { transmittance(self.setup, *t, 1.0) } else { 0.0 };
+            *t = if bits >> lane & 1 == 1 { log_transmittance(self.setup, *t, 1.0) } else { 0.0 };
         }
-        f64x8::from_slice(self.t.token(), &row)
+        f64x8::from_slice(self.t.token(), &row).exp()
     }
 
     /// What shadow rays find, those on their way and those of walks that are scattered here.
@@ -167,7 +167,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InLitRod<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
         let Self { techniques, number, t, inside, casts, .. } = *self;
         let rod = &self.setup.problem.rod;
         let one = t.each(1.0);

@@ -93,11 +93,18 @@ impl Steps for Techniques {
     }
 }
 
-/// The transmittance from a distance to the end of a medium, along a direction of a cosine with its line.
+/// Minus the optical depth from a distance to the end of a medium, along a direction of a cosine with its line: the
+/// logarithm of the transmittance.
+#[inline(always)]
+pub fn log_transmittance<P: Problem>(setup: &Setup<P>, from: f64, cosine: f64) -> f64 {
+    let rest = Span::new(from, setup.mesh.support().to);
+    -(setup.problem.medium().optical_depth(rest).value / cosine)
+}
+
+/// The transmittance.
 #[inline(always)]
 pub fn transmittance<P: Problem>(setup: &Setup<P>, from: f64, cosine: f64) -> f64 {
-    let rest = Span::new(from, setup.mesh.support().to);
-    Lane::exp(-(setup.problem.medium().optical_depth(rest).value / cosine))
+    Lane::exp(log_transmittance(setup, from, cosine))
 }
 
 /// Where a walk takes place: a rod with its emitter, and σ̂.

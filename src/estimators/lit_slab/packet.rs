@@ -7,7 +7,7 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use crate::estimators::lit_rod::walk::transmittance;
+use crate::estimators::lit_rod::walk::log_transmittance;
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::kernels::packet::bank::{Numbers, Particles, Slots};
@@ -112,18 +112,18 @@ struct InLitSlab<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> InLitSlab<'_, S, C> {
-    /// The exact transmittances from where some are, along directions.
+    /// The exact transmittances from where some are, along directions; those of the others mean nothing.
     #[inline(always)]
     fn transmittances(&self, which: mask64x8<S>, cosines: f64x8<S>) -> f64x8<S> {
         let (mut row, mut along) = ([0.0; WIDTH], [0.0; WIDTH]);
         let bits = which.to_bitmask();
         self.t.store_slice(&mut row);
         cosines.store_slice(&mut along);
-        for (lane, (t, cosine)) in row.iter_mut().zip(along).enumerate() {
+        for (lane, t) in row.iter_mut().enumerate() {
             let is_asked = bits >> lane & 1 == 1;
-            *t = if is_asked { transmittance(self.setup, *t, cosine) } else { 0.0 };
+            *t = if is_asked { log_transmittance(self.setup, *t, along[lane]) } else { 0.0 };
         }
-        f64x8::from_slice(self.t.token(), &row)
+        f64x8::from_slice(self.t.token(), &row).exp()
     }
 
     /// Those that are scattered here choose a direction to the light, and draw one.
@@ -205,7 +205,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InLitSlab<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
         let Self { techniques, number, t, inside, casts, seeks, .. } = *self;
         let one = t.each(1.0);
         self.lookups = Lane::select(inside, self.lookups + 1.0, self.lookups);

@@ -108,7 +108,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InRod<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
         let Self { rod, rule, number, t, inside, weight, .. } = *self;
         let one = t.each(1.0);
         let path = self.course.mean_free_path();
@@ -143,12 +143,12 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InRod<'_, S, C> {
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let (inside, is_forward) = (self.inside.to_bitmask(), self.is_forward.to_bitmask());
-        let mut ends = Ends { inside, is_forward, ..Ends::default() };
+        let mut ends = Ends { inside, is_forward, ..Ends::NONE };
         self.weight.store_slice(&mut ends.weight);
         self.order.store_slice(&mut ends.order);
         self.absorbed.store_slice(&mut ends.absorbed);
-        for (end, flux) in ends.flux.iter_mut().zip(&self.flux) {
-            flux.store_slice(end);
+        for (part, end) in ends.flux.iter_mut().enumerate() {
+            self.flux[part].store_slice(end);
         }
         ends.collect(slots, ended, self.rod, buffer)
     }
@@ -213,7 +213,6 @@ impl Parts {
 }
 
 /// What eight walks have come to.
-#[derive(Default)]
 #[repr(align(64))]
 struct Ends {
     /// Who ended inside, and who was going forward, as bits.
@@ -226,6 +225,15 @@ struct Ends {
 }
 
 impl Ends {
+    const NONE: Self = Self {
+        inside: 0,
+        is_forward: 0,
+        weight: [0.0; WIDTH],
+        order: [0.0; WIDTH],
+        absorbed: [0.0; WIDTH],
+        flux: [[0.0; WIDTH]; MOST_PARTS],
+    };
+
     /// What became of one of them.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
     fn fate(&self, lane: usize) -> Fate {
@@ -245,8 +253,8 @@ impl Ends {
     fn collect(&self, slots: &mut Slots, ended: u64, rod: &Rod, buffer: &mut DrawBuffer) -> u64 {
         slots.fill(ended, |Slot { lane, draw, steps }| {
             let values = self.fate(lane).values(&rod.channels);
-            for (channel, value) in buffer.values.iter_mut().zip(values.as_ref()) {
-                channel[draw] = *value;
+            for (number, channel) in buffer.values.iter_mut().enumerate() {
+                channel[draw] = values.at[number];
             }
             buffer.defects[draw] = 0.0;
             // The step that leaves looks at nothing.

@@ -71,13 +71,13 @@ impl Fate {
     #[inline(always)]
     pub fn values(&self, channels: &[Quantity]) -> Values {
         let mut values = Values { at: [0.0; MOST], count: channels.len() };
-        for (value, seen) in values.at.iter_mut().zip(channels) {
+        for (number, seen) in channels.iter().enumerate() {
             let by_order = match self.left {
                 Some(Quantity::Reflected) => Some(Quantity::ReflectedBy(self.order)),
                 Some(_) => Some(Quantity::TransmittedBy(self.order)),
                 None => None,
             };
-            *value = if *seen == Quantity::Absorbed {
+            values.at[number] = if *seen == Quantity::Absorbed {
                 self.absorbed
             } else if let Quantity::Flux(part) = *seen {
                 self.flux[part]

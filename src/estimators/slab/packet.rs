@@ -112,7 +112,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InSlab<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
         let Self { number, inside, cosine, .. } = *self;
         let incidence = &self.slab.incidence;
         let albedo = extinction.each(self.slab.albedo);
@@ -135,7 +135,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InSlab<'_, S, C> {
 
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
-        let mut ends = Ends { inside: self.inside.to_bitmask(), ..Ends::default() };
+        let mut ends = Ends { inside: self.inside.to_bitmask(), values: [[0.0; WIDTH]; 2] };
         let zero = self.from.each(0.0);
         let left = Lane::select(self.inside, zero, self.weight);
         Lane::select(self.is_down, zero, left).store_slice(&mut ends.values[0]);
@@ -154,7 +154,6 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InSlab<'_, S, C> {
 }
 
 /// What eight walks have come to.
-#[derive(Default)]
 #[repr(align(64))]
 struct Ends {
     /// Who ended inside, as bits.
@@ -169,8 +168,8 @@ impl Ends {
     #[allow(clippy::cast_possible_truncation)] // one bit
     fn collect(&self, slots: &mut Slots, ended: u64, buffer: &mut DrawBuffer) -> u64 {
         slots.fill(ended, |Slot { lane, draw, steps }| {
-            for (channel, values) in buffer.values.iter_mut().zip(&self.values) {
-                channel[draw] = values[lane];
+            for (number, channel) in buffer.values.iter_mut().enumerate() {
+                channel[draw] = self.values[number][lane];
             }
             buffer.defects[draw] = 0.0;
             // The step that leaves looks at nothing.

@@ -141,8 +141,8 @@ pub fn one_by_one(
 #[inline(always)]
 pub fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
     let mut rows = [[0.0; WIDTH]; 3];
-    for (row, coordinate) in rows.iter_mut().zip(points) {
-        coordinate.store_slice(row);
+    for (axis, row) in rows.iter_mut().enumerate() {
+        points[axis].store_slice(row);
     }
     rows
 }

@@ -165,13 +165,7 @@ impl<S: Simd> Flights<S> {
             let axis = [first, !first & y.at_most(edge)];
             let slope = of_axis(axis, self.direction);
             let (is_up, cell) = (zero.below(slope), of_axis(axis, self.cell));
-            let last = of_axis(
-                axis,
-                ground.last.map(
-                    #[inline(always)]
-                    |x| zero.each(x),
-                ),
-            );
+            let last = of_axis(axis, lanes(zero, ground.last));
             let last = Lane::select(is_up, last, zero);
             let is_last = cell.at_most(last) & last.at_most(cell);
             let leaves = on_its_way & (self.end.at_most(edge) | is_last);
@@ -182,20 +176,8 @@ impl<S: Simd> Flights<S> {
             }
             let cell = cell + Lane::select(is_up, one, -one);
             let index = cell + Lane::select(is_up, one, zero);
-            let width = of_axis(
-                axis,
-                ground.width.map(
-                    #[inline(always)]
-                    |x| zero.each(x),
-                ),
-            );
-            let low = of_axis(
-                axis,
-                ground.low.map(
-                    #[inline(always)]
-                    |x| zero.each(x),
-                ),
-            );
+            let width = of_axis(axis, lanes(zero, ground.width));
+            let low = of_axis(axis, lanes(zero, ground.low));
             let plane = (low + width * index - of_axis(axis, self.origin)) / slope;
             let [first, second] = axis;
             for (axis, crossed) in [first, second, !first & !second].into_iter().enumerate() {
@@ -205,4 +187,10 @@ impl<S: Simd> Flights<S> {
             }
         }
     }
+}
+
+/// Three numbers in all lanes.
+#[inline(always)]
+fn lanes<L: Lane>(like: L, [x, y, z]: [f64; 3]) -> [L; 3] {
+    [like.each(x), like.each(y), like.each(z)]
 }

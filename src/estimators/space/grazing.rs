@@ -20,12 +20,10 @@ pub fn chord<L: Lane>(
     direction: [L; 3],
 ) -> [L; 2] {
     let [x, y, z] = direction;
-    let [u, v, w] = centre.map(
-        #[inline(always)]
-        |centre| a.each(centre),
-    );
-    let to_centre = [two_sum(u, -a), two_sum(v, -b), two_sum(w, -c)];
-    let [u, v, w] = to_centre;
+    let [u, v, w] = centre;
+    let u = two_sum(a.each(u), -a);
+    let v = two_sum(a.each(v), -b);
+    let w = two_sum(a.each(w), -c);
     let square = two_prod(x, x) + two_prod(y, y) + two_prod(z, z);
     let foot = (u.times(x) + v.times(y) + w.times(z)) / square;
     let [u, v, w] = [u - foot.times(x), v - foot.times(y), w - foot.times(z)];
@@ -36,8 +34,5 @@ pub fn chord<L: Lane>(
     let half = half.root();
     let (from, to) = (foot - half, foot + half);
     let foot = (foot.high + foot.low).or_more(zero);
-    [from, to].map(
-        #[inline(always)]
-        |end| L::select(is_none, foot, end.high + end.low),
-    )
+    [L::select(is_none, foot, from.high + from.low), L::select(is_none, foot, to.high + to.low)]
 }

@@ -95,13 +95,13 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             // Who casts a shadow ray does not walk: its flight begins anew when that has come to its end.
             let on = self.shadows.on;
             let (place, inside) = self.shadows.fly(rays, self.flights.origin, depth);
-            for (walked, cast) in flown.place.iter_mut().zip(place) {
-                *walked = Lane::select(on, cast, *walked);
+            for (axis, walked) in flown.place.iter_mut().enumerate() {
+                *walked = Lane::select(on, place[axis], *walked);
             }
             flown.inside = (flown.inside & !on) | inside;
         }
-        for (row, coordinate) in points.iter_mut().zip(flown.place) {
-            coordinate.store_slice(&mut row[number * WIDTH..][..WIDTH]);
+        for (axis, row) in points.iter_mut().enumerate() {
+            flown.place[axis].store_slice(&mut row[number * WIDTH..][..WIDTH]);
         }
         flown
     }
@@ -158,8 +158,8 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         self.ended = if T::CASTS { !goes_on & !casts } else { !goes_on };
         self.scattered = is_scattered;
         self.unscattered &= !is_scattered;
-        for (from, place) in self.flights.origin.iter_mut().zip(place) {
-            *from = Lane::select(is_scattered, place, *from);
+        for (axis, from) in self.flights.origin.iter_mut().enumerate() {
+            *from = Lane::select(is_scattered, place[axis], *from);
         }
     }
 
@@ -202,8 +202,8 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         }
         let turns = self.numbers.uniform_where(which);
         let turned = frame::turned_lanes(self.flights.direction, cosine, turns);
-        for (to, turned) in self.flights.direction.iter_mut().zip(turned) {
-            *to = Lane::select(which, turned, *to);
+        for (axis, to) in self.flights.direction.iter_mut().enumerate() {
+            *to = Lane::select(which, turned[axis], *to);
         }
     }
 

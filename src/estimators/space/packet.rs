@@ -144,8 +144,8 @@ pub fn collect<S: Simd>(
     buffer: &mut DrawBuffer,
 ) -> u64 {
     slots.fill(ended, |Slot { lane, draw, .. }| {
-        for (values, &sum) in buffer.values.iter_mut().zip(channels) {
-            values[draw] = sums[sum].as_slice()[lane];
+        for (channel, &sum) in channels.iter().enumerate() {
+            buffer.values[channel][draw] = sums[sum].as_slice()[lane];
         }
         buffer.defects[draw] = 0.0;
         buffer.lookups[draw] = lookups.as_slice()[lane] as u32;

@@ -132,8 +132,8 @@ impl<S: Simd> Shadows<S> {
             }
         };
         self.on |= is_blocked;
-        for (direction, light) in self.direction.iter_mut().zip(light.direction) {
-            *direction = Lane::select(is_blocked, light, *direction);
+        for (axis, direction) in self.direction.iter_mut().enumerate() {
+            *direction = Lane::select(is_blocked, light.direction[axis], *direction);
         }
         self.t = Lane::select(is_blocked, from, self.t);
         self.end = Lane::select(is_blocked, end, self.end);

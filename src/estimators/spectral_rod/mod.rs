@@ -84,8 +84,8 @@ macro_rules! scored {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<P>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             $crate::estimators::spectral_rod::packet::walks(level, setup, self, medium, request)
         }
     };

@@ -11,11 +11,12 @@ use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64
 
 use super::Coloured;
 use super::walk::Scores;
-use crate::estimators::packet::bank::{Numbers, Particles, Slot, Slots};
-use crate::estimators::packet::{Request, line};
 use crate::estimators::slab::packet::entering;
 use crate::estimators::slab::walk::turned;
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::packet::bank::{Numbers, Particles, Slot, Slots};
+use crate::kernels::packet::hero::{Law, number_of_hero};
+use crate::kernels::packet::{Request, line};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::media::course::BothWays;
@@ -57,10 +58,10 @@ pub fn walks<'a, P: Coloured>(
 struct Worth<'a> {
     page: &'a dyn Scores,
     colours: &'a Colours,
-    /// Whether a hero is chosen.
-    is_chosen: bool,
-    /// The probability of those before each hero, and its chance to be scattered at a real collision.
-    heroes: Vec<[f64; 2]>,
+    /// The law of the hero, if one is chosen.
+    law: Option<Law>,
+    /// The chance of each hero to be scattered at a real collision.
+    chances: Vec<f64>,
     /// By order and hero.
     table: Vec<[f64; MOST_CHANNELS]>,
 }
@@ -68,22 +69,16 @@ struct Worth<'a> {
 impl<'a> Worth<'a> {
     fn new(page: &'a dyn Scores, colours: &'a Colours) -> Self {
         let albedos = &colours.albedos;
-        let law = page.heroes();
-        let count = law.map_or(1, |_| albedos.len());
-        let mut before = 0.0;
-        let heroes = (0..count).map(|hero| {
-            let begins = before;
-            before += law.map_or(1.0, |law| law.probability(count, hero));
-            [begins, page.chance(albedos, hero)]
-        });
-        let heroes = heroes.collect();
+        let law = page.heroes().map(|heroes| Law::new(heroes, albedos.len()));
+        let count = if law.is_some() { albedos.len() } else { 1 };
+        let chances = (0..count).map(|hero| page.chance(albedos, hero)).collect();
         let of = |order| (0..count).map(move |hero| page.weights(albedos, hero, order));
         let table = (0..TABLE).flat_map(of).collect();
-        Self { page, colours, is_chosen: law.is_some(), heroes, table }
+        Self { page, colours, law, chances, table }
     }
 
     fn weights(&self, hero: usize, order: usize) -> [f64; MOST_CHANNELS] {
-        let known = self.table.get(order * self.heroes.len() + hero);
+        let known = self.table.get(order * self.chances.len() + hero);
         known.copied().unwrap_or_else(|| {
             let order = u32::try_from(order).unwrap_or(u32::MAX);
             self.page.weights(&self.colours.albedos, hero, order)
@@ -151,18 +146,13 @@ impl<S: Simd, C: BothWays<S>> InBody<'_, S, C> {
     #[inline(always)]
     fn enter(&mut self, which: mask64x8<S>, numbers: &mut Numbers<S>) {
         let (zero, one) = (self.from.each(0.0), self.from.each(1.0));
-        let Worth { is_chosen, heroes, .. } = self.worth;
-        let (mut hero, mut chance) = (zero, one.each(heroes[0][1]));
-        if *is_chosen {
-            let number = numbers.uniform_where(which);
-            for (channel, &[before, scatter]) in heroes.iter().enumerate().skip(1) {
-                let later = !number.below(one.each(before));
-                hero = Lane::select(later, one.each(channel as f64), hero);
-                chance = Lane::select(later, one.each(scatter), chance);
-            }
-        }
+        let Worth { law, chances, .. } = self.worth;
+        let hero = match law {
+            Some(law) => law.choose(numbers.uniform_where(which)),
+            None => zero,
+        };
         self.hero = Lane::select(which, hero, self.hero);
-        self.chance = Lane::select(which, chance, self.chance);
+        self.chance = Lane::select(which, number_of_hero(hero, chances), self.chance);
         self.order = Lane::select(which, zero, self.order);
         let light = match self.place {
             Place::Rod(_) => Light::Collimated(1.0),
@@ -221,7 +211,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InBody<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, numbers: &mut Numbers<S>) -> u64 {
         let [is_scattered, passes] = self.decide(extinction);
         let cosine = self.turned(is_scattered, numbers);
         self.cosine = Lane::select(is_scattered, cosine, self.cosine);
@@ -233,7 +223,7 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InBody<'_, S, C> {
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
         let (inside, is_down) = (self.inside.to_bitmask(), self.is_down.to_bitmask());
-        let mut ends = Ends { inside, is_down, ..Ends::default() };
+        let mut ends = Ends { inside, is_down, hero: [0.0; WIDTH], order: [0.0; WIDTH] };
         self.hero.store_slice(&mut ends.hero);
         self.order.store_slice(&mut ends.order);
         ends.collect(slots, ended, self.worth, buffer)
@@ -248,7 +238,6 @@ impl<S: Simd, C: BothWays<S>> Particles<S> for InBody<'_, S, C> {
 }
 
 /// What eight walks have come to.
-#[derive(Default)]
 #[repr(align(64))]
 struct Ends {
     /// Who ended inside, and who was going down, as bits.
@@ -277,8 +266,9 @@ impl Ends {
                 _ => Some(End::Reflected),
             };
             let weights = worth.weights(self.hero[lane] as usize, self.order[lane] as usize);
-            for (values, (seen, channel)) in buffer.values.iter_mut().zip(&worth.colours.seen) {
-                values[draw] = if end == Some(*seen) { weights[*channel] } else { 0.0 };
+            for (number, &(seen, channel)) in worth.colours.seen.iter().enumerate() {
+                buffer.values[number][draw] =
+                    if end == Some(seen) { weights[channel] } else { 0.0 };
             }
             buffer.defects[draw] = 0.0;
             // The step that leaves looks at nothing.

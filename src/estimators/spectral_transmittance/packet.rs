@@ -2,26 +2,24 @@
 //!
 //! Specification: draw j is, bit for bit, the draw that its page makes from stream j mod 16.
 //!
-//! All channels are looked up at every collision, and each lane flies through the σ̂ of its own hero. What a
-//! survivor scores is made one by one at its end: densities relative to the hero's, which depend on the number
-//! of collisions, stand in a table.
+//! All channels are looked up at every collision, and each lane flies through the σ̂ of its own hero. Walks that end leave
+//! in the buffer what scores are made of, and when all have ended scores are made of that, eight draws at a time.
+//!
+//! Loops over channels count: a kernel does not inline iterators of two slices, and would lose its registers to the call.
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::walk::relative_density;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Particles, Slot, Slots};
+use crate::kernels::packet::hero::{Law, number_of_hero, of_hero};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
+use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task, WIDTH};
-use crate::numeric::{Lane, Twin};
 use crate::problems::SpectralTransmittance;
 use crate::setup::heroes::Heroes;
 use crate::theory::spectral::{Chance, Tracker};
-
-/// Up to so many collisions densities stand in a table.
-const TABLE: u32 = 64;
 
 /// What collides and what is scored.
 #[derive(Clone, Copy)]
@@ -56,33 +54,6 @@ struct Walks<'a, 'r> {
     request: Request<'r>,
 }
 
-/// `q_λ/q_h` by channel, hero and number of collisions.
-struct Densities<'a> {
-    setup: &'a Setup<SpectralTransmittance>,
-    table: Vec<f64>,
-}
-
-impl<'a> Densities<'a> {
-    fn new(setup: &'a Setup<SpectralTransmittance>) -> Self {
-        let count = setup.channels.len();
-        let mut table = Vec::with_capacity(count * count * TABLE as usize);
-        for channel in 0..count {
-            for hero in 0..count {
-                table.extend((0..TABLE).map(|n| relative_density(setup, channel, hero, n)));
-            }
-        }
-        Self { setup, table }
-    }
-
-    fn relative(&self, channel: usize, hero: usize, collisions: u32) -> f64 {
-        if collisions >= TABLE {
-            return relative_density(self.setup, channel, hero, collisions);
-        }
-        let row = channel * self.setup.channels.len() + hero;
-        self.table[row * TABLE as usize + collisions as usize]
-    }
-}
-
 impl Task for Walks<'_, '_> {
     type Output = ();
 
@@ -92,26 +63,29 @@ impl Task for Walks<'_, '_> {
         let count = setup.channels.len();
         let splat = |x: f64| f64x8::splat(simd, x);
         let support = setup.mesh.support();
-        let mut majorants = [splat(1.0); MOST_CHANNELS];
-        for (majorant, channel) in majorants.iter_mut().zip(&setup.channels) {
-            *majorant = splat(channel.majorant);
+        let (zero, one) = (splat(0.0), splat(1.0));
+        let (mut majorants, mut paths) = ([one; MOST_CHANNELS], [1.0; MOST_CHANNELS]);
+        for (number, channel) in setup.channels.iter().enumerate() {
+            majorants[number] = splat(channel.majorant);
+            paths[number] = 1.0 / channel.majorant;
         }
-        let densities = Densities::new(setup);
-        let one = splat(1.0);
         let fresh = AlongRay {
             setup,
             rule,
-            densities: &densities,
             majorants,
+            law: Law::new(rule.heroes, count),
+            paths,
             from: splat(support.from),
             to: splat(support.to),
             way: splat(support.from),
             path: one,
-            hero: splat(0.0),
+            hero: zero,
+            lookups: zero,
             inside: mask64x8::splat(simd, true),
             alive: mask64x8::splat(simd, true),
             ratios: [one; MOST_CHANNELS],
         };
+        let Request { streams, count: draws, buffer } = request;
         bank::run(
             simd,
             #[inline(always)]
@@ -120,18 +94,12 @@ impl Task for Walks<'_, '_> {
                 fresh.choose(mask64x8::splat(simd, true), numbers);
                 fresh
             },
+            [[zero; MOST_CHANNELS]; 2],
             #[inline(always)]
-            |places| {
-                let [mut first, mut second] = [[splat(0.0); MOST_CHANNELS]; 2];
-                let both = first.iter_mut().zip(&mut second).take(count);
-                for (channel, (first, second)) in both.enumerate() {
-                    let Twin(here, there) = medium.channel(channel).pair(simd, places);
-                    (*first, *second) = (here, there);
-                }
-                [first, second]
-            },
-            request,
+            |places, found| bank::of_channels(simd, medium, count, places, found),
+            Request { streams, count: draws, buffer: &mut *buffer },
         );
+        Scores::new(simd, setup, rule).of_all(buffer);
     }
 }
 
@@ -140,8 +108,10 @@ impl Task for Walks<'_, '_> {
 struct AlongRay<'a, S: Simd> {
     setup: &'a Setup<SpectralTransmittance>,
     rule: Rule<'a>,
-    densities: &'a Densities<'a>,
     majorants: [f64x8<S>; MOST_CHANNELS],
+    law: Law,
+    /// `1/σ̂` of each channel.
+    paths: [f64; MOST_CHANNELS],
     from: f64x8<S>,
     to: f64x8<S>,
     way: f64x8<S>,
@@ -149,6 +119,7 @@ struct AlongRay<'a, S: Simd> {
     path: f64x8<S>,
     /// The number of each hero.
     hero: f64x8<S>,
+    lookups: f64x8<S>,
     inside: mask64x8<S>,
     alive: mask64x8<S>,
     /// `ρ_λ`, or the weights of spectral tracking.
@@ -159,23 +130,14 @@ impl<S: Simd> AlongRay<'_, S> {
     /// Chooses the heroes of walks that begin.
     #[inline(always)]
     fn choose(&mut self, which: mask64x8<S>, numbers: &mut Numbers<S>) {
-        let one = self.from.each(1.0);
         if self.rule.is_common {
-            self.path = one / self.majorants[0];
+            self.path = self.from.each(self.paths[0]);
             return;
         }
-        let count = self.setup.channels.len();
-        let number = numbers.uniform_where(which);
-        let mut sum = self.rule.heroes.probability(count, 0);
-        let (mut hero, mut majorant) = (one.each(0.0), self.majorants[0]);
-        for channel in 1..count {
-            let later = !number.below(number.each(sum));
-            hero = Lane::select(later, one.each(channel as f64), hero);
-            majorant = Lane::select(later, self.majorants[channel], majorant);
-            sum += self.rule.heroes.probability(count, channel);
-        }
+        let hero = self.law.choose(numbers.uniform_where(which));
+        let path = number_of_hero(hero, &self.paths[..self.setup.channels.len()]);
         self.hero = Lane::select(which, hero, self.hero);
-        self.path = Lane::select(which, one / majorant, self.path);
+        self.path = Lane::select(which, path, self.path);
     }
 
     /// The chance that a collision is null, given the shares of all channels; 1 where all are.
@@ -200,21 +162,16 @@ impl<S: Simd> AlongRay<'_, S> {
             }
             Tracker::Mis { delta: true } if self.rule.is_common => {
                 let (mut nulls, mut all) = (one.each(0.0), one.each(0.0));
-                for (&weight, &share) in self.ratios.iter().zip(shares) {
-                    nulls += weight * share;
-                    all += weight;
+                for (channel, &share) in shares.iter().enumerate() {
+                    nulls += self.ratios[channel] * share;
+                    all += self.ratios[channel];
                 }
                 Some(nulls / all)
             }
             Tracker::Independent { delta: true }
             | Tracker::Hero { delta: true }
             | Tracker::Mis { delta: true } => {
-                let mut survival = one;
-                for (channel, &share) in shares.iter().enumerate() {
-                    let number = one.each(channel as f64);
-                    let is_hero = self.hero.at_most(number) & number.at_most(self.hero);
-                    survival = Lane::select(is_hero, share, survival);
-                }
+                let survival = of_hero(self.hero, shares);
                 Some(survival)
             }
             _ => None,
@@ -234,7 +191,7 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, found: Self::Found, numbers: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64 {
         let one = self.from.each(1.0);
         let count = self.setup.channels.len();
         let mut shares = [one; MOST_CHANNELS];
@@ -248,26 +205,24 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
             self.alive = numbers.uniform().below(survival) & self.inside;
         }
         let is_tracked = self.rule.is_common && survival.is_some();
-        for (ratio, &share) in self.ratios.iter_mut().zip(shares) {
+        for (channel, &share) in shares.iter().enumerate() {
             let factor = match survival {
                 Some(survival) if is_tracked => share / survival,
                 _ => share,
             };
-            *ratio = Lane::select(self.inside, *ratio * factor, *ratio);
+            let ratio = self.ratios[channel];
+            self.ratios[channel] = Lane::select(self.inside, ratio * factor, ratio);
         }
+        self.lookups = Lane::select(self.inside, self.lookups + 1.0, self.lookups);
         (!self.alive).to_bitmask()
     }
 
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
-        let mut ends = Ends::default();
+        // Who ends inside is killed.
+        let hero = Lane::select(self.inside, self.hero.each(KILLED), self.hero);
         let count = self.setup.channels.len();
-        for (row, ratio) in ends.ratios.iter_mut().zip(&self.ratios[..count]) {
-            ratio.store_slice(row);
-        }
-        self.hero.store_slice(&mut ends.hero);
-        ends.escaped = (!self.inside).to_bitmask();
-        ends.collect((self.setup, self.rule, self.densities), slots, ended, buffer)
+        collect(&self.ratios[..count], [&hero, &self.lookups], (ended, slots), buffer)
     }
 
     #[inline(always)]
@@ -278,89 +233,140 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
         for ratio in &mut self.ratios[..count] {
             *ratio = Lane::select(alive, *ratio, one);
         }
+        self.lookups = Lane::select(alive, self.lookups, one.each(0.0));
         self.choose(!alive, numbers);
     }
 }
 
-/// What eight walks have come to.
-#[derive(Default)]
-#[repr(align(64))]
-struct Ends {
-    ratios: [[f64; WIDTH]; MOST_CHANNELS],
-    hero: [f64; WIDTH],
-    /// Who reached the end, as bits.
-    escaped: u64,
+/// What stands in the place of the hero of a walk that was killed.
+const KILLED: f64 = -1.0;
+
+/// Leaves in the buffer what the scores of walks that ended are made of: their ratios as values, their heroes as defects.
+#[inline(never)]
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
+fn collect<S: Simd>(
+    ratios: &[f64x8<S>],
+    [hero, lookups]: [&f64x8<S>; 2],
+    (ended, slots): (u64, &mut Slots),
+    buffer: &mut DrawBuffer,
+) -> u64 {
+    slots.fill(ended, |Slot { lane, draw, .. }| {
+        for (channel, ratio) in ratios.iter().enumerate() {
+            buffer.values[channel][draw] = ratio.as_slice()[lane];
+        }
+        buffer.defects[draw] = hero.as_slice()[lane];
+        buffer.lookups[draw] = lookups.as_slice()[lane] as u32;
+    })
 }
 
-impl Ends {
-    /// Makes draws of those that ended.
-    #[inline(never)]
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the number of a channel
-    fn collect(
-        &self,
-        (setup, rule, densities): (&Setup<SpectralTransmittance>, Rule, &Densities),
-        slots: &mut Slots,
-        ended: u64,
-        buffer: &mut DrawBuffer,
-    ) -> u64 {
-        let count = setup.channels.len();
-        slots.fill(ended, |Slot { lane, draw, steps }| {
-            let escaped = self.escaped >> lane & 1 == 1;
-            let hero = self.hero[lane] as usize;
-            let mut found = [0.0; MOST_CHANNELS];
-            if escaped {
-                let ratio = |channel: usize| self.ratios[channel][lane];
-                score(rule, densities, (hero, steps), count, &ratio, &mut found);
-            }
-            let values = setup.problem.values(&found[..count]);
-            for (channel, value) in buffer.values.iter_mut().zip(values.as_ref()) {
-                channel[draw] = *value;
-            }
-            buffer.defects[draw] = 0.0;
-            // The step that leaves looks at nothing.
-            buffer.lookups[draw] = steps + u32::from(!escaped);
-        })
-    }
-}
-
-/// What a survivor scores after so many collisions, in the order in which the pages compute it.
-fn score(
-    rule: Rule,
-    densities: &Densities,
-    (hero, collisions): (usize, u32),
+/// Makes scores of what walks have left, as the pages do.
+struct Scores<'a, S: Simd> {
+    simd: S,
+    rule: Rule<'a>,
+    luminance: &'a [f64],
     count: usize,
-    ratio: &dyn Fn(usize) -> f64,
-    found: &mut [f64; MOST_CHANNELS],
-) {
-    let relative = |channel: usize| densities.relative(channel, hero, collisions);
-    match rule.tracker {
-        _ if rule.is_common => {
-            for (channel, found) in found[..count].iter_mut().enumerate() {
-                *found = ratio(channel);
+    /// `ln σ̂`, `∫σ̂` and the probability of each channel.
+    logarithms: [f64; MOST_CHANNELS],
+    collisions: [f64; MOST_CHANNELS],
+    chances: [f64; MOST_CHANNELS],
+}
+
+impl<'a, S: Simd> Scores<'a, S> {
+    #[inline(always)]
+    fn new(simd: S, setup: &'a Setup<SpectralTransmittance>, rule: Rule<'a>) -> Self {
+        let none = [0.0; MOST_CHANNELS];
+        let (mut logarithms, mut collisions, mut chances) = (none, none, none);
+        let count = setup.channels.len();
+        for (number, channel) in setup.channels.iter().enumerate() {
+            logarithms[number] = channel.ln_majorant;
+            collisions[number] = channel.collisions;
+            chances[number] = rule.heroes.probability(count, number);
+        }
+        let luminance = &setup.problem.luminance;
+        Self { simd, rule, luminance, count, logarithms, collisions, chances }
+    }
+
+    /// Of all draws of a buffer.
+    #[inline(always)]
+    fn of_all(&self, buffer: &mut DrawBuffer) {
+        let (simd, draws) = (self.simd, buffer.lookups.len());
+        buffer.make_room(draws.next_multiple_of(WIDTH));
+        for first in (0..draws).step_by(WIDTH) {
+            let pack = first..first + WIDTH;
+            let mut lookups = [0.0; WIDTH];
+            for (lane, lookups) in lookups.iter_mut().enumerate() {
+                *lookups = f64::from(buffer.lookups[first + lane]);
+            }
+            let lookups = f64x8::from_slice(simd, &lookups);
+            let hero = f64x8::from_slice(simd, &buffer.defects[pack.clone()]);
+            buffer.defects[pack.clone()].fill(0.0);
+            let mut found = [lookups; MOST_CHANNELS];
+            let found = &mut found[..self.count];
+            for (channel, found) in found.iter_mut().enumerate() {
+                *found = f64x8::from_slice(simd, &buffer.values[channel][pack.clone()]);
+            }
+            self.of_pack(hero, lookups, found);
+            for (channel, found) in found.iter().enumerate() {
+                found.store_slice(&mut buffer.values[channel][pack.clone()]);
+            }
+            if let [first, rest @ ..] = self.luminance {
+                let mut sum = found[0] * *first;
+                for (channel, &weight) in rest.iter().enumerate() {
+                    sum += found[channel + 1] * weight;
+                }
+                sum.store_slice(&mut buffer.values[self.count][pack]);
             }
         }
-        Tracker::Independent { delta } => {
-            let value = if delta { 1.0 } else { ratio(hero) };
-            found[hero] = value * (1.0 / rule.heroes.probability(count, hero));
-        }
-        Tracker::Hero { delta } => {
-            let density = if delta { ratio(hero) } else { 1.0 };
-            for (channel, found) in found[..count].iter_mut().enumerate() {
-                *found = relative(channel) * ratio(channel) / density;
+        buffer.make_room(draws);
+    }
+
+    /// Replaces the ratios of eight walks by their scores.
+    #[inline(always)]
+    fn of_pack(&self, hero: f64x8<S>, lookups: f64x8<S>, found: &mut [f64x8<S>]) {
+        let (zero, one) = (hero.each(0.0), hero.each(1.0));
+        match self.rule.tracker {
+            _ if self.rule.is_common => {}
+            Tracker::Independent { delta } => {
+                for (channel, found) in found.iter_mut().enumerate() {
+                    let number = zero.each(channel as f64);
+                    let is_hero = hero.at_most(number) & number.at_most(hero);
+                    let value = if delta { one } else { *found };
+                    *found = Lane::select(is_hero, value * (1.0 / self.chances[channel]), zero);
+                }
             }
-        }
-        Tracker::Mis { delta } => {
-            let mut density = 0.0;
-            for (channel, found) in found[..count].iter_mut().enumerate() {
-                let relative = relative(channel);
-                *found = relative * ratio(channel);
-                let by_hero = if delta { *found } else { relative };
-                density += rule.heroes.probability(count, channel) * by_hero;
+            Tracker::Hero { delta } => {
+                let density = if delta { of_hero(hero, found) } else { one };
+                for (channel, found) in found.iter_mut().enumerate() {
+                    *found = self.relative(channel, hero, lookups) * *found / density;
+                }
             }
-            for found in &mut found[..count] {
-                *found /= density;
+            Tracker::Mis { delta } => {
+                let mut density = zero;
+                for (channel, found) in found.iter_mut().enumerate() {
+                    let relative = self.relative(channel, hero, lookups);
+                    *found = relative * *found;
+                    let by_hero = if delta { *found } else { relative };
+                    density += by_hero * self.chances[channel];
+                }
+                for found in found.iter_mut() {
+                    *found /= density;
+                }
             }
+            Tracker::InTurn { .. } | Tracker::Tracking(_) => {}
         }
-        Tracker::InTurn { .. } | Tracker::Tracking(_) => {}
+        let lives = zero.at_most(hero);
+        for found in found {
+            *found = Lane::select(lives, *found, zero);
+        }
+    }
+
+    /// `q_λ/q_h`.
+    #[inline(always)]
+    fn relative(&self, channel: usize, hero: f64x8<S>, lookups: f64x8<S>) -> f64x8<S> {
+        let Self { logarithms, collisions, count, .. } = self;
+        let logarithm = number_of_hero(hero, &logarithms[..*count]);
+        let log = lookups * (hero.each(logarithms[channel]) - logarithm);
+        let expected = number_of_hero(hero, &collisions[..*count]);
+        Lane::exp(log - (hero.each(collisions[channel]) - expected))
     }
 }

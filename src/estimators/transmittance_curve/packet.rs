@@ -86,8 +86,9 @@ fn walk<S: Simd, C: Course<S> + Copy>(
         simd,
         #[inline(always)]
         |_| fresh,
+        [fresh.from; 2],
         #[inline(always)]
-        |places| bank::extinctions(simd, medium, places),
+        |places, found| bank::extinctions(simd, medium, places, found),
         request,
     );
 }
@@ -119,7 +120,7 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
     }
 
     #[inline(always)]
-    fn collide(&mut self, extinction: f64x8<S>, _: &mut Numbers<S>) -> u64 {
+    fn collide(&mut self, &extinction: &f64x8<S>, _: &mut Numbers<S>) -> u64 {
         let (inside, weight, invariant) = (self.inside, self.weight, self.invariant);
         let residual = extinction - self.control.at(self.t);
         let due = weight.each(1.0) - residual * self.course.mean_free_path();
@@ -129,7 +130,8 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
         self.invariant.scale = Lane::select(inside, after.scale, invariant.scale);
         self.weight = Lane::select(inside, weight * due, weight);
         let t = Lane::select(inside, self.t, weight.each(f64::INFINITY));
-        for (ahead, &distance) in self.ahead.iter_mut().zip(self.setup.problem.ascending()) {
+        for (number, &distance) in self.setup.problem.ascending().iter().enumerate() {
+            let ahead = &mut self.ahead[number];
             *ahead = Lane::select(t.below(t.each(distance)), self.weight, *ahead);
         }
         (!inside).to_bitmask()
@@ -137,10 +139,10 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
 
     #[inline(always)]
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64 {
-        let mut ends = Ends::default();
-        let curve = ends.values.iter_mut().zip(&self.ahead).zip(&self.setup.control_curve);
-        for ((end, ahead), control) in curve {
-            (*ahead * *control).store_slice(end);
+        let none = [0.0; WIDTH];
+        let mut ends = Ends { values: [none; MOST], weight: none, taken: none, scale: none };
+        for (number, &control) in self.setup.control_curve.iter().enumerate() {
+            (self.ahead[number] * control).store_slice(&mut ends.values[number]);
         }
         self.weight.store_slice(&mut ends.weight);
         self.invariant.taken.store_slice(&mut ends.taken);
@@ -164,7 +166,6 @@ impl<S: Simd, C: Course<S>> Particles<S> for AlongCurve<'_, S, C> {
 }
 
 /// What eight walks have come to: the curve, what is carried and what collisions took.
-#[derive(Default)]
 #[repr(align(64))]
 struct Ends {
     values: [[f64; WIDTH]; MOST],
@@ -178,8 +179,8 @@ impl Ends {
     #[inline(never)]
     fn collect(&self, slots: &mut Slots, ended: u64, buffer: &mut DrawBuffer) -> u64 {
         slots.fill(ended, |Slot { lane, draw, steps }| {
-            for (channel, values) in buffer.values.iter_mut().zip(&self.values) {
-                channel[draw] = values[lane];
+            for (number, channel) in buffer.values.iter_mut().enumerate() {
+                channel[draw] = self.values[number][lane];
             }
             let (taken, scale) = (self.taken[lane], self.scale[lane]);
             let invariant = Invariant { begin: 1.0, taken, scale };

@@ -15,6 +15,7 @@ use fearless_simd::{Simd, f64x8, u64x8};
 use super::Request;
 use crate::kernels::DrawBuffer;
 use crate::media::Lookups;
+use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Twin;
 use crate::numeric::pack::WIDTH;
 use crate::rng::{LANES, Streams, Xoshiro};
@@ -25,13 +26,13 @@ pub type Numbers<S> = Xoshiro<u64x8<S>>;
 /// The state of eight particles.
 pub trait Particles<S: Simd> {
     /// What is looked up for eight of them.
-    type Found;
+    type Found: Copy;
 
     /// Each flies on; answers where σ_t is asked for: inside the support.
     fn fly(&mut self, numbers: &mut Numbers<S>) -> f64x8<S>;
 
     /// What happens to each there, given what was looked up; answers whose walks end, as bits.
-    fn collide(&mut self, found: Self::Found, numbers: &mut Numbers<S>) -> u64;
+    fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64;
 
     /// Makes draws of the walks that ended, as bits; answers whose last ones these are.
     fn collect(&self, ended: u64, slots: &mut Slots, buffer: &mut DrawBuffer) -> u64;
@@ -40,12 +41,13 @@ pub trait Particles<S: Simd> {
     fn restart(&mut self, numbers: &mut Numbers<S>);
 }
 
-/// Walks until every lane has made its draws; `look_up` answers for both packs.
+/// Walks until every lane has made its draws; `look_up` answers for both packs in the place of what they found before.
 #[inline(always)]
 pub fn run<S: Simd, P: Particles<S>>(
     simd: S,
     begin: impl Fn(&mut Numbers<S>) -> P,
-    look_up: impl Fn(Twin<f64x8<S>>) -> [P::Found; 2],
+    mut found: [P::Found; 2],
+    look_up: impl Fn(Twin<f64x8<S>>, &mut [P::Found; 2]),
     request: Request,
 ) {
     let Request { streams, count, buffer } = request;
@@ -59,9 +61,9 @@ pub fn run<S: Simd, P: Particles<S>>(
     let (mut slots, mut other_slots) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
     while slots.are_open() || other_slots.are_open() {
         let places = Twin(particles.fly(&mut first), others.fly(&mut second));
-        let [here, there] = look_up(places);
-        let ended = particles.collide(here, &mut first);
-        let other_ended = others.collide(there, &mut second);
+        look_up(places, &mut found);
+        let ended = particles.collide(&found[0], &mut first);
+        let other_ended = others.collide(&found[1], &mut second);
         if ended != 0 {
             let over = particles.collect(ended, &mut slots, buffer);
             leave(streams, 0, over, first);
@@ -80,9 +82,30 @@ pub fn run<S: Simd, P: Particles<S>>(
 
 /// σ_t for both packs.
 #[inline(always)]
-pub fn extinctions<S: Simd>(simd: S, medium: &Lookups, t: Twin<f64x8<S>>) -> [f64x8<S>; 2] {
+pub fn extinctions<S: Simd>(
+    simd: S,
+    medium: &Lookups,
+    t: Twin<f64x8<S>>,
+    found: &mut [f64x8<S>; 2],
+) {
     let Twin(here, there) = medium.pair(simd, t);
-    [here, there]
+    *found = [here, there];
+}
+
+/// σ_t of so many channels for both packs.
+#[inline(always)]
+pub fn of_channels<S: Simd>(
+    simd: S,
+    medium: &Lookups,
+    count: usize,
+    t: Twin<f64x8<S>>,
+    found: &mut [[f64x8<S>; MOST_CHANNELS]; 2],
+) {
+    let [first, second] = found;
+    for (channel, first) in first[..count].iter_mut().enumerate() {
+        let Twin(here, there) = medium.channel(channel).pair(simd, t);
+        (*first, second[channel]) = (here, there);
+    }
 }
 
 /// What each lane has to do and has done.

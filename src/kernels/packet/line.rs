@@ -67,8 +67,9 @@ impl<W: Walks> AlongLine<'_, '_, W> {
             simd,
             #[inline(always)]
             |numbers| walks.begin(course, from, numbers),
+            [from; 2],
             #[inline(always)]
-            |places| bank::extinctions(simd, medium, places),
+            |places, found| bank::extinctions(simd, medium, places, found),
             request,
         );
     }

@@ -16,6 +16,7 @@ pub mod bank;
 pub mod decomposition;
 pub mod event_queue;
 pub mod flight;
+pub mod hero;
 pub mod line;
 pub mod majorants;
 pub mod product;

@@ -242,8 +242,8 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         };
         if self.casts.to_bitmask() != 0 {
             (self.place, self.inside) = self.shadows.fly(rays, self.origin, depth);
-            for (row, coordinate) in points.iter_mut().zip(&self.place) {
-                coordinate.store_slice(&mut row[number * WIDTH..][..WIDTH]);
+            for (axis, row) in points.iter_mut().enumerate() {
+                self.place[axis].store_slice(&mut row[number * WIDTH..][..WIDTH]);
             }
         }
         self.page.fly(&mut self.numbers, flies, depth)
@@ -273,8 +273,8 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
             let casts = self.aiming;
             self.aiming = nobody;
             let (origin, direction, distance) = world.setup.problem.to_light(self.from);
-            for (to, from) in self.origin.iter_mut().zip(&origin) {
-                *to = Lane::select(casts, *from, *to);
+            for (axis, to) in self.origin.iter_mut().enumerate() {
+                *to = Lane::select(casts, origin[axis], *to);
             }
             let light = Light { direction, share: one, distance };
             let (which, through) = self.shadows.cast(rays, casts, &light, (origin, one));
