@@ -31,6 +31,7 @@ use super::{LitRod, Problem, number};
 use crate::catalogue::{Domain, Settings, Value};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Body, Medium, Piecewise};
+use crate::numeric::Lane;
 
 /// The values of one draw.
 pub type Values = super::Values<MOST_CHANNELS>;
@@ -63,7 +64,7 @@ impl SpectralLitRod {
 
     /// a of a channel at a distance.
     #[inline(always)]
-    pub fn albedo(&self, channel: usize, t: f64) -> f64 {
+    pub fn albedo<L: Lane>(&self, channel: usize, t: L) -> L {
         self.rods[channel].rod.albedo.value(t)
     }
 

@@ -3,6 +3,7 @@
 pub mod as_printed;
 pub mod independent;
 pub mod next_event_mis;
+pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
@@ -44,6 +45,7 @@ fn spectrum<'a>(
 macro_rules! pages {
     ($this:ident => $heroes:expr, $tracker:expr) => {
         const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+        const IN_PACKETS: bool = true;
 
         fn domain(
             &$this,
@@ -69,6 +71,16 @@ macro_rules! pages {
             rng: &mut $crate::rng::Stream,
         ) -> $crate::estimators::Draw<$crate::problems::spectral_lit_rod::Values> {
             $crate::estimators::spectral_lit_rod::walk::draw($this, setup, medium, rng)
+        }
+
+        fn draw_packets<'a>(
+            &$this,
+            level: fearless_simd::Level,
+            setup: &$crate::estimators::Setup<SpectralLitRod>,
+            medium: &$crate::media::Lookups,
+            request: $crate::estimators::packet::Request<'a>,
+        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            $crate::estimators::spectral_lit_rod::packet::walks(level, $this, setup, medium, request)
         }
     };
 }
