@@ -122,6 +122,18 @@ fn cases(matrix: Matrix) -> Vec<Case> {
     cases.push(case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")));
     cases.push(case("smooth", include_str!("../../cases/spectral-transmittance/smooth.toml")));
     cases.push(case("hero", include_str!("../../cases/spectral-transmittance/hero-delta.toml")));
+    for (name, text) in [
+        ("three-colours", include_str!("../../cases/spectral-lit-rod/three-colours.toml")),
+        ("extinctions", include_str!("../../cases/spectral-lit-rod/extinctions.toml")),
+        ("phases", include_str!("../../cases/spectral-lit-rod/phases.toml")),
+        ("forward", include_str!("../../cases/spectral-lit-rod/forward.toml")),
+        ("as-printed", include_str!("../../cases/spectral-lit-rod/as-printed.toml")),
+        ("connected", include_str!("../../cases/bidirectional-rod/magnet.toml")),
+        ("unscattered", include_str!("../../cases/bidirectional-rod/unscattered.toml")),
+        ("reflected", include_str!("../../cases/bidirectional-rod/reflected.toml")),
+    ] {
+        cases.push(case(name, text));
+    }
     for (name, medium) in MEDIA {
         if matrix == Matrix::Cross && name != CENTRE {
             let text = format!(

@@ -2,6 +2,7 @@
 
 pub mod directional_mis;
 pub mod full_mis;
+pub mod packet;
 pub mod subpath;
 pub mod technique;
 pub mod walk;
@@ -152,6 +153,7 @@ macro_rules! pages {
     ($Page:ident) => {
         impl $crate::estimators::Estimator<$crate::problems::BidirectionalRod> for $Page {
             const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
+            const IN_PACKETS: bool = true;
 
             fn read(settings: &$crate::catalogue::Settings) -> Option<Self> {
                 Page::read(settings, Self::combination).map(Self)
@@ -183,6 +185,18 @@ macro_rules! pages {
                 rng: &mut $crate::rng::Stream,
             ) -> $crate::estimators::Draw<$crate::problems::bidirectional_rod::Values> {
                 $crate::estimators::bidirectional_rod::walk::draw(&self.0, setup, medium, rng)
+            }
+
+            fn draw_packets<'a>(
+                &self,
+                level: fearless_simd::Level,
+                setup: &$crate::estimators::Setup<$crate::problems::BidirectionalRod>,
+                medium: &$crate::media::Lookups,
+                request: $crate::estimators::packet::Request<'a>,
+            ) -> Option<$crate::estimators::packet::Request<'a>> {
+                $crate::estimators::bidirectional_rod::packet::paths(
+                    level, self.0, setup, medium, request,
+                )
             }
         }
     };

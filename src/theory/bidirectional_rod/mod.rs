@@ -37,7 +37,7 @@ mod predict;
 use std::ops::RangeInclusive;
 
 use self::grid::Grid;
-use crate::numeric::Known;
+use crate::numeric::{Known, Lane};
 use crate::theory::Heuristic;
 
 pub use predict::predict;
@@ -119,25 +119,37 @@ impl Connection {
 impl Heuristic {
     /// The share of technique s in a path of r scatterings, by `f/p` of each technique.
     #[inline(always)]
-    pub fn share(self, s: usize, order: usize, quotient: impl Fn(usize) -> f64) -> f64 {
-        let density = |j: usize| self.raised(1.0 / quotient(j));
-        density(s) / (0..order + 3).map(density).sum::<f64>()
+    pub fn share<L: Lane>(self, s: usize, order: usize, quotient: impl Fn(usize) -> L) -> L {
+        let mut own = self.density(quotient(0));
+        let mut all = own;
+        for j in 1..order + 3 {
+            let density = self.density(quotient(j));
+            all = all + density;
+            own = if j == s { density } else { own };
+        }
+        own / all
+    }
+
+    #[inline(always)]
+    fn density<L: Lane>(self, quotient: L) -> L {
+        self.raised(quotient.each(1.0) / quotient)
     }
 }
 
 /// `c_s`, by `T̂ⱼ` of each segment and `a ρᵢ` of each scattering, `i = 1 … r`.
 #[inline(always)]
-pub fn quotient(
+pub fn quotient<L: Lane>(
     s: usize,
     order: usize,
-    transmittance: impl Fn(usize) -> f64,
-    scattered: impl Fn(usize) -> f64,
-) -> f64 {
+    transmittance: impl Fn(usize) -> L,
+    scattered: impl Fn(usize) -> L,
+) -> L {
+    let one = transmittance(0).each(1.0);
     if s == 0 || s == order + 2 {
-        return 1.0;
+        return one;
     }
-    let light = if s >= 2 { scattered(s - 1) } else { 1.0 };
-    let camera = if s <= order { scattered(s) } else { 1.0 };
+    let light = if s >= 2 { scattered(s - 1) } else { one };
+    let camera = if s <= order { scattered(s) } else { one };
     transmittance(s - 1) * light * camera
 }
 
