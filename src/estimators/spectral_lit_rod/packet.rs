@@ -42,6 +42,8 @@ pub fn walks<'a>(
 struct Page<'a> {
     setup: &'a Setup<SpectralLitRod>,
     count: usize,
+    /// Whether all channels have the same σ̂: lengths and collisions then tell nothing.
+    is_common: bool,
     law: Law,
     casts: bool,
     /// How hits and shadow rays are weighted.
@@ -63,6 +65,7 @@ impl<'a> Page<'a> {
         let mut page = Self {
             setup,
             count,
+            is_common: setup.channels.iter().all(|c| c.majorant == setup.channels[0].majorant),
             law: Law::new(steps.heroes(), count),
             casts: steps.casts(),
             hit: steps.weighing(Found::Hit),
@@ -264,7 +267,8 @@ impl<S: Simd> InLitRod<'_, S> {
     /// Some score: those that were connected, and others by a hit.
     #[inline(always)]
     fn score(&mut self, which: mask64x8<S>, connected: mask64x8<S>) {
-        let Page { count, majorants, logarithms, chances, hit, connected: by, .. } = self.page;
+        let Page { count, is_common, majorants, logarithms, chances, hit, connected: by, .. } =
+            self.page;
         let Place { length, collisions, .. } = self.here;
         let (zero, one) = (length.each(0.0), length.each(1.0));
         let last =
@@ -278,9 +282,12 @@ impl<S: Simd> InLitRod<'_, S> {
         let share = Lane::select(connected, one.each(by.share), one.each(hit.share));
         let (mut found, mut density) = ([zero; MOST_CHANNELS], zero);
         for (channel, found) in found[..*count].iter_mut().enumerate() {
-            let log = collisions * (one.each(logarithms[channel]) - self.logarithm);
-            let rate = one.each(majorants[channel]) - self.majorant;
-            let common = self.weights[channel] * Lane::exp(log - rate * length);
+            let mut common = self.weights[channel];
+            if !is_common {
+                let log = collisions * (one.each(logarithms[channel]) - self.logarithm);
+                let rate = one.each(majorants[channel]) - self.majorant;
+                common *= Lane::exp(log - rate * length);
+            }
             *found = common * self.phases[channel] * self.nulls[channel];
             density += *found * chances[channel];
             density += common * chances[channel] * next_event;
