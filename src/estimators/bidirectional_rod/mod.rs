@@ -192,8 +192,8 @@ macro_rules! pages {
                 level: fearless_simd::Level,
                 setup: &$crate::estimators::Setup<$crate::problems::BidirectionalRod>,
                 medium: &$crate::media::Lookups,
-                request: $crate::estimators::packet::Request<'a>,
-            ) -> Option<$crate::estimators::packet::Request<'a>> {
+                request: $crate::kernels::packet::Request<'a>,
+            ) -> Option<$crate::kernels::packet::Request<'a>> {
                 $crate::estimators::bidirectional_rod::packet::paths(
                     level, self.0, setup, medium, request,
                 )

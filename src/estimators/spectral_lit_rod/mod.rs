@@ -78,8 +78,8 @@ macro_rules! pages {
             level: fearless_simd::Level,
             setup: &$crate::estimators::Setup<SpectralLitRod>,
             medium: &$crate::media::Lookups,
-            request: $crate::estimators::packet::Request<'a>,
-        ) -> Option<$crate::estimators::packet::Request<'a>> {
+            request: $crate::kernels::packet::Request<'a>,
+        ) -> Option<$crate::kernels::packet::Request<'a>> {
             $crate::estimators::spectral_lit_rod::packet::walks(level, $this, setup, medium, request)
         }
     };

@@ -11,11 +11,11 @@ use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Found, Steps};
 use super::weighing::{LastPiece, Weighing};
-use crate::estimators::packet::Request;
-use crate::estimators::packet::bank::{self, Numbers, Particles, Slots};
-use crate::estimators::packet::hero::{Law, number_of_hero, of_hero};
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::{self, Numbers, Particles, Slots};
+use crate::kernels::packet::hero::{Law, number_of_hero, of_hero};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;

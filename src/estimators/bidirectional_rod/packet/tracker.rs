@@ -5,7 +5,7 @@ use fearless_simd::{Simd, SimdMask, f64x8, mask64x8};
 use super::Page;
 use super::path::Paths;
 use crate::estimators::Setup;
-use crate::estimators::packet::bank::Numbers;
+use crate::kernels::packet::bank::Numbers;
 use crate::media::Lookups;
 use crate::media::course::{BothWays, Course, Even};
 use crate::numeric::{Lane, Twin};
