@@ -182,7 +182,7 @@ mod tests {
     fn what_a_sample_is_worth_has_its_top() {
         for share in [0.1, 0.5, 1.0] {
             let power = |p: f64| p / (p * p + 1.0 + 1.0 / (share * share));
-            let largest = (1..10_000).map(|i| power(0.01 * f64::from(i))).fold(0.0, f64::max);
+            let largest = (1..100_000).map(|i| power(0.001 * f64::from(i))).fold(0.0, f64::max);
             assert!((most(Power, share) - largest).abs() < 1e-6);
             let balance = 1.0 / (1.0 + 1.0 / share);
             assert!((most(Balance, share) - balance).abs() < 1e-15);
