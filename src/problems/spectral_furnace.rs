@@ -83,6 +83,12 @@ pub fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Cha
         };
         channels.push(Channel { volume: volume.clone(), albedo, phase });
     }
+    let bounds = channels[0].volume.bounds();
+    if channels.iter().any(|channel| channel.volume.bounds() != bounds) {
+        let found = "the channels do not fill the same part of space";
+        settings.fault("volume", found, "give all of them the same `bounds`");
+        return None;
+    }
     Some(channels)
 }
 
@@ -108,11 +114,6 @@ impl Problem for SpectralFurnace {
         if bounds.enclosing_box().is_none() {
             let help = "give each channel the same `bounds.sphere` or `bounds.box`";
             settings.fault("volume", "particles would never leave a volume without bounds", help);
-            return None;
-        }
-        if channels.iter().any(|channel| channel.volume.bounds() != bounds) {
-            let found = "the channels do not fill the same part of space";
-            settings.fault("volume", found, "give all of them the same `bounds`");
             return None;
         }
         let inside = bounds.clip(ray);

@@ -24,7 +24,7 @@
 //!
 //! Every pixel gets the same number of draws, to within one: so many that the estimator takes
 //! `lookups` per covered pixel on average, as the paper compares. The number is fixed before the first
-//! draw, from the expected lookups by theory (transmittance) or by pilot draws with random numbers of
+//! draw, from the expected lookups by theory (`transmittance`) or by pilot draws with random numbers of
 //! their own, which are counted apart. Explorer points count as lookups, once for each ray that a
 //! control is fitted to; the controls `mean` and `minimum` come from theory and cost none. A pixel
 //! that the volume does not cover costs neither lookups nor random numbers. RMSE and figure of merit

@@ -48,12 +48,12 @@ impl Heroes {
         }
     }
 
-    /// The probability of one of so many channels.
+    /// The probability of one of so many channels; 0 of those that a list is too short for.
     #[inline(always)]
     pub fn probability(&self, count: usize, channel: usize) -> f64 {
         match self {
             Self::Luminance => luminance(count, channel),
-            Self::Given(given) => given[channel],
+            Self::Given(given) => given.get(channel).copied().unwrap_or_default(),
             Self::Uniform => 1.0 / count as f64,
         }
     }

@@ -27,6 +27,9 @@ fn channel(count: usize, index: usize, moments: Option<Moments>, tails: Tails) -
 pub fn independent(heroes: &[f64]) -> Prediction {
     let count = heroes.len();
     let channels = heroes.iter().enumerate().map(|(index, weight)| {
+        if *weight >= 1.0 {
+            return channel(count, index, Some(Moments::certain(1.0)), Tails::LIGHT);
+        }
         let raw = POWERS.map(|k| [weight.powi(1 - k), 0.0]);
         let moments = central(Known::exact(1.0), &raw);
         channel(count, index, Some(moments), tails(&raw))

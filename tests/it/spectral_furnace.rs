@@ -44,6 +44,33 @@ fn one_channel_a_draw_costs_what_its_chance_says() {
     }
 }
 
+/// Of one channel every draw is 1.
+#[test]
+fn one_channel_alone_is_certain() {
+    let text = "title = \"one\"
+        [problem.spectral-furnace]
+        volume = [{ constant = { extinction = 1, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } }]
+        ray = { origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }
+        albedos = [0.5]
+        phases = [{ isotropic = {} }]
+        sampling.constant.value = 1.5
+        estimators = [{ independent = {} }, { spectral-mis = {} }]";
+    for row in rows(text, 20_000) {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+    }
+}
+
+/// A list of heroes of the wrong length is no panic, even where the estimator is declared biased.
+#[test]
+fn too_few_heroes_are_refused() {
+    let wrong =
+        BALL.replacen("{ spectral-mis = {} }", "{ spectral-mis = { hero = [0.5, 0.5] } }", 1);
+    let words = "there are 2 for 3 channels";
+    let is_told = |text: &str| predicted(text).iter().any(|row| row.reason.contains(words));
+    assert!(is_told(&wrong));
+    predicted(&wrong.replacen("hero = [0.5, 0.5]", "hero = [0.5, 0.5], expect = \"biased\"", 1));
+}
+
 #[test]
 fn mistakes_and_what_is_out_of_reach_are_told() {
     let said = |from: &str, to: &str| {

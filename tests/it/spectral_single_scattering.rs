@@ -59,11 +59,40 @@ fn colour_noise_is_gone_for_the_same_lookups() {
     }
 }
 
+/// What is nearly never found is no reason to fail: behind a wall that one hero in 1e8 walks through there is light,
+/// of which pilots see nothing.
+#[test]
+fn what_lies_behind_a_wall_fails_no_correct_estimator() {
+    let layers = |values: &str| {
+        format!(
+            "{{ piecewise-constant = {{ breaks = [-1, -0.5, 0, 1], values = {values}, \
+             bounds.sphere = {{ centre = [0, 0, 0], radius = 1 }} }} }}"
+        )
+    };
+    let text = format!(
+        "title = \"a wall\"
+        [problem.spectral-single-scattering]
+        volume = [{}, {}]
+        ray = {{ origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }}
+        light = {{ position = [0.9, -0.3, 0.4], power = 10 }}
+        albedos = [1, 1]
+        phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}]
+        sampling.constant.value = 600
+        estimators = [{{ spectral-mis = {{}} }}]",
+        layers("[1e-8, 1e-8, 1e-8]"),
+        layers("[1, 600, 1]")
+    );
+    for row in rows(&text, 400_000) {
+        assert_ne!(row.verdict, Some(Verdict::Fail), "{}: {}", row.channel, row.reason);
+    }
+}
+
 #[test]
 fn mistakes_and_what_is_out_of_reach_are_told() {
     let expected = [
         ("albedos = [0.9, 0.5, 0.7]", "albedos = [0.9, 0, 0.7]", "nothing is scattered in a"),
         ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
+        ("radius = 1", "radius = 0.9", "do not fill the same part"),
         ("position = [0.9, -0.3, 0.4]", "position = [0.2, 0.1, 0.4]", "move it off the line"),
     ];
     for (from, to, words) in expected {

@@ -108,17 +108,24 @@ fn predict_independent(alone: &[Points], heroes: &[f64]) -> Prediction {
     Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
 }
 
-/// What theory says of all channels by the balance heuristic: means, and the lookups.
+/// What theory says of all channels by the balance heuristic: means, the lookups, and a bound on the variance.
+///
+/// ```text
+/// p̄ = Σ_h w_h p_h ≥ w_λ p_λ,   E[X_λ²] = ∫ f_λ²/p̄ ≤ ∫ f_λ²/(w_λ p_λ) = E[x_λ²]/w_λ
+/// ```
+///
+/// which is the second moment of one channel a draw.
 fn predict_balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
     let of_first: Option<CountLaw> = alone.first().and_then(|first| {
         Points { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
-    // What is scored never exceeds 1/w times the brightest point of the ray: pilots see all there is.
-    let channel = |points: &Points| Channel {
-        by_pilots: true,
-        ..Channel::unbiased(points.truth, None, Tails::LIGHT)
+    let channel = |(points, chance): (&Points, &f64)| {
+        let mean = points.truth.value;
+        let bound = points.powers[2] * (1.0 + points.error) / chance - mean * mean;
+        let unknown = Channel::unbiased(points.truth, None, Tails::LIGHT);
+        Channel { most_variance: Some(bound.max(0.0)), ..unknown }
     };
-    let channels = named(alone.iter().map(channel));
+    let channels = named(alone.iter().zip(heroes).map(channel));
     Prediction { channels, lookups: of_first, ..Prediction::default() }
 }
 

@@ -11,7 +11,7 @@
 //! | `hero` | the law of the hero: `"uniform"`, `"luminance"`, or a list of probabilities that sum to 1 | `"uniform"` |
 //! | `sampling` | a constant σ̂ ≥ σ_t in each channel, on shadow rays too where they are tracked | required here or in the case |
 //!
-//! The first factor never exceeds `1/w_λ`. Means and lookups are known; the variance is that of pilots.
+//! The first factor never exceeds `1/w_λ`. Means and lookups are known; the variance is at most that of `independent`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.

@@ -309,12 +309,14 @@ impl<'a, S: Simd> Scores<'a, S> {
             for (channel, found) in found.iter().enumerate() {
                 found.store_slice(&mut buffer.values[channel][pack.clone()]);
             }
-            if let [first, rest @ ..] = self.luminance {
+            // Pictures ask for the channels alone.
+            let luminance = buffer.values.get_mut(self.count);
+            if let ([first, rest @ ..], Some(luminance)) = (self.luminance, luminance) {
                 let mut sum = found[0] * *first;
                 for (channel, &weight) in rest.iter().enumerate() {
                     sum += found[channel + 1] * weight;
                 }
-                sum.store_slice(&mut buffer.values[self.count][pack]);
+                sum.store_slice(&mut luminance[pack]);
             }
         }
         buffer.make_room(draws);
