@@ -9,6 +9,7 @@ mod cases;
 mod channels;
 mod check;
 mod cli;
+mod coloured_pictures;
 mod common;
 mod equation14;
 mod equiangular;
