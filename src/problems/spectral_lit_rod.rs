@@ -20,7 +20,7 @@
 //!
 //! The answer is exact. Moments are exact where one channel is drawn at a time, where all channels have the same σ_t and
 //! σ̂ and albedos are numbers, and of hits where light goes on forward through what is constant in each cell; elsewhere
-//! pilots stand in for the variances of draws that score all channels at once, and a pass says "variance assumed".
+//! variances of draws that score all channels at once are bounded.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, on the rod of `lit-rod`.

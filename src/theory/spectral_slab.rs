@@ -3,7 +3,7 @@
 //! Moments are those of [`super::spectral_rod`]. An albedo above 1 may be too large for the depth of the slab: it is
 //! critical, and the moment infinite. Of phase functions that are not isotropic, albedos above 1 are solved to 1e-4.
 //! Orders of scattering are known for isotropic scattering; of other phase functions multiple importance sampling has a
-//! mean only, and the variance of pilot draws, which is safe as its draws are bounded.
+//! mean, and a bound on the variance, as its draws never exceed 1/w.
 
 use super::slab::layer::Slice;
 use super::slab::{self, Pieces, Resolution, Walk};

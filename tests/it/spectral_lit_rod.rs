@@ -222,6 +222,34 @@ fn one_hero_for_all_varies_less_than_one_channel_at_a_time() {
     }
 }
 
+/// Two channels of the same σ_t have known variances; where they differ by a billionth, bounded ones.
+#[test]
+fn variances_are_below_their_bounds() {
+    for (depth, albedos, forward, majorant) in [
+        (0.5, [0.9, 0.5], [0.6, 0.6], 1.0),
+        (2.0, [1.0, 0.3], [0.9, 0.1], 1.3),
+        (6.0, [0.99, 0.9], [0.5, 0.7], 1.0),
+    ] {
+        let text = one_medium("constant.extinction = 1", depth, &albedos, &forward, majorant);
+        let text = text.replace("{ independent = {} },", "");
+        let known = predicted(&text);
+        let apart = text.replacen("extinction = 1", "extinction = 0.999999999", 1);
+        let cases = [case("test", &apart)];
+        let plan = Plan::new(&cases, &options(1, 1000));
+        for (estimator, (_, planned)) in
+            ["spectral-mis", "next-event-mis"].iter().zip(plan.experiments())
+        {
+            let ready = planned.outcome.as_ref().expect("not refused");
+            let exact = variances(&of(&known, estimator));
+            for (channel, exact) in ready.prediction.channels.iter().zip(exact) {
+                assert!(channel.moments.is_none());
+                let bound = channel.most_variance.expect("a bound");
+                assert!(exact <= bound && bound <= 6.0 * exact, "{estimator}: {exact} {bound}");
+            }
+        }
+    }
+}
+
 /// What of some rows does not pass, or was not asked about mean and lookups.
 fn failing(rows: &[Row]) -> Vec<String> {
     let mut wrong = Vec::new();

@@ -15,7 +15,7 @@
 //! for `σ̂ ≥ σ_t` like `technique`.
 //!
 //! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
-//! and nobody knows the variance of their sum: pilot draws stand in for it.
+//! and the variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, section 5.5 and table 1, “BPT: Directional MIS”.
 

@@ -16,7 +16,7 @@
 //! with `"ratio"`, `σ_t/σ̂` must be one number, for theory.
 //!
 //! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
-//! and nobody knows the variance of their sum: pilot draws stand in for it.
+//! and the variance of their sum is bounded: its root is at most the sum of theirs.
 //!
 //! Source: Miller, Georgiev, Jarosz 2019, sections 5.2 and 5.5, Eqs. 42–44, and table 1, “BPT: Full MIS”.
 

@@ -15,7 +15,7 @@
 //! channel. The hero is one for the whole path, shadow rays too.
 //!
 //! With one channel it is `full-mis` of `lit-rod`. The variance is known where all channels have the same σ_t and σ̂;
-//! elsewhere pilots stand in: what a technique scores never exceeds `1/w_λ`.
+//! elsewhere it is bounded, see [`crate::theory::spectral_lit_rod::bound`].
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithms 1 and 2.

@@ -14,7 +14,7 @@
 //! for a path that is absorbed or leaves at the beginning does not matter: nothing shines there.
 //!
 //! No draw exceeds `1/w_λ`, and with equal probabilities the mean of all channels is 1 or 0. The variance is known where
-//! all channels have the same σ_t and σ̂; elsewhere pilots stand in, which is safe since draws are bounded.
+//! all channels have the same σ_t and σ̂; elsewhere it is bounded, as draws never exceed `1/w`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4, Algorithm 1.

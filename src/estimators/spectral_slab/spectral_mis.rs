@@ -10,7 +10,7 @@
 //! | `sampling` | σ̂ ≥ σ_t | required here or in the case |
 //!
 //! No draw exceeds `1/w_λ`: the variance is finite however thick the slab is. It is known for isotropic scattering, and
-//! assumed from pilots for other phase functions.
+//! bounded by `E[X²] ≤ E[X]/w_λ` for other phase functions.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.

@@ -13,7 +13,7 @@
 //! Unbiased there; with delta tracking no draw exceeds `1/w_λ`, and with equal probabilities the mean of all
 //! channels is 1 or 0: colour noise is all that is gained. With ratio tracking the density of a path depends on
 //! the number of its collisions only. The variance of delta tracking is known in media that are constant in each
-//! cell; elsewhere pilots stand in, since draws are bounded.
+//! cell; elsewhere it is bounded, as draws never exceed `1/w`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light
 //! Transport*, ACM Transactions on Graphics 38 (2019), section 5.1.

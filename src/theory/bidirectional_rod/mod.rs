@@ -22,7 +22,7 @@
 //! Where a draw has an independent path for each technique, moments of sums follow from those of the techniques.
 //! Renderers connect every vertex of one light subpath with every vertex of one camera subpath: the contribution of
 //! a technique then has the same law, but the covariances of techniques that share vertices are not known, nor is the
-//! variance of their sum. As `0 ≤ X_s ≤ 1` its tails are light, and that of pilot draws stands in.
+//! variance of their sum. Its square root is at most the sum of the techniques' deviations.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*, SIGGRAPH
 //! 1995; B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light Transport*,

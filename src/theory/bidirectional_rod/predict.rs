@@ -61,7 +61,10 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
             covariances.push(Covariance { pair: [last, last + 1], value, variance });
         }
         let moments = sum.moments.filter(|_| !rules.is_shared);
-        channels.push(Channel { name: "sum".into(), moments, by_pilots: rules.is_shared, ..sum });
+        // Whatever their covariances are: the deviation of a sum is at most the sum of the deviations.
+        let most: f64 = channels.iter().map(|channel| variance(channel).sqrt()).sum();
+        let most_variance = rules.is_shared.then_some(most * most);
+        channels.push(Channel { name: "sum".into(), moments, most_variance, ..sum });
     }
     if !rules.has_shares && channels.len() > 1 {
         channels.drain(..channels.len() - 1);

@@ -29,7 +29,11 @@ pub(super) const ROUNDING: f64 = 1e-14;
 pub(super) const OF_POLYNOMIALS: [f64; 5] = [2e-14, 4e-13, 1e-10, 3e-10, 5e-3];
 
 /// The delta-tracking walk on a rod; `None` where it has more steps than theory can do.
-fn walk<'a>(mesh: &Mesh, problem: &'a LitRod, sampling: &'a Piecewise) -> Option<Walk<'a>> {
+pub(super) fn walk<'a>(
+    mesh: &Mesh,
+    problem: &'a LitRod,
+    sampling: &'a Piecewise,
+) -> Option<Walk<'a>> {
     let walk = Walk::new(mesh, &problem.rod, Some(sampling), ParticleRule::Analog)?;
     walk.resolving_transmittance()
 }

@@ -85,8 +85,8 @@ impl Spectrum {
             None => Tails::LIGHT,
         };
         let truth = Known::new(value, error);
-        // No draw of MIS exceeds 1/w: pilots see all there is.
-        let by_pilots = moments.is_none();
+        let most_variance =
+            moments.is_none().then(|| self.most_score(form) * value - value * value);
         let name = if !is_one {
             "luminance".to_owned()
         } else if self.channels() == 1 {
@@ -94,7 +94,13 @@ impl Spectrum {
         } else {
             format!("channel {}", index + 1)
         };
-        Channel { name, by_pilots, ..Channel::unbiased(truth, moments, tails) }
+        Channel { name, most_variance, ..Channel::unbiased(truth, moments, tails) }
+    }
+
+    /// The most that a draw of MIS makes of a linear form, `max a_λ/w_λ`: a survivor scores
+    /// `Σ_λ a_λ p_λ/Σ_h w_h p_h`, others nothing, so that `E[Y²] ≤ E[Y] max a_λ/w_λ`.
+    fn most_score(&self, form: &[f64]) -> f64 {
+        form.iter().zip(&self.hero).map(|(a, w)| a / w).fold(0.0, f64::max)
     }
 
     fn most_collisions(&self) -> f64 {

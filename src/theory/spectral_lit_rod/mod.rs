@@ -4,7 +4,7 @@
 //! independent       E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  x_λ a draw of `lit_rod` in the channel λ; E[X_λ X_μ] = 0
 //! one σ_t and σ̂     a chain of equations by the numbers of scatterings, see [`orders`]
 //! forward only      hits are products along the ray, see [`forward`]
-//! elsewhere         the means; what a technique scores never exceeds 1/w_λ, and pilots stand in for the variance
+//! elsewhere         the means, and bounds on variances: hits never score more than 1/w_λ; with shadow rays see [`bound`]
 //! ```
 //!
 //! The lookups of a draw are those of its hero's walk, mixed over heroes: they are known in every medium.
@@ -12,6 +12,7 @@
 //! Source: derived from the densities of B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral
 //! formulation of light transport*, ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.
 
+pub mod bound;
 pub mod forward;
 pub mod orders;
 
@@ -126,11 +127,11 @@ impl<'a> Spectrum<'a> {
             let raw = moments.as_ref().map(|moments| &moments.raw[index]);
             let one = self.channels() == 1;
             let name = if one { String::new() } else { format!("channel {}", index + 1) };
-            // What a technique scores never exceeds 1/w: pilots see all there is.
-            let by_pilots = raw.is_none();
+            let most_variance =
+                if raw.is_none() { self.most_variance(index, answer) } else { None };
             let tails = raw.map_or(Tails::LIGHT, tails);
             let central = raw.map(|raw| central(answer, raw));
-            Channel { name, by_pilots, ..Channel::unbiased(answer, central, tails) }
+            Channel { name, most_variance, ..Channel::unbiased(answer, central, tails) }
         };
         let channels = answers.iter().enumerate().map(channel).collect();
         let mut covariances = Vec::new();
@@ -142,6 +143,19 @@ impl<'a> Spectrum<'a> {
             }
         }
         Prediction { channels, lookups, covariances, ..Prediction::default() }
+    }
+
+    /// A bound on the variance of a channel by MIS over heroes.
+    fn most_variance(&self, channel: usize, answer: Known) -> Option<f64> {
+        let Tracker::Mis { casts } = self.tracker else { return None };
+        let weighted = if casts {
+            let (mesh, sampling) = self.media[channel];
+            bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
+        } else {
+            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ.
+            answer.value
+        };
+        Some(weighted / self.heroes[channel] - answer.value * answer.value)
     }
 
     /// Those of one channel a draw; of a single channel, whatever the tracker is.

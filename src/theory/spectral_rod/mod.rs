@@ -210,9 +210,10 @@ impl<'a> Spectrum<'a> {
         };
         let side = if end == End::Reflected { "reflectance" } else { "transmittance" };
         let name = format!("{side}, channel {}", channel + 1);
-        // No draw of MIS exceeds 1/w: pilots see all there is.
-        let by_pilots = moments.is_none();
-        Channel { name, by_pilots, ..Channel::unbiased(truth, moments, tails) }
+        // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
+        let most = truth.value / self.hero[channel] - truth.value * truth.value;
+        let most_variance = moments.is_none().then_some(most);
+        Channel { name, most_variance, ..Channel::unbiased(truth, moments, tails) }
     }
 
     fn covariance(

@@ -2,7 +2,7 @@
 
 use super::ball::Ball;
 use super::shells::Resolution;
-use super::{Lights, Observable, Spreads, centre_of, solved};
+use super::{Lights, Observable, Solved, Spreads, centre_of, solved};
 use crate::numeric::Known;
 use crate::theory::memo::Memo;
 
@@ -28,7 +28,7 @@ pub struct Scene {
 pub struct Answer {
     /// The value.
     pub value: Known,
-    /// How far draws stray from it.
+    /// How far draws stray from it at most, the errors of the solution included.
     pub spreads: Spreads,
 }
 
@@ -58,7 +58,13 @@ impl Scene {
         let resolution = Resolution::COARSE.about(centre, self.radius);
         let solved = solved(&ball, self.albedo, self.lights, resolution)?;
         let value = resolution.known(solved.each_ref().map(|s| s.answer(self.observable)));
-        Some(Answer { value, spreads: solved[0].spreads(self.observable, self.is_distant)? })
+        let of = |solved: &Solved| solved.spreads(self.observable, self.is_distant);
+        let [fine, coarse, coarsest] = solved.each_ref().map(of);
+        let above = |numbers| {
+            let Known { value, error } = resolution.known(numbers);
+            value + error
+        };
+        Some(Answer { value, spreads: Spreads::joined([fine?, coarse?, coarsest?], above) })
     }
 }
 

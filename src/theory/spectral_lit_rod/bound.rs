@@ -1,0 +1,94 @@
+//! A bound on `E[X²]` of hits and shadow rays together over heroes, in rods whose channels differ in everything.
+//!
+//! Let `p_h` and `q_h` be the densities of a path by the hits and by the shadow rays of the hero h, and `c_v` and `h_v`
+//! what the shadow ray of the vertex v, and the hit after it, bring the channel λ. Both are `f_λ/D`, by the balance
+//! heuristic, on the same paths:
+//!
+//! ```text
+//! D = Σ_h w_h (p_h + q_h) ≥ w_λ (p_λ + q_λ)
+//! E[c_v²] + E[h_v²] = ∫ f_λ²/D ≤ V_v/w_λ,   V_v the same sum where the channel λ walks alone
+//! ```
+//!
+//! The hit without scattering is at most 1/w, and nothing else happens then. Of all other hits no more than one does.
+//! With the triangle inequality for the rest, and `u_v = √V_v`,
+//!
+//! ```text
+//! w_λ E[X²] ≤ T_λ + (max Σ_v √(u_v² − b_v²) + √Σ_v b_v²)² ≤ T_λ + (Σ_v u_v + ½ max_v u_v)²
+//! ```
+//!
+//! `V_v` is that of one scattering, carried through v scatterings before it. Once each step of the rod loses at least a
+//! share from one v to the next, so do all that follow: the rest is a geometric series.
+//!
+//! Source: derived.
+
+use super::super::lit_rod::connections::{Connections, Vertex, scattering};
+use super::super::lit_rod::{Techniques, walk};
+use super::super::rod::grid::{Grid, Importance, Step};
+use super::super::rod::moments::{Precision, romberg};
+use crate::media::Piecewise;
+use crate::numeric::Known;
+use crate::problems::LitRod;
+use crate::theory::Mesh;
+
+/// Grids agree to this.
+const PRECISION: Precision = Precision { agreement: 1e-5, levels: 4 };
+/// Vertices whose `V_v` is less, relative to that of the first, are a geometric series.
+const RARE: f64 = 1e-16;
+/// The most vertices.
+const MOST: usize = 4000;
+
+/// A bound on `w_λ E[X_λ²]` of one channel with its σ̂; `None` where theory has no grid for it.
+pub fn weighted_square(
+    mesh: &Mesh,
+    rod: &LitRod,
+    sampling: &Piecewise,
+    techniques: Techniques,
+) -> Option<f64> {
+    let scattered = romberg(&walk(mesh, rod, sampling)?, PRECISION, &|grid| {
+        Some(vec![spread(grid, techniques)?])
+    })?;
+    let [spread, error] = scattered[0];
+    let Known { value, error: of_depth } = mesh.optical_depth().exp_neg();
+    Some(value + of_depth + (spread + error).powi(2))
+}
+
+/// `Σ_v u_v + ½ max_v u_v`.
+fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
+    let connections = Connections::new(grid, techniques, 2);
+    let real = |step: &Step| [step.sampling * (1.0 - step.means[0]), 0.0];
+    let last = |i: usize, step: &Step| {
+        let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
+        connections.at(i).each_ref().map(|vertex| scattering(step) * worth(vertex))
+    };
+    let mut here = grid.solve(real, last, [0.0; 2])?;
+    let (mut sum, mut most, first) = (0.0, 0.0f64, here.entering());
+    for _ in 0..MOST {
+        let own = here.entering().max(0.0).sqrt();
+        sum += own;
+        most = most.max(own);
+        let carried = |i: usize, step: &Step| {
+            step.spread(here.middle(i)).map(|worth| scattering(step) * worth)
+        };
+        let before = grid.solve(real, carried, [0.0; 2])?;
+        if before.entering() <= RARE * first {
+            let share = largest_share(grid, &before, &here);
+            let rest = if share > 0.0 { own * share.sqrt() / (1.0 - share.sqrt()) } else { 0.0 };
+            return (share < 1.0).then_some(sum + rest + 0.5 * most);
+        }
+        here = before;
+    }
+    None
+}
+
+/// The largest share of one vertex's worth that the vertex before it has, in any step.
+fn largest_share(grid: &Grid, before: &Importance, here: &Importance) -> f64 {
+    let mut largest = 0.0f64;
+    for i in 0..grid.steps().len() {
+        for (before, here) in before.middle(i).into_iter().zip(here.middle(i)) {
+            if before > 0.0 {
+                largest = largest.max(before / here);
+            }
+        }
+    }
+    largest
+}
