@@ -8,9 +8,10 @@
 
 use super::target::SPECTRAL_FURNACE;
 use super::{About, Mutant, with};
-use crate::estimators::spectral_furnace::spectral_mis::{SpectralMis, draw};
+use crate::estimators::spectral_furnace::page::{WEIGHING, balanced};
+use crate::estimators::spectral_furnace::spectral_mis::SpectralMis;
 use crate::estimators::spectral_furnace::walk::Steps;
-use crate::estimators::spectral_lit_rod::weighing::{LastPiece, Weighing};
+use crate::kernels::hero::{LastPiece, Weighing};
 use crate::problems::SpectralFurnace;
 use crate::setup::heroes::Heroes;
 use crate::theory::particle::Event;
@@ -23,8 +24,8 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
         let right = SpectralMis { heroes: Heroes::Uniform };
         Mutant::new(
             about,
-            with(Wrong(slip), |wrong, setup, _, rng| draw(wrong, (&Heroes::Uniform, wrong.weighing()), setup, rng)),
-            with(right, |right, setup, _, rng| draw(right, (&right.heroes, SpectralMis::WEIGHING), setup, rng)),
+            with(Wrong(slip), |wrong, setup, _, rng| balanced(wrong, (&Heroes::Uniform, wrong.weighing()), setup, rng)),
+            with(right, |right, setup, _, rng| balanced(right, (&right.heroes, WEIGHING), setup, rng)),
         )
     };
     vec![
@@ -56,11 +57,9 @@ struct Wrong(Slip);
 impl Wrong {
     fn weighing(&self) -> Weighing {
         match self.0 {
-            Slip::Dropped => Weighing { missing: 1, ..SpectralMis::WEIGHING },
-            Slip::ExitMissing => {
-                Weighing { last_piece: LastPiece::Nowhere, ..SpectralMis::WEIGHING }
-            }
-            _ => SpectralMis::WEIGHING,
+            Slip::Dropped => Weighing { missing: 1, ..WEIGHING },
+            Slip::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },
+            _ => WEIGHING,
         }
     }
 }

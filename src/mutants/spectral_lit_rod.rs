@@ -14,7 +14,7 @@ use crate::estimators::spectral_lit_rod::as_printed::{AsPrinted, Error};
 use crate::estimators::spectral_lit_rod::next_event_mis::NextEventMis;
 use crate::estimators::spectral_lit_rod::spectral_mis::SpectralMis;
 use crate::estimators::spectral_lit_rod::walk::{Found, Steps, draw};
-use crate::estimators::spectral_lit_rod::weighing::{LastPiece, Weighing};
+use crate::kernels::hero::{LastPiece, Weighing};
 use crate::problems::SpectralLitRod;
 use crate::rng::Stream;
 use crate::setup::heroes::Heroes;

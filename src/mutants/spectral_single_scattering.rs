@@ -8,7 +8,7 @@ use super::target::{SPECTRAL_SINGLE_EXACT, SPECTRAL_SINGLE_RATIO};
 use super::{About, Mutant, Target, with};
 use crate::estimators::spectral_single_scattering::Shadow;
 use crate::estimators::spectral_single_scattering::spectral_mis::SpectralMis;
-use crate::estimators::spectral_single_scattering::walk::{Steps, draw};
+use crate::estimators::spectral_single_scattering::walk::{Steps, balanced};
 use crate::problems::SpectralSingleScattering;
 use crate::setup::heroes::Heroes;
 
@@ -21,8 +21,8 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         let right = SpectralMis { heroes: Heroes::Uniform, shadow };
         Mutant::new(
             about,
-            with(Wrong { slip, shadow }, |wrong, setup, medium, rng| draw(wrong, (&Heroes::Uniform, wrong.shadow), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| draw(right, (&right.heroes, right.shadow), setup, medium, rng)),
+            with(Wrong { slip, shadow }, |wrong, setup, medium, rng| balanced(wrong, (&Heroes::Uniform, wrong.shadow), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| balanced(right, (&right.heroes, right.shadow), setup, medium, rng)),
         )
     };
     vec![

@@ -30,6 +30,7 @@ pub mod spectral;
 pub mod spectral_furnace;
 pub mod spectral_lit_rod;
 pub mod spectral_rod;
+pub mod spectral_single_scattering;
 pub mod spectral_slab;
 pub mod sphere;
 pub mod volterra;

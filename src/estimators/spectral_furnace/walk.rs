@@ -11,8 +11,8 @@
 //! choice of the hero one.
 
 use crate::estimators::Setup;
-use crate::estimators::spectral_lit_rod::weighing::Path;
 use crate::geometry::{Point, Ray, frame};
+use crate::kernels::hero::Path;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralFurnace;
 use crate::rng::Stream;

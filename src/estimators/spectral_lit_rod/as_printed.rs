@@ -21,10 +21,10 @@
 
 use super::pages;
 use super::walk::Found;
-use super::weighing::{LastPiece, Weighing};
 use crate::catalogue::Settings;
 use crate::estimators::Estimator;
 use crate::estimators::spectral_lit_rod::walk::Steps;
+use crate::kernels::hero::{LastPiece, Weighing};
 use crate::problems::SpectralLitRod;
 use crate::setup::heroes::Heroes;
 use crate::theory::spectral_lit_rod::Tracker;

@@ -7,7 +7,6 @@ pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;
-pub mod weighing;
 
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::problems::SpectralLitRod;

@@ -10,9 +10,9 @@
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Found, Steps};
-use super::weighing::{LastPiece, Weighing};
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
+use crate::kernels::hero::{LastPiece, Weighing};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Particles, Slots};
 use crate::kernels::packet::hero::{Law, number_of_hero, of_hero};
@@ -192,7 +192,7 @@ struct InLitRod<'a, S: Simd> {
     majorant: f64x8<S>,
     logarithm: f64x8<S>,
     forward: [f64x8<S>; MOST_CHANNELS],
-    /// As in a [`super::weighing::Path`].
+    /// As in a [`Path`](crate::kernels::hero::Path).
     weights: [f64x8<S>; MOST_CHANNELS],
     phases: [f64x8<S>; MOST_CHANNELS],
     nulls: [f64x8<S>; MOST_CHANNELS],

@@ -12,8 +12,8 @@
 //! The hero is one for the whole path, shadow rays too. A flight takes two random numbers, that of a shadow ray one, a
 //! scattering one, the choice of the hero one.
 
-use super::weighing::{Path, Weighing};
 use crate::estimators::{Draw, Setup};
+use crate::kernels::hero::{Path, Weighing};
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Cursor, Extinction, Lookups};
 use crate::problems::SpectralLitRod;

@@ -16,56 +16,5 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.
 
-use super::walk::{self, Steps};
-use super::{Shadow, alone, predict_balanced, realisable};
-use crate::catalogue::Settings;
-use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
-use crate::media::Lookups;
-use crate::problems::SpectralSingleScattering;
-use crate::problems::spectral_single_scattering::Values;
-use crate::rng::Stream;
-use crate::setup::heroes::Heroes;
-use crate::theory::Prediction;
-
 /// The balance heuristic over heroes.
-#[derive(Debug, Clone)]
-pub struct SpectralMis {
-    /// The law of the hero.
-    pub heroes: Heroes,
-    /// How shadow rays are tracked.
-    pub shadow: Shadow,
-}
-
-impl Steps for SpectralMis {}
-
-impl Estimator<SpectralSingleScattering> for SpectralMis {
-    const INPUTS: Inputs = Inputs::SAMPLING;
-
-    fn read(settings: &Settings) -> Option<Self> {
-        let (heroes, shadow) = (Heroes::read(settings), Shadow::read(settings));
-        Some(Self { heroes: heroes?, shadow: shadow? })
-    }
-
-    fn label(&self, _: bool) -> String {
-        self.shadow.label(&self.heroes)
-    }
-
-    fn domain(&self, setup: &Setup<SpectralSingleScattering>) -> Result<(), Refusal> {
-        realisable(setup, &self.heroes, self.shadow)
-    }
-
-    fn predict(&self, setup: &Setup<SpectralSingleScattering>) -> Prediction {
-        let heroes = self.heroes.of(setup.channels.len());
-        predict_balanced(&alone(setup, self.shadow), &heroes)
-    }
-
-    #[inline(always)]
-    fn draw(
-        &self,
-        setup: &Setup<SpectralSingleScattering>,
-        medium: &Lookups,
-        rng: &mut Stream,
-    ) -> Draw<Values> {
-        walk::draw(self, (&self.heroes, self.shadow), setup, medium, rng)
-    }
-}
+pub type SpectralMis = super::page::OneHero<true>;

@@ -15,8 +15,8 @@
 use std::ops::Range;
 
 use super::Shadow;
-use crate::estimators::spectral_lit_rod::weighing::Path;
 use crate::estimators::{Draw, Setup};
+use crate::kernels::hero::Path;
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
@@ -61,9 +61,9 @@ pub trait Steps {
     }
 }
 
-/// Makes one draw.
+/// Makes one draw, weighted over all heroes.
 #[inline(always)]
-pub fn draw(
+pub fn balanced(
     steps: &impl Steps,
     (heroes, shadow): (&Heroes, Shadow),
     setup: &Setup<SpectralSingleScattering>,

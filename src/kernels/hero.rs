@@ -16,9 +16,9 @@
 //! ln(q_λ/q_h) = ln(weight_λ) + n ln(σ̂_λ/σ̂_h) − (σ̂_λ − σ̂_h) ℓ
 //! ```
 
-use crate::estimators::Setup;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
+use crate::setup::Setup;
 use crate::setup::heroes::Heroes;
 
 /// Where the transmittance of the last piece through σ̂ is.

@@ -1,0 +1,76 @@
+//! Single scattering in several channels: what theory says of draws that score all of them.
+//!
+//! ```text
+//! independent    E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  E[X_λ X_μ] = 0,  x a draw of the channel by itself
+//! balanced       E[X_λ²] ≤ E[x_λ²]/w_λ
+//! ```
+//!
+//! Lookups are those of the hero's walk, and its law is the mixture over heroes.
+
+use super::prediction::Covariance;
+use super::single::Points;
+use super::{Channel, CountLaw, Prediction, Tails};
+
+/// The lookups of the walk of a hero, mixed over heroes.
+fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
+    let mut mixed = [0.0; 5];
+    for (points, chance) in alone.iter().zip(heroes) {
+        for (sum, number) in mixed.iter_mut().zip(points.lookups?) {
+            *sum += chance * number;
+        }
+    }
+    Some(mixed)
+}
+
+/// What theory says of one channel a draw: `E[X_λ^k] = w_λ^{1−k} E[x_λ^k]`, x a draw of that channel by itself.
+pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
+    let lookups = lookups(alone, heroes);
+    let each = alone.iter().zip(heroes).map(|(points, chance)| {
+        let mut scaled =
+            Points { lookups, eighth: points.eighth.map(|x| x / chance.powi(7)), ..*points };
+        for (k, power) in (0..).zip(&mut scaled.powers) {
+            *power *= if k > 0 { chance.powi(1 - k) } else { 1.0 };
+        }
+        (scaled.powers, scaled.prediction())
+    });
+    let (powers, predictions): (Vec<[f64; 5]>, Vec<Prediction>) = each.unzip();
+    let covariance = |next: usize| {
+        let of = |k: usize| [powers[next - 1][k], powers[next][k]];
+        Covariance::of_raw([next - 1, next], of(1), of(2), [0.0; 4])
+    };
+    let covariances = (1..powers.len()).map(covariance).collect();
+    let lookups = predictions.first().and_then(|found| found.lookups.clone());
+    let channels = predictions.into_iter().flat_map(|found| found.channels);
+    Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
+}
+
+/// What theory says of all channels by the balance heuristic: means, the lookups, and a bound on the variance.
+///
+/// ```text
+/// p̄ = Σ_h w_h p_h ≥ w_λ p_λ,   E[X_λ²] = ∫ f_λ²/p̄ ≤ ∫ f_λ²/(w_λ p_λ) = E[x_λ²]/w_λ
+/// ```
+///
+/// which is the second moment of one channel a draw.
+pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
+    let of_first: Option<CountLaw> = alone.first().and_then(|first| {
+        Points { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
+    });
+    let channel = |(points, chance): (&Points, &f64)| {
+        let mean = points.truth.value;
+        let bound = points.powers[2] * (1.0 + points.error) / chance - mean * mean;
+        let unknown = Channel::unbiased(points.truth, None, Tails::LIGHT);
+        Channel { most_variance: Some(bound.max(0.0)), ..unknown }
+    };
+    let channels = named(alone.iter().zip(heroes).map(channel));
+    Prediction { channels, lookups: of_first, ..Prediction::default() }
+}
+
+fn named(channels: impl Iterator<Item = Channel>) -> Vec<Channel> {
+    let mut channels: Vec<Channel> = channels.collect();
+    if channels.len() > 1 {
+        for (number, channel) in (1..).zip(&mut channels) {
+            channel.name = format!("channel {number}");
+        }
+    }
+    channels
+}
