@@ -104,6 +104,22 @@ impl Path {
         self.last = piece;
     }
 
+    /// Multiplies the densities of so many channels at a collision; they stay relative to the hero's.
+    #[inline(always)]
+    pub fn collide(&mut self, count: usize, factor: impl Fn(usize) -> f64) {
+        self.collisions += 1;
+        for (channel, weight) in self.weights[..count].iter_mut().enumerate() {
+            *weight *= factor(channel);
+        }
+        // Only a bug can make the hero's 0.
+        let scale = self.weights[self.hero];
+        if scale > 0.0 {
+            for weight in &mut self.weights[..count] {
+                *weight /= scale;
+            }
+        }
+    }
+
     /// `q_λ/q_h` of a path of a length.
     #[inline(always)]
     pub fn common<P>(&self, setup: &Setup<P>, channel: usize, length: f64) -> f64 {

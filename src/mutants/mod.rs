@@ -14,6 +14,7 @@
 //! crate invites.
 
 pub mod bidirectional_rod;
+pub mod chromatic_slab;
 pub mod control;
 pub mod curve;
 pub mod decisions;
@@ -52,8 +53,8 @@ use crate::estimators::{Draw, Estimated, Experiment, Setup};
 use crate::media::Lookups;
 use crate::numeric::pack::in_fused_code;
 use crate::problems::{
-    BidirectionalRod, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod, LitSlab, Problem,
-    Rod, SingleScattering, Slab, SpectralFurnace, SpectralLitRod, SpectralRod,
+    BidirectionalRod, ChromaticSlab, FreeFlight, Furnace, InfiniteMedium, Lambertian, LitRod,
+    LitSlab, Problem, Rod, SingleScattering, Slab, SpectralFurnace, SpectralLitRod, SpectralRod,
     SpectralSingleScattering, SpectralSlab, SpectralTransmittance, Sphere, Transmittance,
     TransmittanceCurve, each_problem,
 };
@@ -171,6 +172,7 @@ mutable! {
     InfiniteMedium: space::in_infinite_medium();
     Slab: slab::mutants();
     SpectralSlab: spectral_rod::in_slab();
+    ChromaticSlab: chromatic_slab::mutants();
     Sphere: sphere::mutants(), sphere_paths::mutants();
     BidirectionalRod: bidirectional_rod::mutants();
 }

@@ -41,7 +41,7 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
 
 /// What goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
-enum Slip {
+pub(super) enum Slip {
     NullsLeftOut,
     OtherMajorant,
     PhaseOfHero,
@@ -49,13 +49,15 @@ enum Slip {
     AbsorbedWhole,
     Dropped,
     ExitMissing,
+    /// Of walks through a slab.
+    Upright,
 }
 
 /// The steps of a walk with one slip.
-struct Wrong(Slip);
+pub(super) struct Wrong(pub(super) Slip);
 
 impl Wrong {
-    fn weighing(&self) -> Weighing {
+    pub(super) fn weighing(&self) -> Weighing {
         match self.0 {
             Slip::Dropped => Weighing { missing: 1, ..WEIGHING },
             Slip::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },

@@ -203,6 +203,8 @@ pub const SPECTRAL_SINGLE_EXACT: Target =
 /// Tracked shadow rays.
 pub const SPECTRAL_SINGLE_RATIO: Target =
     on("spectral-single-scattering/magnet", 3, "spectral-mis (ratio shadow)");
+/// Three channels of different σ_t, σ̂, albedo and phase function in a slab, light from aslant.
+pub const CHROMATIC_SLAB: Target = on("chromatic-slab/three-colours", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a furnace.
 pub const SPECTRAL_FURNACE: Target = on("spectral-furnace/magnet", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.

@@ -1,6 +1,7 @@
 //! What is sought: each problem knows its own exact answer. Floor 2.
 
 pub mod bidirectional_rod;
+pub mod chromatic_slab;
 pub mod free_flight;
 pub mod furnace;
 pub mod infinite_medium;
@@ -31,6 +32,7 @@ pub mod scene;
 pub mod sky;
 
 pub use bidirectional_rod::BidirectionalRod;
+pub use chromatic_slab::ChromaticSlab;
 pub use free_flight::FreeFlight;
 pub use furnace::Furnace;
 pub use infinite_medium::InfiniteMedium;
@@ -69,6 +71,7 @@ macro_rules! each_problem {
             spectral_lit_rod::SpectralLitRod,
             slab::Slab,
             spectral_slab::SpectralSlab,
+            chromatic_slab::ChromaticSlab,
             single_scattering::SingleScattering,
             spectral_single_scattering::SpectralSingleScattering,
             furnace::Furnace,

@@ -58,22 +58,28 @@ pub struct SpectralFurnace {
     media: Vec<Medium>,
 }
 
-/// Reads `albedos` and `phases` beside a field in space for each channel.
-pub fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Channel>> {
+/// Reads `albedos` and `phases`, one of each for each of so many channels.
+pub fn read_scatterers(count: usize, settings: &Settings) -> Option<(Vec<f64>, Vec<Phase>)> {
     let albedos = settings.numbers("albedos", Domain::Unit, 1);
     let phases = settings.tables("phases").and_then(|tables| {
         let phases: Vec<_> = tables.iter().map(Phase::read_listed).collect();
         phases.into_iter().collect::<Option<Vec<Phase>>>()
     });
-    let (albedos, phases, bodies) = (albedos?, phases?, body?.channels());
+    let (albedos, phases) = (albedos?, phases?);
     for (key, listed) in [("albedos", albedos.len()), ("phases", phases.len())] {
-        if listed != bodies.len() {
-            let count = bodies.len();
+        if listed != count {
             let message = format!("`{key}` lists {listed} channels, and the medium has {count}");
             settings.fault(key, message, "give one for each channel");
             return None;
         }
     }
+    Some((albedos, phases))
+}
+
+/// Reads `albedos` and `phases` beside a field in space for each channel.
+pub fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Channel>> {
+    let bodies = body?.channels();
+    let (albedos, phases) = read_scatterers(bodies.len(), settings)?;
     let mut channels = Vec::new();
     for ((body, albedo), phase) in bodies.iter().zip(albedos).zip(phases) {
         let Body::Volume { volume, .. } = body else {

@@ -4,6 +4,7 @@
 //! per medium and ray, on which σ_t is looked up once and shared by every σ̂, control and rule.
 
 pub mod bidirectional_rod;
+pub mod chromatic_slab;
 pub mod count;
 pub mod curve;
 pub mod flight;

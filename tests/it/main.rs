@@ -8,6 +8,7 @@ mod calibration;
 mod cases;
 mod channels;
 mod check;
+mod chromatic_slab;
 mod cli;
 mod coloured_pictures;
 mod common;

@@ -248,6 +248,7 @@ fn spectral() -> Vec<Case> {
         case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")),
         case("colours", include_str!("../../cases/spectral-rod/near-albedos.toml")),
         case("coloured-slab", include_str!("../../cases/spectral-slab/magnet.toml")),
+        case("chromatic-slab", include_str!("../../cases/chromatic-slab/three-colours.toml")),
         case("one-scattering", include_str!("../../cases/spectral-single-scattering/magnet.toml")),
         case("coloured-furnace", include_str!("../../cases/spectral-furnace/magnet.toml")),
     ]
