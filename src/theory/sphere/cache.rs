@@ -64,7 +64,7 @@ impl Scene {
             let Known { value, error } = resolution.known(numbers);
             value + error
         };
-        Some(Answer { value, spreads: Spreads::joined([fine?, coarse?, coarsest?], above) })
+        Some(Answer { value, spreads: Spreads::joined(&[fine?, coarse?, coarsest?], above) })
     }
 }
 

@@ -136,7 +136,7 @@ pub struct Spreads(pub [Spread; Techniques::ALL.len()]);
 
 impl Spreads {
     /// Those of three solutions together, number by number.
-    pub(super) fn joined(three: [Self; 3], join: impl Fn([f64; 3]) -> f64) -> Self {
+    pub(super) fn joined(three: &[Self; 3], join: impl Fn([f64; 3]) -> f64) -> Self {
         Self(std::array::from_fn(|i| {
             let number = |of: fn(&Spread) -> f64| join(three.each_ref().map(|each| of(&each.0[i])));
             Spread {
