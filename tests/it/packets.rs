@@ -117,6 +117,14 @@ enum Matrix {
 /// The field with every estimator in [`Matrix::Cross`].
 const CENTRE: &str = "eq21";
 
+/// Slabs with a medium for each channel, in both lights.
+fn slabs_of_media() -> [Case; 2] {
+    let slab = include_str!("../../cases/chromatic-slab/three-colours.toml");
+    let diffuse = slab.replace("collimated = { cosine = 0.6 }", "diffuse = {}");
+    assert_ne!(slab, diffuse);
+    [case("colours", slab), case("colours-diffuse", &diffuse)]
+}
+
 fn cases(matrix: Matrix) -> Vec<Case> {
     let mut cases = if matrix == Matrix::Full { shipped() } else { Vec::new() };
     cases.push(case("layers", include_str!("../../cases/spectral-transmittance/layers.toml")));
@@ -128,12 +136,14 @@ fn cases(matrix: Matrix) -> Vec<Case> {
         ("phases", include_str!("../../cases/spectral-lit-rod/phases.toml")),
         ("forward", include_str!("../../cases/spectral-lit-rod/forward.toml")),
         ("as-printed", include_str!("../../cases/spectral-lit-rod/as-printed.toml")),
+        ("one-medium", include_str!("../../cases/spectral-lit-rod/one-medium.toml")),
         ("connected", include_str!("../../cases/bidirectional-rod/magnet.toml")),
         ("unscattered", include_str!("../../cases/bidirectional-rod/unscattered.toml")),
         ("reflected", include_str!("../../cases/bidirectional-rod/reflected.toml")),
     ] {
         cases.push(case(name, text));
     }
+    cases.extend(slabs_of_media());
     for (name, medium) in MEDIA {
         if matrix == Matrix::Cross && name != CENTRE {
             let text = format!(

@@ -2,7 +2,8 @@
 
 use trueflight::harness::record::Verdict;
 
-use crate::common::{mistakes, predicted, rows};
+use crate::common::{case, mistakes, predicted, rows};
+use crate::space_packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../../cases/spectral-furnace/magnet.toml");
 const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
@@ -95,4 +96,44 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
     let row = low.iter().find(|row| row.estimator == "spectral-mis").expect("a row");
     let words = "σ̂ = 0.700000 and σ_t is bounded by 0.800000 in channel 2";
     assert!(row.reason.contains(words), "{}", row.reason);
+}
+
+/// Pairs of fields in a ball or a box, of every cost, with every phase function, and σ̂ of one value or two.
+#[test]
+fn walks_side_by_side_are_walks_one_by_one() {
+    const BALL_OF: &str = "bounds.sphere = { centre = [0, 0, 0], radius = 1 }";
+    const BOX_OF: &str = "bounds.box = { low = [-1, -0.8, -1], high = [1, 0.9, 0.7] }";
+    const FIELDS: [&str; 5] = [
+        "constant = { extinction = 2.1,",
+        "gaussian = { peak = 1.9, centre = [0.5, 0, 0], width = 0.8,",
+        "noise = { extinction = 2, octaves = 3, seed = 3,",
+        "piecewise-linear = { knots = [-1, 0, 1], values = [0.8, 0.1, 1.9],",
+        "grid = { random = { size = [3, 4, 3], seed = 5 }, extinction = 1.5,",
+    ];
+    const PHASES: [&str; 3] =
+        ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = -0.7 }"];
+    let mut cases = vec![case("ball", BALL), case("noise", NOISE)];
+    for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
+        // Grids have boxes.
+        let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
+        for first in 0..fields.len() {
+            let other = (first + 1 + body) % fields.len();
+            let volume = |field: usize| format!("{{ {} {bounds} }} }}", fields[field]);
+            let [one, two] = [first, other].map(volume);
+            let [here, there] = [first % PHASES.len(), (other + body) % PHASES.len()];
+            let text = format!(
+                "title = \"walks\"\n[problem.spectral-furnace]\nvolume = [{one}, {two}]
+                ray = {{ origin = [0.3, 0.2, -3], direction = [0.1, 0, 1], length = 9 }}
+                albedos = [0.95, 1]\nphases = [{{ {} }}, {{ {} }}]\nsampling.constant.value = 2.1
+                estimators = [{{ independent = {{}} }}, {{ spectral-mis = {{}} }},
+                    {{ independent = {{ hero = [0.2, 0.8] }} }},
+                    {{ spectral-mis = {{ hero = [0.7, 0.3],
+                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }}]",
+                PHASES[here], PHASES[there]
+            );
+            cases.push(case(&format!("{first} and {other}, body {body}"), &text));
+        }
+    }
+    let compared = compare(&cases);
+    assert!(fusing_levels().is_empty() || compared >= 80, "only {compared} compared");
 }

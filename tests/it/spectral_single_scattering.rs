@@ -2,7 +2,8 @@
 
 use trueflight::harness::record::{Row, Verdict};
 
-use crate::common::{mistakes, predicted, rows};
+use crate::common::{case, mistakes, predicted, rows};
+use crate::space_packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../../cases/spectral-single-scattering/magnet.toml");
 
@@ -103,4 +104,44 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
     let row = low.iter().find(|row| row.estimator == "spectral-mis (exact shadow)").expect("a row");
     let words = "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2";
     assert!(row.reason.contains(words), "{}", row.reason);
+}
+
+/// Pairs of fields in a ball or a box, of every cost, with both forms of shadow rays, some of which miss the medium.
+#[test]
+fn walks_side_by_side_are_walks_one_by_one() {
+    const BALL_OF: &str = "bounds.sphere = { centre = [0, 0, 0], radius = 1 }";
+    const BOX_OF: &str = "bounds.box = { low = [-1, -0.8, -1], high = [1, 0.9, 0.7] }";
+    const FIELDS: [&str; 5] = [
+        "constant = { extinction = 2.1,",
+        "gaussian = { peak = 1.9, centre = [0.5, 0, 0], width = 0.8,",
+        "noise = { extinction = 2, octaves = 2, seed = 3,",
+        "piecewise-linear = { knots = [-1, 0, 1], values = [0.8, 0.1, 1.9],",
+        "grid = { random = { size = [3, 4, 3], seed = 5 }, extinction = 1.5,",
+    ];
+    let mut cases = vec![case("ball", BALL)];
+    for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
+        // Grids have boxes.
+        let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
+        for first in 0..fields.len() {
+            let other = (first + 1 + body) % fields.len();
+            let volume = |field: usize| format!("{{ {} {bounds} }} }}", fields[field]);
+            let [one, two] = [first, other].map(volume);
+            let light = if first % 2 == 0 { "[0.9, -0.3, 0.4]" } else { "[-2, 1.5, -4]" };
+            let text = format!(
+                "title = \"walks\"\n[problem.spectral-single-scattering]\nvolume = [{one}, {two}]
+                ray = {{ origin = [0.3, 0.2, -3], direction = [0.1, 0, 1], length = 9 }}
+                light = {{ position = {light}, power = 10 }}\nalbedos = [0.95, 0.4]
+                phases = [{{ henyey-greenstein = {{ g = -0.7 }} }}, {{ rayleigh = {{}} }}]
+                sampling.constant.value = 2.1
+                estimators = [{{ independent = {{}} }}, {{ spectral-mis = {{}} }},
+                    {{ independent = {{ shadow = \"ratio\", hero = [0.2, 0.8] }} }},
+                    {{ spectral-mis = {{ shadow = \"ratio\" }} }},
+                    {{ spectral-mis = {{ shadow = \"ratio\", hero = [0.7, 0.3],
+                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }}]"
+            );
+            cases.push(case(&format!("{first} and {other}, body {body}"), &text));
+        }
+    }
+    let compared = compare(&cases);
+    assert!(fusing_levels().is_empty() || compared >= 90, "only {compared} compared");
 }

@@ -2,7 +2,6 @@
 
 pub mod directional_mis;
 pub mod full_mis;
-pub mod packet;
 pub mod subpath;
 pub mod technique;
 pub mod walk;
@@ -10,6 +9,7 @@ pub mod walk;
 use self::walk::Steps;
 use crate::catalogue::{Settings, rounded};
 use crate::estimators::{Refusal, Setup, estimators};
+use crate::kernels::packet::bidirectional::Techniques;
 use crate::problems::BidirectionalRod;
 use crate::problems::bidirectional_rod::Sensor;
 use crate::theory::Heuristic;
@@ -69,6 +69,12 @@ impl Page {
             is_tracked: connection? == "ratio",
             is_shared: subpaths? == "shared",
         })
+    }
+
+    /// What packets draw: paths with subpaths of their own.
+    fn techniques(self) -> Option<Techniques> {
+        let Self { combination, is_tracked, is_shared } = self;
+        (!is_shared).then_some(Techniques { combination, is_tracked })
     }
 
     /// In words, as in `power, ratio connection`.
@@ -194,9 +200,12 @@ macro_rules! pages {
                 medium: &$crate::media::Lookups,
                 request: $crate::kernels::packet::Request<'a>,
             ) -> Option<$crate::kernels::packet::Request<'a>> {
-                $crate::estimators::bidirectional_rod::packet::paths(
-                    level, self.0, setup, medium, request,
-                )
+                match self.0.techniques() {
+                    None => Some(request),
+                    Some(techniques) => $crate::kernels::packet::bidirectional::paths(
+                        level, techniques, setup, medium, request,
+                    ),
+                }
             }
         }
     };

@@ -1,6 +1,7 @@
 //! Walks through a slab in which every channel has a medium of its own, all of them by one draw.
 
 pub mod independent;
+pub mod packet;
 pub mod page;
 pub mod spectral_mis;
 pub mod walk;

@@ -1,12 +1,15 @@
 //! What both pages share: one hero walks, and where it leaves scores for itself alone or, `BALANCED`, for all channels.
 
+use fearless_simd::Level;
+
 use super::walk::{self, Left, Steps};
-use super::{realisable, spectrum};
+use super::{packet, realisable, spectrum};
 use crate::catalogue::Settings;
 use crate::estimators::spectral_furnace::page::WEIGHING;
 use crate::estimators::spectral_furnace::walk::Steps as Collide;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::hero::Weighing;
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::ChromaticSlab;
@@ -49,6 +52,7 @@ pub fn balanced(
 impl<const BALANCED: bool> Estimator<ChromaticSlab> for OneHero<BALANCED> {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const HAS_INVARIANT: bool = BALANCED;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { heroes: Heroes::read(settings)? })
@@ -84,5 +88,15 @@ impl<const BALANCED: bool> Estimator<ChromaticSlab> for OneHero<BALANCED> {
         let mut scores = [0.0; MOST_CHANNELS];
         scores[hero] = 1.0 / self.heroes.probability(count, hero);
         Draw::free(setup.problem.colours.values(end, &scores), lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<ChromaticSlab>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<BALANCED>(level, &self.heroes, setup, medium, request)
     }
 }

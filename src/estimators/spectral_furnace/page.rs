@@ -1,10 +1,13 @@
 //! What both pages share: one hero walks, and the walk scores for the hero alone or, `BALANCED`, for all channels.
 
-use super::realisable;
+use fearless_simd::Level;
+
 use super::walk::{self, Steps};
+use super::{packet, realisable};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::hero::Weighing;
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralFurnace;
@@ -45,6 +48,7 @@ pub fn balanced(
 impl<const BALANCED: bool> Estimator<SpectralFurnace> for OneHero<BALANCED> {
     const INPUTS: Inputs = Inputs::SAMPLING;
     const HAS_INVARIANT: bool = BALANCED;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         Some(Self { heroes: Heroes::read(settings)? })
@@ -74,5 +78,15 @@ impl<const BALANCED: bool> Estimator<SpectralFurnace> for OneHero<BALANCED> {
         let mut scores = [0.0; MOST_CHANNELS];
         scores[hero] = 1.0 / self.heroes.probability(count, hero);
         Draw::free(setup.problem.values(scores), lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralFurnace>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<BALANCED>(level, &self.heroes, setup, request)
     }
 }

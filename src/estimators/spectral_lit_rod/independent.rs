@@ -15,10 +15,13 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light
 //! transport*, ACM Transactions on Graphics 38 (2019), section 6.
 
-use super::{realisable, spectrum};
+use fearless_simd::Level;
+
+use super::{packet, realisable, spectrum};
 use crate::catalogue::Settings;
 use crate::estimators::lit_rod::walk::{self, Place};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralLitRod;
@@ -37,6 +40,7 @@ pub struct Independent {
 
 impl Estimator<SpectralLitRod> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let technique = settings.word_or("technique", &["full-mis", "unidirectional"], "full-mis");
@@ -76,5 +80,17 @@ impl Estimator<SpectralLitRod> for Independent {
         let mut scores = [0.0; MOST_CHANNELS];
         scores[hero] = drawn.value[0] / self.heroes.probability(count, hero);
         Draw::free(setup.problem.values(scores), drawn.lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralLitRod>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        let techniques = if self.is_full { FULL } else { HITS };
+        let page = (techniques, &self.heroes);
+        packet::independent::walks(level, page, setup, medium, request)
     }
 }

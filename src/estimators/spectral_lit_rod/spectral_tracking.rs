@@ -17,9 +17,12 @@
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), section 5.1.
 
-use super::{realisable, spectrum};
+use fearless_simd::Level;
+
+use super::{packet, realisable, spectrum};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
 use crate::problems::SpectralLitRod;
@@ -38,6 +41,7 @@ pub struct SpectralTracking {
 
 impl Estimator<SpectralLitRod> for SpectralTracking {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let words = ["average", "maximum", "history"];
@@ -104,5 +108,15 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
                 *weight *= share[event] / chances[event];
             }
         }
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralLitRod>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::tracking::walks(level, self.chances, setup, medium, request)
     }
 }

@@ -1,6 +1,7 @@
 //! Estimators of single scattering of a point light in several channels, all of them by one draw.
 
 pub mod independent;
+pub mod packet;
 pub mod page;
 pub mod spectral_mis;
 pub mod walk;

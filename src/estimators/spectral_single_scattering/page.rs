@@ -1,9 +1,12 @@
 //! What both pages share: one hero scatters once, and that scores for the hero alone or, `BALANCED`, for all channels.
 
+use fearless_simd::Level;
+
 use super::walk::{self, Steps};
-use super::{Shadow, alone, realisable};
+use super::{Shadow, alone, packet, realisable};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralSingleScattering;
@@ -25,6 +28,7 @@ impl<const BALANCED: bool> Steps for OneHero<BALANCED> {}
 
 impl<const BALANCED: bool> Estimator<SpectralSingleScattering> for OneHero<BALANCED> {
     const INPUTS: Inputs = Inputs::SAMPLING;
+    const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
         let (heroes, shadow) = (Heroes::read(settings), Shadow::read(settings));
@@ -67,5 +71,15 @@ impl<const BALANCED: bool> Estimator<SpectralSingleScattering> for OneHero<BALAN
             lookups += cast;
         }
         Draw::free(setup.problem.values(scores), lookups)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<SpectralSingleScattering>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<BALANCED>(level, (&self.heroes, self.shadow), setup, medium, request)
     }
 }

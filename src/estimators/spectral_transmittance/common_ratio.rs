@@ -16,11 +16,11 @@
 
 use fearless_simd::Level;
 
-use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
+use crate::kernels::packet::spectral::{self as packet, Rule};
 use crate::media::Lookups;
 use crate::problems::SpectralTransmittance;
 use crate::problems::spectral_transmittance::Values;

@@ -19,11 +19,11 @@
 
 use fearless_simd::Level;
 
-use super::packet::{self, Rule};
 use super::walk;
 use crate::catalogue::{Settings, rounded};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
+use crate::kernels::packet::spectral::{self as packet, Rule};
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralTransmittance;

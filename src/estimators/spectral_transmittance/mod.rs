@@ -3,7 +3,6 @@
 pub mod common_ratio;
 pub mod hero;
 pub mod independent;
-pub mod packet;
 pub mod spectral_mis;
 pub mod spectral_tracking;
 pub mod walk;

@@ -13,14 +13,20 @@
 //! waits for the one before it, and those of the other pack fill the time.
 
 pub mod bank;
+pub mod bidirectional;
+pub mod colours;
 pub mod decomposition;
 pub mod event_queue;
 pub mod flight;
 pub mod hero;
+pub mod kept;
+pub mod left;
 pub mod line;
 pub mod majorants;
+pub mod paths;
 pub mod product;
 pub mod score;
+pub mod spectral;
 mod survival;
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};

@@ -1,7 +1,6 @@
-//! Paths of sixteen draws side by side: the packet kernel of [`super::walk`] for independent subpaths through a σ̂ of one
-//! value.
+//! Bidirectional paths of sixteen draws side by side, by independent subpaths through a σ̂ of one value.
 //!
-//! Specification: draw j is, bit for bit, the draw that [`super::walk::draw`] makes from stream j mod 16.
+//! Specification: draw j is, bit for bit, the draw that the page `bidirectional_rod/walk` makes from stream j mod 16.
 //!
 //! All lanes make the same technique at the same time. A flight goes on until the last of them has come to its next real
 //! collision; those that have none left wait, and their streams with them.
@@ -11,35 +10,43 @@ mod tracker;
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use self::tracker::Tracker;
-use super::Page;
-use crate::estimators::Setup;
+use self::path::Paths;
+use self::tracker::{Subpaths, Tracker};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::leave;
-use crate::media::course::Even;
 use crate::media::{Lookups, even};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::problems::BidirectionalRod;
+use crate::problems::bidirectional_rod::HIGHEST_ORDER;
 use crate::rng::{LANES, PACKS};
+use crate::setup::Setup;
+use crate::theory::bidirectional_rod::Combination;
 
-/// The draws of a page, on the hardware of a level; a request is handed back where the hardware is too narrow, subpaths
-/// are shared, or σ̂ has several values.
+/// Which techniques make paths, and how.
+#[derive(Debug, Clone, Copy)]
+pub struct Techniques {
+    /// Which, and what they are worth beside each other.
+    pub combination: Combination,
+    /// Whether connections are tracked.
+    pub is_tracked: bool,
+}
+
+/// The draws of techniques, on the hardware of a level; a request is handed back where the hardware is too narrow, or σ̂
+/// has several values.
 pub fn paths<'a>(
     level: Level,
-    page: Page,
+    page: Techniques,
     setup: &Setup<BidirectionalRod>,
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let Some(sampling) = setup.sampling.even().filter(|_| !page.is_shared) else {
-        return Some(request);
-    };
+    let Some(sampling) = setup.sampling.even() else { return Some(request) };
     let task = Draws { page, setup, sampling, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
 struct Draws<'a, 'r> {
-    page: Page,
+    page: Techniques,
     setup: &'a Setup<BidirectionalRod>,
     sampling: &'a even::Even,
     medium: &'a Lookups<'a>,
@@ -56,14 +63,25 @@ impl Task for Draws<'_, '_> {
         buffer.make_room(count);
         let (problem, zero) = (&*setup.problem, f64x8::splat(simd, 0.0));
         let [first, second] = streams.packs();
+        let nobody = mask64x8::splat(simd, false);
+        let subpath = Subpaths {
+            at: [zero; HIGHEST_ORDER],
+            is_forward: [nobody; HIGHEST_ORDER + 1],
+            nulls: [zero; HIGHEST_ORDER + 1],
+            last: zero,
+            whole: nobody,
+            left: nobody,
+        };
         let mut tracker = Tracker {
             simd,
             page,
             setup,
             medium,
-            begin: Even::new(simd, sampling),
+            sampling,
             numbers: [first.awake(simd), second.awake(simd)],
             lookups: [zero; PACKS],
+            subpaths: [[subpath; PACKS]; 2],
+            paths: [Paths::new(zero, problem.albedo); PACKS],
         };
         for base in (0..count).step_by(LANES) {
             let draws = Batch { base, turn: streams.turn };

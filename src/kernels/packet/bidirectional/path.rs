@@ -1,8 +1,8 @@
-//! Paths by a technique and what they are worth, sixteen at a time: as [`super::super::walk::Path`].
+//! Paths by a technique and what they are worth, sixteen at a time: as a `Path` of `bidirectional_rod/walk`.
 
 use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::tracker::{Subpaths, Tracker};
+use super::tracker::{Side, Tracker};
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
 use crate::problems::Problem;
@@ -24,36 +24,37 @@ impl<S: Simd> Tracker<'_, S> {
             _ if s == order + 2 => [[order, 1], [0, 0]],
             _ => [[s - 1, 0], [order + 1 - s, 0]],
         };
-        let light = self.subpaths(true, light, lives);
-        let camera = self.subpaths(false, camera, [light[0].whole, light[1].whole]);
-        let mut valid = [camera[0].whole, camera[1].whole];
-        let mut paths = [self.path([order, s], &light[0], &camera[0]); PACKS];
-        paths[1] = self.path([order, s], &light[1], &camera[1]);
-        for pack in 0..PACKS {
+        self.walk(Side::Light, light, lives);
+        let from_light = &self.subpaths[Side::Light as usize];
+        let whole = [from_light[0].whole, from_light[1].whole];
+        self.walk(Side::Camera, camera, whole);
+        let mut valid = lives;
+        for (pack, valid) in valid.iter_mut().enumerate() {
+            self.join([order, s], pack);
+            let camera = &self.subpaths[Side::Camera as usize][pack];
+            let light = &self.subpaths[Side::Light as usize][pack];
+            *valid = camera.whole;
             if s == 0 {
-                valid[pack] &= camera[pack].left & !camera[pack].is_forward[order];
+                *valid &= camera.left & !camera.is_forward[order];
             } else if s == order + 2 {
-                let forward = light[pack].is_forward[order];
-                let arrives = if is_transmitted { forward } else { !forward };
-                valid[pack] &= light[pack].left & arrives;
+                let forward = light.is_forward[order];
+                *valid &= light.left & if is_transmitted { forward } else { !forward };
             }
         }
-        let zero = paths[0].at[0].each(0.0);
+        let zero = self.lookups[0].each(0.0);
         if !(valid[0] | valid[1]).any_true() {
             return [zero; PACKS];
         }
         let is_hit = s == 0 || s == order + 2;
         if !is_hit && self.page.is_tracked {
-            let [first, second] = &mut paths;
-            self.connect(s, [light[0].last, light[1].last], [first, second], valid);
+            self.connect(s, valid);
         }
         let mut worth = [zero; PACKS];
         for pack in 0..PACKS {
-            let path = &mut paths[pack];
             if !self.page.is_tracked {
-                self.attenuate(path, valid[pack]);
+                self.attenuate(pack, valid[pack]);
             }
-            let mut counts = valid[pack];
+            let (path, mut counts) = (&self.paths[pack], valid[pack]);
             if !is_hit {
                 counts &= zero.below(path.transmittance[s - 1]);
             }
@@ -62,28 +63,24 @@ impl<S: Simd> Tracker<'_, S> {
         worth
     }
 
-    /// Paths by a technique `[r, s]`, from the vertices of two subpaths, before they are connected.
+    /// Makes paths by a technique `[r, s]` of the vertices of two subpaths, before they are connected.
     #[inline(always)]
-    fn path(&self, [order, s]: [usize; 2], light: &Subpaths<S>, camera: &Subpaths<S>) -> Paths<S> {
-        let (problem, support) = (&self.setup.problem, self.setup.mesh.support());
+    fn join(&mut self, [order, s]: [usize; 2], pack: usize) {
+        let (problem, support) = (&*self.setup.problem, self.setup.mesh.support());
+        let light = &self.subpaths[Side::Light as usize][pack];
+        let camera = &self.subpaths[Side::Camera as usize][pack];
+        let path = &mut self.paths[pack];
         let is_transmitted = problem.sensor == Sensor::Transmitted;
         let from_light = s.saturating_sub(1).min(order);
         let from_camera = order - from_light;
         let one = self.lookups[0].each(1.0);
         let all = one.at_most(one);
-        let mut path = Paths {
-            order,
-            light: s,
-            at: [one.each(support.from); HIGHEST_ORDER + 2],
-            is_forward: [all; HIGHEST_ORDER + 1],
-            transmittance: [one; HIGHEST_ORDER + 1],
-            phase: [one; HIGHEST_ORDER],
-            albedo: problem.albedo,
-        };
-        if is_transmitted {
-            path.at[order + 1] = one.each(support.to);
+        (path.order, path.light) = (order, s);
+        path.at[0] = one.each(support.from);
+        path.at[order + 1] = one.each(if is_transmitted { support.to } else { support.from });
+        for i in 0..from_light {
+            path.at[i + 1] = light.at[i];
         }
-        path.at[1..=from_light].copy_from_slice(&light.at[..from_light]);
         for i in 0..from_camera {
             path.at[order - i] = camera.at[i];
         }
@@ -96,27 +93,36 @@ impl<S: Simd> Tracker<'_, S> {
             path.is_forward[order - j] = !camera.is_forward[j];
             path.transmittance[order - j] = camera.nulls[j];
         }
-        if s == order + 1 {
-            path.is_forward[s - 1] = if is_transmitted { all } else { !all };
-        } else if s > 1 && s <= order {
-            path.is_forward[s - 1] = path.at[s - 1].below(path.at[s]);
+        if s >= 1 && s <= order + 1 {
+            path.is_forward[s - 1] = match s {
+                _ if s == order + 1 => {
+                    if is_transmitted {
+                        all
+                    } else {
+                        !all
+                    }
+                }
+                1 => all,
+                _ => path.at[s - 1].below(path.at[s]),
+            };
+            path.transmittance[s - 1] = one;
         }
         for i in 0..order {
             let turns = path.is_forward[i] ^ path.is_forward[i + 1];
             let (on, back) = (one.each(problem.forward), one - problem.forward);
             path.phase[i] = Lane::select(turns, back, on);
         }
-        path
     }
 
     /// `T̂` in closed form: of the connection, or of all segments where weights ask for them.
     #[inline(always)]
-    fn attenuate(&self, path: &mut Paths<S>, which: mask64x8<S>) {
-        let Paths { order, light, .. } = *path;
+    fn attenuate(&mut self, pack: usize, which: mask64x8<S>) {
+        let (order, light) = (self.paths[pack].order, self.paths[pack].light);
         let all = matches!(self.page.combination, Combination::Full(_));
         for j in 0..=order {
             if all || j + 1 == light {
-                path.transmittance[j] = self.between(path.at[j], path.at[j + 1], which);
+                let (from, to) = (self.paths[pack].at[j], self.paths[pack].at[j + 1]);
+                self.paths[pack].transmittance[j] = self.between(from, to, which);
             }
         }
     }
@@ -137,7 +143,7 @@ impl<S: Simd> Tracker<'_, S> {
     }
 }
 
-/// Paths from the light to the sensor, as [`super::walk::Path`].
+/// Paths from the light to the sensor.
 #[derive(Clone, Copy)]
 pub struct Paths<S: Simd> {
     pub order: usize,
@@ -150,6 +156,21 @@ pub struct Paths<S: Simd> {
 }
 
 impl<S: Simd> Paths<S> {
+    /// None yet.
+    #[inline(always)]
+    pub fn new(like: f64x8<S>, albedo: f64) -> Self {
+        let (one, all) = (like.each(1.0), like.at_most(like));
+        Self {
+            order: 0,
+            light: 0,
+            at: [one; HIGHEST_ORDER + 2],
+            is_forward: [all; HIGHEST_ORDER + 1],
+            transmittance: [one; HIGHEST_ORDER + 1],
+            phase: [one; HIGHEST_ORDER],
+            albedo,
+        }
+    }
+
     /// What they are worth.
     #[inline(always)]
     fn worth(&self, combination: Combination) -> f64x8<S> {

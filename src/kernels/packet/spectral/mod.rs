@@ -7,17 +7,22 @@
 //!
 //! Loops over channels count: a kernel does not inline iterators of two slices, and would lose its registers to the call.
 
+mod score;
+
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use crate::estimators::{DrawBuffer, Setup};
+use self::score::Scores;
+use crate::kernels::DrawBuffer;
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Particles, Slot, Slots};
 use crate::kernels::packet::hero::{Law, number_of_hero, of_hero};
+use crate::kernels::packet::kept::Keep;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
-use crate::numeric::pack::{self, Task, WIDTH};
+use crate::numeric::pack::{self, Task};
 use crate::problems::SpectralTransmittance;
+use crate::setup::Setup;
 use crate::setup::heroes::Heroes;
 use crate::theory::spectral::{Chance, Tracker};
 
@@ -83,7 +88,10 @@ impl Task for Walks<'_, '_> {
             lookups: zero,
             inside: mask64x8::splat(simd, true),
             alive: mask64x8::splat(simd, true),
+            majorant: one,
             ratios: [one; MOST_CHANNELS],
+            shares: [one; MOST_CHANNELS],
+            keep: Keep::new(simd),
         };
         let Request { streams, count: draws, buffer } = request;
         bank::run(
@@ -122,8 +130,13 @@ struct AlongRay<'a, S: Simd> {
     lookups: f64x8<S>,
     inside: mask64x8<S>,
     alive: mask64x8<S>,
-    /// `ρ_λ`, or the weights of spectral tracking.
+    /// The σ̂ of each hero, where it walks for itself alone.
+    majorant: f64x8<S>,
+    /// `ρ_λ`, or the weights of spectral tracking; of walks for the hero alone its own is the first.
     ratios: [f64x8<S>; MOST_CHANNELS],
+    /// `1 − σ_t/σ̂` of each channel.
+    shares: [f64x8<S>; MOST_CHANNELS],
+    keep: Keep<S>,
 }
 
 impl<S: Simd> AlongRay<'_, S> {
@@ -135,15 +148,43 @@ impl<S: Simd> AlongRay<'_, S> {
             return;
         }
         let hero = self.law.choose(numbers.uniform_where(which));
-        let path = number_of_hero(hero, &self.paths[..self.setup.channels.len()]);
-        self.hero = Lane::select(which, hero, self.hero);
-        self.path = Lane::select(which, path, self.path);
+        let count = self.setup.channels.len();
+        let path = number_of_hero(hero, &self.paths[..count]);
+        self.keep.put(&mut self.hero, which, hero);
+        self.keep.put(&mut self.path, which, path);
+        if self.is_alone() {
+            let majorant = of_hero(hero, &self.majorants[..count]);
+            self.keep.put(&mut self.majorant, which, majorant);
+        }
     }
 
-    /// The chance that a collision is null, given the shares of all channels; 1 where all are.
+    /// Whether a walk scores for its hero only.
     #[inline(always)]
-    fn survival(&self, shares: &[f64x8<S>]) -> Option<f64x8<S>> {
-        let one = self.from.each(1.0);
+    fn is_alone(&self) -> bool {
+        matches!(self.rule.tracker, Tracker::Independent { .. })
+    }
+
+    /// What becomes of walks that score for their heroes alone; answers who goes on.
+    #[inline(always)]
+    fn collide_alone(
+        &mut self,
+        found: &[f64x8<S>],
+        delta: bool,
+        numbers: &mut Numbers<S>,
+    ) -> mask64x8<S> {
+        let share = self.from.each(1.0) - of_hero(self.hero, found) / self.majorant;
+        if delta {
+            return numbers.uniform().below(share) & self.inside;
+        }
+        let ratio = self.ratios[0] * share;
+        self.keep.put(&mut self.ratios[0], self.inside, ratio);
+        self.inside
+    }
+
+    /// The chance that a collision is null, by the shares of all channels; none where all are.
+    #[inline(always)]
+    fn survival(&self) -> Option<f64x8<S>> {
+        let (one, shares) = (self.from.each(1.0), &self.shares[..self.setup.channels.len()]);
         match self.rule.tracker {
             Tracker::Tracking(Chance::Average) => {
                 let mut sum = one.each(0.0);
@@ -168,11 +209,8 @@ impl<S: Simd> AlongRay<'_, S> {
                 }
                 Some(nulls / all)
             }
-            Tracker::Independent { delta: true }
-            | Tracker::Hero { delta: true }
-            | Tracker::Mis { delta: true } => {
-                let survival = of_hero(self.hero, shares);
-                Some(survival)
+            Tracker::Hero { delta: true } | Tracker::Mis { delta: true } => {
+                Some(of_hero(self.hero, shares))
             }
             _ => None,
         }
@@ -192,28 +230,32 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
 
     #[inline(always)]
     fn collide(&mut self, found: &Self::Found, numbers: &mut Numbers<S>) -> u64 {
-        let one = self.from.each(1.0);
+        let (one, keep, inside) = (self.from.each(1.0), self.keep, self.inside);
         let count = self.setup.channels.len();
-        let mut shares = [one; MOST_CHANNELS];
-        for channel in 0..count {
-            shares[channel] = one - found[channel] / self.majorants[channel];
+        let lookups = self.lookups + 1.0;
+        keep.put(&mut self.lookups, inside, lookups);
+        if let Tracker::Independent { delta } = self.rule.tracker {
+            self.alive = self.collide_alone(&found[..count], delta, numbers);
+            return (!self.alive).to_bitmask();
         }
-        let shares = &shares[..count];
-        let survival = self.survival(shares);
-        self.alive = self.inside;
+        for (channel, &found) in found[..count].iter().enumerate() {
+            self.shares[channel] = one - found / self.majorants[channel];
+        }
+        let survival = self.survival();
+        self.alive = inside;
         if let Some(survival) = survival {
-            self.alive = numbers.uniform().below(survival) & self.inside;
+            self.alive = numbers.uniform().below(survival) & inside;
         }
         let is_tracked = self.rule.is_common && survival.is_some();
-        for (channel, &share) in shares.iter().enumerate() {
+        for channel in 0..count {
+            let share = self.shares[channel];
             let factor = match survival {
                 Some(survival) if is_tracked => share / survival,
                 _ => share,
             };
-            let ratio = self.ratios[channel];
-            self.ratios[channel] = Lane::select(self.inside, ratio * factor, ratio);
+            let ratio = self.ratios[channel] * factor;
+            keep.put(&mut self.ratios[channel], inside, ratio);
         }
-        self.lookups = Lane::select(self.inside, self.lookups + 1.0, self.lookups);
         (!self.alive).to_bitmask()
     }
 
@@ -227,14 +269,14 @@ impl<S: Simd> Particles<S> for AlongRay<'_, S> {
 
     #[inline(always)]
     fn restart(&mut self, numbers: &mut Numbers<S>) {
-        let (alive, one) = (self.alive, self.from.each(1.0));
-        self.way = Lane::select(alive, self.way, self.from);
-        let count = self.setup.channels.len();
+        let (ended, keep, one) = (!self.alive, self.keep, self.from.each(1.0));
+        keep.put(&mut self.way, ended, self.from);
+        let count = if self.is_alone() { 1 } else { self.setup.channels.len() };
         for ratio in &mut self.ratios[..count] {
-            *ratio = Lane::select(alive, *ratio, one);
+            keep.put(ratio, ended, one);
         }
-        self.lookups = Lane::select(alive, self.lookups, one.each(0.0));
-        self.choose(!alive, numbers);
+        keep.put(&mut self.lookups, ended, one.each(0.0));
+        self.choose(ended, numbers);
     }
 }
 
@@ -257,118 +299,4 @@ fn collect<S: Simd>(
         buffer.defects[draw] = hero.as_slice()[lane];
         buffer.lookups[draw] = lookups.as_slice()[lane] as u32;
     })
-}
-
-/// Makes scores of what walks have left, as the pages do.
-struct Scores<'a, S: Simd> {
-    simd: S,
-    rule: Rule<'a>,
-    luminance: &'a [f64],
-    count: usize,
-    /// `ln σ̂`, `∫σ̂` and the probability of each channel.
-    logarithms: [f64; MOST_CHANNELS],
-    collisions: [f64; MOST_CHANNELS],
-    chances: [f64; MOST_CHANNELS],
-}
-
-impl<'a, S: Simd> Scores<'a, S> {
-    #[inline(always)]
-    fn new(simd: S, setup: &'a Setup<SpectralTransmittance>, rule: Rule<'a>) -> Self {
-        let none = [0.0; MOST_CHANNELS];
-        let (mut logarithms, mut collisions, mut chances) = (none, none, none);
-        let count = setup.channels.len();
-        for (number, channel) in setup.channels.iter().enumerate() {
-            logarithms[number] = channel.ln_majorant;
-            collisions[number] = channel.collisions;
-            chances[number] = rule.heroes.probability(count, number);
-        }
-        let luminance = &setup.problem.luminance;
-        Self { simd, rule, luminance, count, logarithms, collisions, chances }
-    }
-
-    /// Of all draws of a buffer.
-    #[inline(always)]
-    fn of_all(&self, buffer: &mut DrawBuffer) {
-        let (simd, draws) = (self.simd, buffer.lookups.len());
-        buffer.make_room(draws.next_multiple_of(WIDTH));
-        for first in (0..draws).step_by(WIDTH) {
-            let pack = first..first + WIDTH;
-            let mut lookups = [0.0; WIDTH];
-            for (lane, lookups) in lookups.iter_mut().enumerate() {
-                *lookups = f64::from(buffer.lookups[first + lane]);
-            }
-            let lookups = f64x8::from_slice(simd, &lookups);
-            let hero = f64x8::from_slice(simd, &buffer.defects[pack.clone()]);
-            buffer.defects[pack.clone()].fill(0.0);
-            let mut found = [lookups; MOST_CHANNELS];
-            let found = &mut found[..self.count];
-            for (channel, found) in found.iter_mut().enumerate() {
-                *found = f64x8::from_slice(simd, &buffer.values[channel][pack.clone()]);
-            }
-            self.of_pack(hero, lookups, found);
-            for (channel, found) in found.iter().enumerate() {
-                found.store_slice(&mut buffer.values[channel][pack.clone()]);
-            }
-            // Pictures ask for the channels alone.
-            let luminance = buffer.values.get_mut(self.count);
-            if let ([first, rest @ ..], Some(luminance)) = (self.luminance, luminance) {
-                let mut sum = found[0] * *first;
-                for (channel, &weight) in rest.iter().enumerate() {
-                    sum += found[channel + 1] * weight;
-                }
-                sum.store_slice(&mut luminance[pack]);
-            }
-        }
-        buffer.make_room(draws);
-    }
-
-    /// Replaces the ratios of eight walks by their scores.
-    #[inline(always)]
-    fn of_pack(&self, hero: f64x8<S>, lookups: f64x8<S>, found: &mut [f64x8<S>]) {
-        let (zero, one) = (hero.each(0.0), hero.each(1.0));
-        match self.rule.tracker {
-            _ if self.rule.is_common => {}
-            Tracker::Independent { delta } => {
-                for (channel, found) in found.iter_mut().enumerate() {
-                    let number = zero.each(channel as f64);
-                    let is_hero = hero.at_most(number) & number.at_most(hero);
-                    let value = if delta { one } else { *found };
-                    *found = Lane::select(is_hero, value * (1.0 / self.chances[channel]), zero);
-                }
-            }
-            Tracker::Hero { delta } => {
-                let density = if delta { of_hero(hero, found) } else { one };
-                for (channel, found) in found.iter_mut().enumerate() {
-                    *found = self.relative(channel, hero, lookups) * *found / density;
-                }
-            }
-            Tracker::Mis { delta } => {
-                let mut density = zero;
-                for (channel, found) in found.iter_mut().enumerate() {
-                    let relative = self.relative(channel, hero, lookups);
-                    *found = relative * *found;
-                    let by_hero = if delta { *found } else { relative };
-                    density += by_hero * self.chances[channel];
-                }
-                for found in found.iter_mut() {
-                    *found /= density;
-                }
-            }
-            Tracker::InTurn { .. } | Tracker::Tracking(_) => {}
-        }
-        let lives = zero.at_most(hero);
-        for found in found {
-            *found = Lane::select(lives, *found, zero);
-        }
-    }
-
-    /// `q_λ/q_h`.
-    #[inline(always)]
-    fn relative(&self, channel: usize, hero: f64x8<S>, lookups: f64x8<S>) -> f64x8<S> {
-        let Self { logarithms, collisions, count, .. } = self;
-        let logarithm = number_of_hero(hero, &logarithms[..*count]);
-        let log = lookups * (hero.each(logarithms[channel]) - logarithm);
-        let expected = number_of_hero(hero, &collisions[..*count]);
-        Lane::exp(log - (hero.each(collisions[channel]) - expected))
-    }
 }

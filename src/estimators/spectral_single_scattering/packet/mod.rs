@@ -1,0 +1,135 @@
+//! Walks of heroes to their scattering side by side, and their shadow rays: the packet kernel of [`super::walk`].
+//!
+//! Specification: draw j is, bit for bit, the draw that the page makes from stream j mod 16.
+//!
+//! ```text
+//! fly       each walk flies −ln u/σ̂ of its hero: along the ray, or along its shadow ray
+//! look up   one call a channel answers σ_t on the ray, another one on tracked shadow rays
+//! collide   who is scattered casts a shadow ray, who has come to an end begins the next walk
+//! score     when all have ended, eight draws at a time; shadow rays in closed form, too
+//! ```
+
+mod score;
+mod shadow;
+mod walk;
+
+use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8};
+
+use self::walk::Pack;
+use super::Shadow;
+use crate::estimators::Setup;
+use crate::kernels::packet::Request;
+use crate::kernels::packet::bank::{self, Slots};
+use crate::kernels::packet::hero::{Law, Media};
+use crate::kernels::packet::left::{Left, Made};
+use crate::media::body::MOST_CHANNELS;
+use crate::media::{Batches, Lookups};
+use crate::numeric::pack::{self, Task};
+use crate::numeric::twin::PAIR;
+use crate::numeric::{Span, Twin};
+use crate::problems::SpectralSingleScattering;
+use crate::rng::LANES;
+use crate::setup::heroes::Heroes;
+
+/// What a walk leaves beside its weights and the transmittances of its shadow ray: its hero, its length, its lookups, and
+/// where it was scattered.
+const REST: usize = 4;
+/// What stands in the place of the hero of a walk that was not scattered.
+const LOST: f64 = -1.0;
+
+/// The draws of a page on the hardware of a level, weighted over all heroes or not; a request is handed back where the
+/// hardware is too narrow.
+pub fn walks<'a, const BALANCED: bool>(
+    level: Level,
+    (heroes, shadow): (&Heroes, Shadow),
+    setup: &Setup<SpectralSingleScattering>,
+    medium: &Lookups,
+    request: Request<'a>,
+) -> Option<Request<'a>> {
+    let (problem, media) = (&*setup.problem, Media::new(setup, heroes));
+    let mut albedos = [0.0; MOST_CHANNELS];
+    for (own, channel) in albedos.iter_mut().zip(&problem.channels) {
+        *own = channel.albedo();
+    }
+    let tracks = shadow == Shadow::Ratio;
+    let channels = problem.channels.iter().filter(|_| tracks);
+    let world = World::<BALANCED> {
+        problem,
+        medium,
+        support: setup.mesh.support(),
+        law: Law::new(heroes, media.count),
+        media,
+        albedos,
+        tracks,
+        in_space: channels.map(|channel| channel.volume().batches(level, false)).collect(),
+    };
+    pack::on_wide(level, Walks { world: &world, request }).err().map(|task| task.request)
+}
+
+/// What all walks share.
+struct World<'a, const BALANCED: bool> {
+    problem: &'a SpectralSingleScattering,
+    medium: &'a Lookups<'a>,
+    support: Span,
+    law: Law,
+    media: Media,
+    albedos: [f64; MOST_CHANNELS],
+    /// Whether shadow rays are tracked.
+    tracks: bool,
+    in_space: Vec<Batches<'a>>,
+}
+
+impl<const BALANCED: bool> World<'_, BALANCED> {
+    /// How many numbers a walk leaves.
+    fn left(&self) -> usize {
+        let count = self.media.count;
+        REST + if BALANCED { count } else { 0 } + if self.tracks { count } else { 0 }
+    }
+}
+
+struct Walks<'a, 'r, const BALANCED: bool> {
+    world: &'a World<'a, BALANCED>,
+    request: Request<'r>,
+}
+
+impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<S: Simd>(self, simd: S) {
+        let Self { world, request } = self;
+        let Request { streams, count, buffer } = request;
+        let mut left = Left::new(world.left(), count);
+        let (turn, [first, second]) = (streams.turn, streams.packs());
+        // Two names: what an index reaches lies in memory.
+        let mut first = Pack::begin(simd, world, first.awake(simd), Slots::new(count, turn, 0));
+        let mut second = Pack::begin(simd, world, second.awake(simd), Slots::new(count, turn, 1));
+        let nothing = [[f64x8::splat(simd, 0.0); MOST_CHANNELS]; 2];
+        let (mut on_ray, mut on_shadow) = (nothing, nothing);
+        let mut points = [[0.0; PAIR]; 3];
+        while first.slots.are_open() || second.slots.are_open() {
+            let places = Twin(first.fly(world, &mut points, 0), second.fly(world, &mut points, 1));
+            bank::of_channels(simd, world.medium, world.media.count, places, &mut on_ray);
+            if world.tracks && (first.casts | second.casts).any_true() {
+                for (channel, field) in world.in_space.iter().enumerate() {
+                    let Twin(here, there) = field.pair(simd, &points);
+                    (on_shadow[0][channel], on_shadow[1][channel]) = (here, there);
+                }
+            }
+            let ended = first.collide(world, &on_ray[0], &on_shadow[0]);
+            if ended.any_true() {
+                let over = first.leave(world, ended, &mut left);
+                bank::leave(streams, 0, over, first.numbers);
+                first.begin_anew(world, ended);
+            }
+            let ended = second.collide(world, &on_ray[1], &on_shadow[1]);
+            if ended.any_true() {
+                let over = second.leave(world, ended, &mut left);
+                bank::leave(streams, 1, over, second.numbers);
+                second.begin_anew(world, ended);
+            }
+        }
+        streams.turn = (streams.turn + count) % LANES;
+        score::all(simd, world, &left, Made::new(buffer, count));
+    }
+}
