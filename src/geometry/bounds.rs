@@ -2,7 +2,7 @@
 
 use super::{Point, Ray};
 use crate::numeric::double_double::{Wide, two_prod, two_sum};
-use crate::numeric::{Known, Span};
+use crate::numeric::{Known, Lane, Span};
 
 /// A box with its faces along the axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,6 +84,26 @@ impl Bounds {
             Self::Everywhere => true,
             Self::Sphere { centre, radius } => (p - *centre).norm() <= *radius,
             Self::Box(bounds) => bounds.nearest(p) == p,
+        }
+    }
+
+    /// Which points side by side are in the body.
+    #[inline(always)]
+    pub fn contain<L: Lane>(&self, p: [L; 3]) -> L::Mask {
+        let zero = p[0].each(0.0);
+        match self {
+            Self::Everywhere => zero.at_most(zero),
+            Self::Sphere { centre, radius } => {
+                centre.square_to(p, 1.0).root().at_most(zero.each(*radius))
+            }
+            Self::Box(Aabb { low, high }) => {
+                let mut inside = zero.at_most(zero);
+                for (axis, &x) in p.iter().enumerate() {
+                    let (low, high) = (zero.each(low.0[axis]), zero.each(high.0[axis]));
+                    inside = inside & low.at_most(x) & x.at_most(high);
+                }
+                inside
+            }
         }
     }
 
@@ -202,6 +222,29 @@ mod tests {
 
     fn ray(origin: [f64; 3], direction: [f64; 3], length: f64) -> Ray {
         Ray::new(Point(origin), Point(direction), length).expect("a direction")
+    }
+
+    #[test]
+    fn lanes_know_what_a_body_contains() {
+        let low = Point([-1.0, 0.0, 2.0]);
+        let bodies = [
+            Bounds::Everywhere,
+            Bounds::Sphere { centre: Point([0.5, 1.0, 2.0]), radius: 1.5 },
+            Bounds::Box(Aabb { low, high: Point([2.0, 1.0, 3.0]) }),
+        ];
+        let mut inside = [0; 3];
+        for n in 0..1000 {
+            // Halves: many are on a face.
+            let at = |slope: f64, low: f64, steps: f64| {
+                low + 0.5 * (steps * (f64::from(n) * slope).fract()).floor()
+            };
+            let p = [at(0.618, -1.5, 9.0), at(0.414, -0.5, 5.0), at(0.732, 1.0, 6.0)];
+            for (count, body) in inside.iter_mut().zip(bodies) {
+                assert_eq!(body.contain(p), body.contains(Point(p)), "{body:?} {p:?}");
+                *count += i32::from(body.contain(p));
+            }
+        }
+        assert!(inside[0] == 1000 && inside[1..].iter().all(|n| (50..950).contains(n)));
     }
 
     #[test]

@@ -8,7 +8,7 @@
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).
 
-use fearless_simd::{Level, Simd, SimdBase, f64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
 use super::{Extinction, Field, Medium};
 use crate::geometry::{Bounds, Point};
@@ -56,8 +56,11 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
         self.simd.vectorize(
             #[inline(always)]
             || {
-                let (pairs, rest) = t.as_chunks_mut::<PAIR>();
-                for pair in pairs {
+                // The hashes of two packs of noise do not fit into sixteen registers.
+                let is_narrow = self.field.is_costly() && !pack::converts(self.simd);
+                let twins = if is_narrow { 0 } else { t.len() / PAIR * PAIR };
+                let (pairs, rest) = t.split_at_mut(twins);
+                for pair in pairs.as_chunks_mut::<PAIR>().0 {
                     self.field.extinction(Twin::from_slice(self.simd, pair)).store_slice(pair);
                 }
                 for pack in rest.as_chunks_mut::<WIDTH>().0 {
@@ -203,6 +206,9 @@ impl<'a> Points<'a> {
 trait PointBatch: Send + Sync {
     /// `σ_t` at the points of two packs, with the bits that each has by itself.
     fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR];
+
+    /// See [`Batches::depths`].
+    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]>;
 }
 
 struct CompiledInSpace<'a, F, S> {
@@ -214,25 +220,46 @@ struct CompiledInSpace<'a, F, S> {
 
 impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
     fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR] {
-        let mut found = self.simd.vectorize(
+        self.simd.vectorize(
             #[inline(always)]
             || {
-                let [Twin(a, b), Twin(c, d), Twin(e, f)] =
-                    points.each_ref().map(|row| Twin::from_slice(self.simd, row));
-                let (field, mut found) = (self.field, [0.0; PAIR]);
-                Twin(field.extinction_at([a, c, e]), field.extinction_at([b, d, f]))
-                    .store_slice(&mut found);
+                let [x, y, z] = points;
+                let Twin(a, b) = Twin::from_slice(self.simd, x);
+                let Twin(c, d) = Twin::from_slice(self.simd, y);
+                let Twin(e, f) = Twin::from_slice(self.simd, z);
+                let mut found = [0.0; PAIR];
+                Twin(self.look_up([a, c, e]), self.look_up([b, d, f])).store_slice(&mut found);
                 found
             },
-        );
-        if let Some(bounds) = &self.bounds {
-            for (place, found) in found.iter_mut().enumerate() {
-                if !bounds.contains(Point(points.map(|row| row[place]))) {
-                    *found = 0.0;
+        )
+    }
+
+    fn depths(&self, rays: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
+        self.simd.vectorize(
+            #[inline(always)]
+            || {
+                let mut lanes = [f64x8::splat(self.simd, 0.0); 8];
+                for (number, row) in rays.iter().enumerate() {
+                    lanes[number] = f64x8::from_slice(self.simd, row);
                 }
-            }
+                let [a, b, c, x, y, z, from, to] = lanes;
+                let depths = self.field.depths_along([[a, b, c], [x, y, z]], [from, to])?;
+                let mut found = [0.0; WIDTH];
+                depths.store_slice(&mut found);
+                Some(found)
+            },
+        )
+    }
+}
+
+impl<F: Field, S: Simd> CompiledInSpace<'_, F, S> {
+    #[inline(always)]
+    fn look_up(&self, points: [f64x8<S>; 3]) -> f64x8<S> {
+        let found = self.field.extinction_at(points);
+        match &self.bounds {
+            Some(bounds) => Lane::select(bounds.contain(points), found, found.each(0.0)),
+            None => found,
         }
-        found
     }
 }
 
@@ -258,6 +285,19 @@ impl<'a> Batches<'a> {
             Some(value) => Twin::splat(simd, value),
             None => Twin::from_slice(simd, &self.batch.pair(points)),
         }
+    }
+
+    /// The optical depths of eight stretches of rays within the bounds: the coordinates of origins and of directions,
+    /// where they begin and where they end. `None` where the field has no formula for lanes, see
+    /// [`Field::depths_along`].
+    #[inline(always)]
+    pub fn depths<S: Simd>(&self, rays: &[f64x8<S>; 8]) -> Option<f64x8<S>> {
+        let mut rows = [[0.0; WIDTH]; 8];
+        for (number, row) in rows.iter_mut().enumerate() {
+            rays[number].store_slice(row);
+        }
+        let depths = self.batch.depths(&rows)?;
+        Some(f64x8::from_slice(rays[0].token(), &depths))
     }
 }
 

@@ -216,6 +216,14 @@ pub trait Field: Sized + Send + Sync + 'static {
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
 
+    /// The optical depths of stretches of rays, which lie within the bounds, where these have one formula for every
+    /// lane type: with the bits of those of [`Self::along`].
+    #[inline(always)]
+    fn depths_along<L: Lane>(&self, rays: [[L; 3]; 2], stretch: [L; 2]) -> Option<L> {
+        let _ = (rays, stretch);
+        None
+    }
+
     /// The same field with only its first few octaves, for explorers; `None` if it has no octaves.
     fn coarsened(&self, octaves: usize) -> Option<Self> {
         let _ = octaves;

@@ -159,6 +159,29 @@ impl Field for Radial {
         Chord { foot, scale, offset: offset.dot(offset), coefficients: self.coefficients }
     }
 
+    #[inline(always)]
+    fn depths_along<L: Lane>(
+        &self,
+        [[a, b, c], [x, y, z]]: [[L; 3]; 2],
+        [from, to]: [L; 2],
+    ) -> Option<L> {
+        let Point([u, v, w]) = self.centre;
+        let (a, b, c) = (a.each(u) - a, b.each(v) - b, c.each(w) - c);
+        let foot = a * x + b * y + c * z;
+        let scale = 1.0 / self.radius;
+        let (a, b, c) = ((a - x * foot) * scale, (b - y * foot) * scale, (c - z * foot) * scale);
+        let offset = a * a + b * b + c * c;
+        let length = (to - from).or_more(to.each(0.0));
+        let (middle, half) = ((from + to) * 0.5, length * 0.5);
+        let mut sum = foot.each(0.0);
+        for (node, weight) in GAUSS {
+            let v = (middle + half * node - foot) * scale;
+            let value = polynomial(self.coefficients, v.times_plus(v, offset));
+            sum = sum + value * weight;
+        }
+        Some(half * sum)
+    }
+
     fn is_radial(&self) -> bool {
         true
     }
@@ -190,6 +213,21 @@ mod tests {
         assert!((chord.value - 8.0 * half.powi(3) / 6.75).abs() < 1e-14);
         assert!(chord.error < 1e-13);
         assert!((field.extinction_at([1.0, 0.0, 2.75]) - 1.5).abs() < 1e-15);
+    }
+
+    #[test]
+    fn lanes_have_the_depths_of_profiles() {
+        let field = ball([0.3, 2.0, -1.5, -0.6]);
+        for n in 0..100 {
+            let turn = f64::from(n) * 0.618;
+            let origin = Point([1.0 + 0.9 * turn.cos(), 0.5 * turn.sin(), 2.2]);
+            let towards = Point([turn.sin(), 0.4, (3.0 * turn).cos()]);
+            let ray = Ray::new(origin, towards, 9.0).expect("a direction");
+            let inside = field.bounds().clip(&ray);
+            let expected = field.along(&ray, inside).optical_depth(inside).value;
+            let found = field.depths_along([origin.0, ray.direction.0], [inside.from, inside.to]);
+            assert_eq!(found, Some(expected));
+        }
     }
 
     #[test]

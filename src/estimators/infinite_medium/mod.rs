@@ -151,6 +151,22 @@ impl Walked for InfiniteMedium {
 /// The sums of a draw at most.
 const SUMS: usize = MOST_RADII + 2;
 
+/// Which sums are the channels of a draw with so many radii: those of the radii, the squared distance and the collisions.
+const CHANNELS: [[usize; SUMS]; SUMS - 1] = {
+    let mut lists = [[0; SUMS]; SUMS - 1];
+    let mut count = 0;
+    while count <= MOST_RADII {
+        let mut channel = 0;
+        while channel < count + 2 {
+            lists[count][channel] =
+                if channel < count { channel } else { MOST_RADII + channel - count };
+            channel += 1;
+        }
+        count += 1;
+    }
+    lists
+};
+
 /// Collisions within each radius, then the squared distance and the collisions.
 impl Tally<SUMS> for InfiniteMedium {
     #[inline(always)]
@@ -167,18 +183,20 @@ impl Tally<SUMS> for InfiniteMedium {
         let real = at.weight * at.ratio;
         let [x, y, z] = at.place;
         let square = x * x + y * y + z * z;
-        let radii = &self.radii;
-        for (number, radius) in radii.iter().enumerate() {
-            let within = square.below(square.each(radius * radius));
-            add_where(&mut sums[number], at.inside & within, real);
+        // So many that the compiler knows their places: what an index finds lies in memory.
+        for (number, sum) in sums.iter_mut().enumerate().take(MOST_RADII) {
+            if let Some(radius) = self.radii.get(number) {
+                let within = square.below(square.each(radius * radius));
+                add_where(sum, at.inside & within, real);
+            }
         }
         let rest = at.albedo.each(1.0) - at.albedo;
-        add_where(&mut sums[radii.len()], at.inside, real * rest * square);
-        add_where(&mut sums[radii.len() + 1], at.inside, real);
+        add_where(&mut sums[MOST_RADII], at.inside, real * rest * square);
+        add_where(&mut sums[MOST_RADII + 1], at.inside, real);
     }
 
     fn channels(&self) -> &[usize] {
-        &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9][..self.radii.len() + 2]
+        &CHANNELS[self.radii.len()][..self.radii.len() + 2]
     }
 }
 

@@ -21,7 +21,7 @@
 use super::Connection;
 use super::connection::{self, require_shadow};
 use super::in_packets;
-use super::packet::Kind;
+use super::technique::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Control, Extinction, Lookups};

@@ -16,7 +16,7 @@
 use super::attenuation_driven::{interactions, require, scene};
 use super::connection;
 use super::in_packets;
-use super::packet::Kind;
+use super::technique::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;

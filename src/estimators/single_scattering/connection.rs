@@ -13,9 +13,10 @@
 //! costs a lookup. Where delta tracking ended on the way to the point none is cast; one is where a tracked weight has
 //! become 0, whose chance depends on the rounding of σ̂ and σ_t.
 
-use super::packet::Kind;
+use super::main_part::MainPart;
+use super::technique::{Kind, point};
 use crate::catalogue::{Domain, Settings, number, rounded};
-use crate::estimators::{Inputs, Refusal, Setup};
+use crate::estimators::{Draw, Inputs, Refusal, Setup};
 use crate::geometry::Ray;
 use crate::media::{Extinction, Lookups, Volume};
 use crate::numeric::pack::in_fused_code;
@@ -147,6 +148,43 @@ impl Connection {
     pub fn scene<'a>(&self, setup: &'a Setup<SingleScattering>, cuts: Vec<f64>) -> Scene<'a> {
         let camera = Camera::new(&setup.mesh, &setup.sampling, &setup.control, self.camera);
         Scene::new(&setup.problem, camera, self.shadow, cuts)
+    }
+
+    /// A draw of points from the light, from the main part of the control, or of one from each:
+    /// `Σ T̂ σ_t S T̂_shadow/Σp`.
+    #[inline(always)]
+    pub fn draw(
+        &self,
+        setup: &Setup<SingleScattering>,
+        medium: &Lookups,
+        [from_source, from_main]: [bool; 2],
+        rng: &mut Stream,
+    ) -> Draw {
+        let (problem, main) = (&*setup.problem, MainPart::of(setup).filter(|_| from_main));
+        let is_both = from_source && main.is_some();
+        let mut draw = Draw::free([0.0], 0);
+        for is_source in [true, false] {
+            let is_asked = if is_source { from_source } else { main.is_some() };
+            if !is_asked {
+                continue;
+            }
+            let u = rng.uniform();
+            let s = match main {
+                Some(main) if !is_source => main.point(u),
+                _ => point(problem, u),
+            };
+            let density = match main {
+                Some(main) if is_both => problem.equiangular_density(s) + main.density(s),
+                Some(main) if !is_source => main.density(s),
+                _ => problem.equiangular_density(s),
+            };
+            let (radiance, lookups) = self.scatter(setup, medium, s, rng);
+            let value = radiance / density;
+            // The one point's value is the draw's, its sign included where it is 0.
+            draw.value[0] = if is_both { draw.value[0] + value } else { value };
+            draw.lookups += lookups;
+        }
+        draw
     }
 
     /// `T̂ σ_t S T̂_shadow` at a point, and what it cost.

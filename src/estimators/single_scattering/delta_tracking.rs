@@ -20,43 +20,15 @@
 use super::Connection;
 use super::connection::{self, require_shadow};
 use super::in_packets;
-use super::packet::Kind;
+pub use super::technique::Absorption;
+use super::technique::Kind;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
-use crate::problems::{Problem, SingleScattering};
+use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
-use crate::theory::single::{CameraTracking, Collisions, Points, Technique, Tracking};
-
-/// What absorption does to a walk.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Absorption {
-    /// It is a factor of what a real collision brings.
-    Weight,
-    /// It ends walks.
-    Analog,
-}
-
-impl Absorption {
-    /// Reads `absorption`.
-    pub fn read(settings: &Settings) -> Option<Self> {
-        let word = settings.word_or("absorption", &["weight", "analog"], "weight")?;
-        Some(if word == "analog" { Self::Analog } else { Self::Weight })
-    }
-
-    /// The chance that a real collision scatters.
-    #[inline(always)]
-    pub fn scatters(self, albedo: f64) -> f64 {
-        if self == Self::Analog { albedo } else { 1.0 }
-    }
-
-    /// For theory.
-    pub fn collisions(self, setup: &Setup<SingleScattering>) -> Collisions<'_> {
-        let scatters = self.scatters(setup.problem.albedo());
-        Collisions { medium: setup.problem.medium(), sampling: &setup.sampling, scatters }
-    }
-}
+use crate::theory::single::{CameraTracking, Points, Technique, Tracking};
 
 /// Scattering at the first real collision.
 #[derive(Debug, Clone)]

@@ -11,6 +11,7 @@ pub mod shared_walk;
 pub mod source_delta_mis;
 pub mod source_driven;
 pub mod source_scattering_mis;
+mod technique;
 
 use crate::estimators::estimators;
 use crate::problems::SingleScattering;

@@ -78,9 +78,6 @@ impl Estimator<SingleScattering> for ScatteringDriven {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let Some(main) = MainPart::of(setup) else { return Draw::free([0.0], 0) };
-        let s = main.point(rng.uniform());
-        let (radiance, lookups) = self.connection.scatter(setup, medium, s, rng);
-        Draw::free([radiance / main.density(s)], lookups)
+        self.connection.draw(setup, medium, [false, true], rng)
     }
 }

@@ -21,8 +21,7 @@
 use super::Connection;
 use super::connection::{self, require_shadow};
 use super::in_packets;
-use super::packet::Kind;
-use super::source_driven::point;
+use super::technique::{Kind, MOST, point};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Control, Extinction, Lookups};
@@ -31,9 +30,6 @@ use crate::problems::{Problem, SingleScattering};
 use crate::rng::Stream;
 use crate::theory::Prediction;
 use crate::theory::single::{CameraTracking, Node, Tracking, walks};
-
-/// The most points.
-pub(super) const MOST: usize = 16;
 
 /// Points that share a walk.
 #[derive(Debug, Clone)]

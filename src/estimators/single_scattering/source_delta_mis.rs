@@ -27,10 +27,9 @@
 
 use super::Connection;
 use super::connection::{self, camera, require_shadow};
-use super::delta_tracking::{Absorption, Walked, collide};
+use super::delta_tracking::{Walked, collide};
 use super::in_packets;
-use super::packet::Kind;
-use super::source_driven::point;
+use super::technique::{Absorption, Kind, Sharing, point};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::{Extinction, Lookups};
@@ -44,19 +43,6 @@ use crate::theory::{Heuristic, Prediction};
 pub struct SourceDeltaMis {
     connection: Connection,
     sharing: Sharing,
-}
-
-/// How the two techniques share what they find.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Sharing {
-    /// x, exact or by null collisions.
-    pub camera: CameraTracking,
-    /// What absorption does to delta tracking.
-    pub absorption: Absorption,
-    /// Whether a draw is of one technique.
-    pub is_one: bool,
-    /// β.
-    pub heuristic: Heuristic,
 }
 
 impl Estimator<SingleScattering> for SourceDeltaMis {

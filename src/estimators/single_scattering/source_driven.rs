@@ -23,7 +23,6 @@ use super::in_packets;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
-use crate::numeric::Lane;
 use crate::problems::SingleScattering;
 use crate::rng::Stream;
 use crate::theory::Prediction;
@@ -34,13 +33,6 @@ use crate::theory::single::{Points, Technique};
 #[derive(Debug, Clone)]
 pub struct SourceDriven {
     connection: Connection,
-}
-
-/// The point that a uniform number finds.
-#[inline(always)]
-pub(super) fn point<L: Lane>(problem: &SingleScattering, u: L) -> L {
-    let angles = problem.angles();
-    problem.at_angle(u * angles.length() + angles.from)
 }
 
 impl Estimator<SingleScattering> for SourceDriven {
@@ -85,8 +77,6 @@ impl Estimator<SingleScattering> for SourceDriven {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let s = point(&setup.problem, rng.uniform());
-        let (radiance, lookups) = self.connection.scatter(setup, medium, s, rng);
-        Draw::free([radiance / setup.problem.equiangular_density(s)], lookups)
+        self.connection.draw(setup, medium, [true, false], rng)
     }
 }

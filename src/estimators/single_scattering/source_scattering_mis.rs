@@ -17,7 +17,6 @@
 use super::Connection;
 use super::in_packets;
 use super::main_part::{self, MainPart};
-use super::source_driven::point;
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::media::Lookups;
@@ -77,15 +76,6 @@ impl Estimator<SingleScattering> for SourceScatteringMis {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        let Some(main) = MainPart::of(setup) else { return Draw::free([0.0], 0) };
-        let mut draw = Draw::free([0.0], 0);
-        for is_source in [true, false] {
-            let u = rng.uniform();
-            let s = if is_source { point(&setup.problem, u) } else { main.point(u) };
-            let (radiance, lookups) = self.connection.scatter(setup, medium, s, rng);
-            draw.value[0] += radiance / (setup.problem.equiangular_density(s) + main.density(s));
-            draw.lookups += lookups;
-        }
-        draw
+        self.connection.draw(setup, medium, [true, true], rng)
     }
 }

@@ -34,6 +34,21 @@ pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
     a * x + b * y + c * z
 }
 
+/// Where the lines of rays that begin in a body enter and leave it, for the rays that a mask names: from no later than
+/// their beginnings, to infinity where there is no boundary. The one is not before the other where a ray only grazes.
+#[inline(always)]
+pub fn ends<S: Simd>(
+    bounds: &Bounds,
+    [origin, direction]: [Points<S>; 2],
+    which: mask64x8<S>,
+) -> [f64x8<S>; 2] {
+    match bounds {
+        Bounds::Everywhere => [origin[0].each(0.0), origin[0].each(f64::INFINITY)],
+        Bounds::Box(within) => of_box(within, origin, direction),
+        Bounds::Sphere { centre, radius } => chords(*centre, *radius, [origin, direction], which),
+    }
+}
+
 /// How far it is to the boundary, infinite where there is none, for the rays that a mask names.
 #[inline(always)]
 pub fn exits<S: Simd>(
@@ -42,13 +57,7 @@ pub fn exits<S: Simd>(
     direction: Points<S>,
     which: mask64x8<S>,
 ) -> f64x8<S> {
-    match bounds {
-        Bounds::Everywhere => origin[0].each(f64::INFINITY),
-        Bounds::Box(within) => of_box(within, origin, direction),
-        Bounds::Sphere { centre, radius } => {
-            chords(*centre, *radius, [origin, direction], which)[1]
-        }
-    }
+    ends(bounds, [origin, direction], which)[1]
 }
 
 /// Where the lines of rays that begin in a ball enter and leave it, for the rays that a mask names; the one is
@@ -148,7 +157,7 @@ pub fn rows<S: Simd>(points: Points<S>) -> [[f64; WIDTH]; 3] {
 }
 
 #[inline(always)]
-fn of_box<S: Simd>(within: &Aabb, origin: Points<S>, direction: Points<S>) -> f64x8<S> {
+fn of_box<L: Lane>(within: &Aabb, origin: [L; 3], direction: [L; 3]) -> [L; 2] {
     let zero = origin[0].each(0.0);
     let (mut from, mut to) = (zero, zero.each(f64::INFINITY));
     let mut is_over = zero.below(zero);
@@ -169,5 +178,5 @@ fn of_box<S: Simd>(within: &Aabb, origin: Points<S>, direction: Points<S>) -> f6
         from = Lane::select(stays | is_level | is_empty, from, later);
         is_over = is_over | is_outside | is_empty;
     }
-    to
+    [from, to]
 }

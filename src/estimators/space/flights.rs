@@ -5,7 +5,7 @@
 
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::exit::{Points, exits, meets};
+use super::exit::{Points, ends, meets};
 use crate::geometry::Point;
 use crate::media::Majorants;
 use crate::numeric::Lane;
@@ -25,7 +25,31 @@ pub struct Ground<'a> {
     core: Option<(Point, f64)>,
 }
 
+/// How far eight rays reach.
+#[derive(Clone, Copy)]
+pub struct Reach<S: Simd> {
+    /// Where their lines enter and leave the body.
+    pub ends: [f64x8<S>; 2],
+    /// Which of them pass the black ball, and where the others meet it.
+    pub stop: Option<(mask64x8<S>, f64x8<S>)>,
+}
+
 impl<'a> Ground<'a> {
+    /// How far rays from places in the body reach, for those that a mask names.
+    #[inline(always)]
+    pub fn reach<S: Simd>(
+        &self,
+        [origin, direction]: [Points<S>; 2],
+        which: mask64x8<S>,
+    ) -> Reach<S> {
+        let ends = ends(self.majorants.bounds(), [origin, direction], which);
+        let stop = self.core.map(
+            #[inline(always)]
+            |(centre, radius)| meets(centre, radius, origin, direction),
+        );
+        Reach { ends, stop }
+    }
+
     /// That of σ̂, with a black ball in it or without.
     pub fn new(majorants: &'a Majorants, core: Option<(Point, f64)>) -> Self {
         let (cells, low, width, values) = majorants.cells();
@@ -88,15 +112,14 @@ impl<S: Simd> Flights<S> {
         }
     }
 
-    /// Those that a mask names begin anew, from the origins and in the directions that are set.
+    /// Those that a mask names begin anew, from the origins and in the directions that are set, which reach so far.
     #[inline(always)]
-    pub fn enter(&mut self, ground: &Ground, which: mask64x8<S>) {
-        let end = exits(ground.majorants.bounds(), self.origin, self.direction, which);
+    pub fn enter(&mut self, ground: &Ground, which: mask64x8<S>, reach: &Reach<S>) {
+        let Reach { ends: [_, end], stop } = *reach;
         let zero = end.each(0.0);
         self.end = Lane::select(which, end, self.end);
         self.t = Lane::select(which, zero, self.t);
-        if let Some((centre, radius)) = ground.core {
-            let (passes, at) = meets(centre, radius, self.origin, self.direction);
+        if let Some((passes, at)) = stop {
             let stop = Lane::select(passes, zero.each(f64::INFINITY), at);
             self.stop = Lane::select(which, stop, self.stop);
         }
@@ -117,9 +140,9 @@ impl<S: Simd> Flights<S> {
         }
     }
 
-    /// Each flies an optical depth through σ̂.
+    /// Those that a mask names fly an optical depth through σ̂; the places of the others mean nothing.
     #[inline(always)]
-    pub fn fly(&mut self, ground: &Ground, depth: f64x8<S>) -> Flown<S> {
+    pub fn fly(&mut self, ground: &Ground, which: mask64x8<S>, depth: f64x8<S>) -> Flown<S> {
         let before = self.t;
         let (mut inside, sampling) = match ground.constant {
             Some(value) => {
@@ -128,8 +151,9 @@ impl<S: Simd> Flights<S> {
                 self.t = Lane::select(inside, self.t + depth / sampling, self.end);
                 (inside, sampling)
             }
-            None => self.cross_cells(ground, depth),
+            None => self.cross_cells(ground, which, depth),
         };
+        inside &= which;
         if ground.core.is_some() {
             let is_stopped = self.stop.below(self.t);
             self.t = Lane::select(is_stopped, self.stop, self.t);
@@ -138,15 +162,20 @@ impl<S: Simd> Flights<S> {
         let [a, b, c] = self.origin;
         let [x, y, z] = self.direction;
         let place = [a + x * self.t, b + y * self.t, c + z * self.t];
-        Flown { inside, sampling, place, length: self.t - before }
+        let length = Lane::select(which, self.t - before, depth.each(0.0));
+        Flown { inside, sampling, place, length }
     }
 
     #[inline(always)]
-    fn cross_cells(&mut self, ground: &Ground, depth: f64x8<S>) -> (mask64x8<S>, f64x8<S>) {
+    fn cross_cells(
+        &mut self,
+        ground: &Ground,
+        mut on_its_way: mask64x8<S>,
+        depth: f64x8<S>,
+    ) -> (mask64x8<S>, f64x8<S>) {
         let (zero, one) = (depth.each(0.0), depth.each(1.0));
         let [nx, ny, _] = ground.cells;
         let (mut left, mut sampling, mut inside) = (depth, one, zero.below(zero));
-        let mut on_its_way = !inside;
         loop {
             let [i, j, k] = self.cell;
             let here = ((k * ny + j) * nx + i).entry(ground.values);

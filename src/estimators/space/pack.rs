@@ -1,7 +1,8 @@
 //! Eight walks in space, step by step: what [`super::packet`] runs two of.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
+use super::exit::{Points, splat};
 use super::flights::{Flights, Flown};
 use super::packet::{World, collect};
 use super::shadow::Shadows;
@@ -12,6 +13,10 @@ use crate::kernels::packet::bank::{Numbers, Slots};
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::twin::PAIR;
+
+/// So many particles of a pack set out together: a direction costs more than a step. While fewer wait for it, the
+/// others go on.
+const TOGETHER: u32 = 3;
 
 /// Eight walks.
 pub struct Pack<S: Simd, const SUMS: usize> {
@@ -29,18 +34,17 @@ pub struct Pack<S: Simd, const SUMS: usize> {
     scattered: mask64x8<S>,
     /// Whose shadow ray came to its end in this step.
     lit: mask64x8<S>,
-    /// Where their draws go.
-    pub slots: Slots,
+    /// Who is to cast a shadow ray.
+    aims: mask64x8<S>,
+    /// Who is to turn and to set out.
+    turns: mask64x8<S>,
+    /// Who is to set out as it is.
+    begins: mask64x8<S>,
 }
 
 impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     #[inline(always)]
-    pub fn begin<T: Tally<SUMS>>(
-        simd: S,
-        world: &World<T>,
-        numbers: Numbers<S>,
-        slots: Slots,
-    ) -> Self {
+    pub fn begin<T: Tally<SUMS>>(simd: S, world: &World<T>, numbers: Numbers<S>) -> Self {
         let one = f64x8::splat(simd, 1.0);
         let (all, none) = (one.at_most(one), one.below(one));
         let mut pack = Self {
@@ -54,7 +58,9 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             ended: all,
             scattered: none,
             lit: none,
-            slots,
+            aims: none,
+            turns: none,
+            begins: none,
         };
         pack.begin_anew(simd, world);
         pack.redirect(world);
@@ -80,6 +86,12 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         self.unscattered |= ended;
     }
 
+    /// Who waits for others to set out with.
+    #[inline(always)]
+    fn waits(&self) -> mask64x8<S> {
+        self.aims | self.turns | self.begins
+    }
+
     /// To the next tentative collision or out of the body; says where σ_t is asked for.
     #[inline(always)]
     pub fn fly<T: Tally<SUMS>>(
@@ -88,17 +100,16 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         number: usize,
         points: &mut [[f64; PAIR]; 3],
     ) -> Flown<S> {
-        let depth = -self.numbers.ln_uniform();
-        let mut flown = self.flights.fly(&world.ground, depth);
+        let (waits, origin) = (self.waits(), self.flights.origin);
+        let depth = -self.numbers.ln_uniform_where(!waits);
+        let walks = if T::CASTS { !waits & !self.shadows.on } else { !waits };
+        let mut flown = self.flights.fly(&world.ground, walks, depth);
+        flown.place = chosen(walks, flown.place, origin);
         world.tally.flown(&mut self.sums, flown.length, self.weight);
         if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
-            // Who casts a shadow ray does not walk: its flight begins anew when that has come to its end.
-            let on = self.shadows.on;
-            let (place, inside) = self.shadows.fly(rays, self.flights.origin, depth);
-            for (axis, walked) in flown.place.iter_mut().enumerate() {
-                *walked = Lane::select(on, place[axis], *walked);
-            }
-            flown.inside = (flown.inside & !on) | inside;
+            let (place, inside) = self.shadows.fly(rays, origin, depth);
+            flown.place = chosen(self.shadows.on, place, flown.place);
+            flown.inside |= inside;
         }
         for (axis, row) in points.iter_mut().enumerate() {
             flown.place[axis].store_slice(&mut row[number * WIDTH..][..WIDTH]);
@@ -125,8 +136,8 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             world.tally.lit(&mut self.sums, found, self.shadows.through);
             self.lit = found.0;
         }
-        let (inside, left) =
-            if T::CASTS { (inside & !casts, !inside & !casts) } else { (inside, !inside) };
+        let walks = !(casts | self.waits());
+        let (inside, left) = (inside & walks, walks & !inside);
         let (weight, ratio) = (self.weight, extinction / sampling);
         let at = Collision { inside, place, weight, ratio, albedo };
         world.tally.collided(&mut self.sums, &at);
@@ -155,7 +166,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             goes_on &= !plays | survives;
             is_scattered &= goes_on;
         }
-        self.ended = if T::CASTS { !goes_on & !casts } else { !goes_on };
+        self.ended = walks & !goes_on;
         self.scattered = is_scattered;
         self.unscattered &= !is_scattered;
         for (axis, from) in self.flights.origin.iter_mut().enumerate() {
@@ -163,59 +174,92 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         }
     }
 
-    /// Those that were scattered cast shadow rays and turn, and these and those that begin set out.
+    /// Those that were scattered cast shadow rays, or turn, and these and those that begin set out, as soon as there
+    /// are enough of them.
+    ///
+    /// Shadow rays and new directions are drawn, and clipped, together.
     #[inline(always)]
     pub fn redirect<T: Tally<SUMS>>(&mut self, world: &World<T>) {
-        let begins_turned = world.tally.begins_turned();
+        let (zero, one) = (self.weight.each(0.0), self.weight.each(1.0));
+        let origin = self.flights.origin;
         let sets_out = self.scattered | self.ended;
-        let (mut turns, mut sets_out) =
-            (if begins_turned { sets_out } else { self.scattered }, sets_out);
-        if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
-            let zero = self.weight.each(0.0);
-            world.tally.scattered(&mut self.sums, turns, self.flights.origin);
+        let turns = if world.tally.begins_turned() { sets_out } else { self.scattered };
+        self.begins |= sets_out & !turns;
+        if T::CASTS {
+            world.tally.scattered(&mut self.sums, turns, origin);
             let is_nothing = self.weight.at_most(zero) & zero.at_most(self.weight);
-            let casts = turns & !is_nothing;
-            if casts.to_bitmask() != 0 {
-                let origin = self.flights.origin;
-                let light = world.tally.light(&mut self.numbers, casts, origin);
-                let found = self.shadows.cast(rays, casts, &light, (origin, self.weight));
-                world.tally.lit(&mut self.sums, found, zero.each(1.0));
-            }
-            turns = (turns | self.lit) & !self.shadows.on;
-            sets_out = (sets_out | self.lit) & !self.shadows.on;
+            self.aims |= turns & !is_nothing;
+            self.turns |= (turns & is_nothing) | self.lit;
+        } else {
+            self.turns |= turns;
         }
-        if turns.to_bitmask() != 0 {
-            self.turn(world, turns);
+        let moves = self.waits();
+        if moves.to_bitmask().count_ones() < TOGETHER {
+            return;
         }
-        if sets_out.to_bitmask() != 0 {
-            self.flights.enter(&world.ground, sets_out);
+        let (casts, turns, sets_out) = (self.aims, self.turns, self.turns | self.begins);
+        let nobody = moves & !moves;
+        (self.aims, self.turns, self.begins) = (nobody, nobody, nobody);
+        let parallel = if T::CASTS { world.tally.parallel() } else { None };
+        let draws = if parallel.is_some() { turns } else { turns | casts };
+        let (mut direction, mut number) = (self.flights.direction, zero);
+        if draws.any_true() {
+            number = self.numbers.uniform_where(draws);
+            direction = self.turned(world, (draws, number), casts);
         }
+        if let Some(towards) = parallel {
+            direction = chosen(casts, splat(zero.token(), towards), direction);
+        }
+        let reach = world.ground.reach([origin, direction], moves);
+        if let (true, Some(rays)) = (T::CASTS, &world.shadow_rays) {
+            let light = world.tally.aim(origin, number).light(direction, reach.stop);
+            let (rays, from) = ((rays, &world.extinction), (origin, self.weight));
+            let found = self.shadows.cast(rays, casts, &light, from, reach.ends);
+            world.tally.lit(&mut self.sums, found, one);
+            // Who needed no tracking turns next.
+            self.turns = casts & !self.shadows.on;
+        }
+        self.flights.direction = chosen(turns, direction, self.flights.direction);
+        self.flights.enter(&world.ground, sets_out, &reach);
     }
 
-    /// Turns those that a mask names.
+    /// New directions of those that a mask names, made of uniform numbers: of shadow rays that some of them cast, or
+    /// of walks.
     #[inline(always)]
-    fn turn<T: Tally<SUMS>>(&mut self, world: &World<T>, which: mask64x8<S>) {
-        let number = self.numbers.uniform_where(which);
-        let mut cosine = world.scene.phase.cosine(number);
-        if world.tally.begins_turned() {
-            cosine = Lane::select(self.ended, world.tally.first_cosine(number), cosine);
-        }
-        let turns = self.numbers.uniform_where(which);
-        let turned = frame::turned_lanes(self.flights.direction, cosine, turns);
-        for (axis, to) in self.flights.direction.iter_mut().enumerate() {
-            *to = Lane::select(which, turned[axis], *to);
-        }
-    }
-
-    /// Makes draws of those that have ended, as bits; answers whose last ones these are.
-    #[inline(always)]
-    pub fn finish<T: Tally<SUMS>>(
+    fn turned<T: Tally<SUMS>>(
         &mut self,
         world: &World<T>,
-        ended: u64,
+        (which, number): (mask64x8<S>, f64x8<S>),
+        casts: mask64x8<S>,
+    ) -> Points<S> {
+        let (mut axis, mut cosine) = (self.flights.direction, world.scene.phase.cosine(number));
+        if world.tally.begins_turned() {
+            cosine = Lane::select(self.unscattered, world.tally.first_cosine(number), cosine);
+        }
+        if T::CASTS {
+            let aim = world.tally.aim(self.flights.origin, number);
+            (axis, cosine) =
+                (chosen(casts, aim.axis, axis), Lane::select(casts, aim.cosine, cosine));
+        }
+        let turned = frame::turned_lanes(axis, cosine, self.numbers.uniform_where(which));
+        chosen(which, turned, self.flights.direction)
+    }
+
+    /// Makes draws of those that have ended; answers whose last ones these are.
+    #[inline(always)]
+    pub fn finish<T: Tally<SUMS>>(
+        &self,
+        world: &World<T>,
+        slots: &mut Slots,
         buffer: &mut DrawBuffer,
     ) -> u64 {
-        let channels = world.tally.channels();
-        collect(&self.sums, &self.lookups, channels, (ended, &mut self.slots), buffer)
+        let ended = (self.ended.to_bitmask(), slots);
+        collect(&self.sums, &self.lookups, world.tally.channels(), ended, buffer)
     }
+}
+
+/// Points where a mask says so, else others.
+#[inline(always)]
+fn chosen<L: Lane>(mask: L::Mask, [a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> [L; 3] {
+    [L::select(mask, a, x), L::select(mask, b, y), L::select(mask, c, z)]
 }

@@ -28,10 +28,10 @@ use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Slot, Slots};
 use crate::media::{Batches, Majorants};
 use crate::numeric::Twin;
-use crate::numeric::pack::{self, Task};
+use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
 use crate::problems::{Albedo, Scene};
-use crate::rng::{LANES, PACKS};
+use crate::rng::LANES;
 
 /// With more cells of σ̂ than this a walk spends its time on their planes, which packets cross no faster.
 const MOST_CELLS: usize = 1000;
@@ -81,7 +81,8 @@ pub struct World<'a, T> {
     pub ground: Ground<'a>,
     /// How shadow rays are cast, if they are.
     pub shadow_rays: Option<ShadowRays<'a>>,
-    extinction: Batches<'a>,
+    /// σ_t.
+    pub extinction: Batches<'a>,
     /// a, where it varies.
     albedo: Option<Batches<'a>>,
 }
@@ -99,55 +100,72 @@ impl<const SUMS: usize, T: Tally<SUMS>> Task for Walks<'_, '_, SUMS, T> {
         let Self { world, request } = self;
         let Request { streams, count, buffer } = request;
         buffer.make_room(count);
-        let lanes = streams.packs();
-        let mut packs: [Pack<S, SUMS>; PACKS] = std::array::from_fn(
-            #[inline(always)]
-            |pack| {
-                let slots = Slots::new(count, streams.turn, pack);
-                Pack::begin(simd, &world, lanes[pack].awake(simd), slots)
-            },
-        );
-        while packs.iter().any(|pack| pack.slots.are_open()) {
+        let turn = streams.turn;
+        let [first, second] = streams.packs();
+        let (mut slots, mut others) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+        // Two names, not an array: what an index reaches lies in memory, and there AVX2 chooses by stores that cost
+        // more than all else.
+        let mut first = Pack::begin(simd, &world, first.awake(simd));
+        let mut second = Pack::begin(simd, &world, second.awake(simd));
+        while slots.are_open() || others.are_open() {
             let mut points = [[0.0; PAIR]; 3];
-            let [first, second] = &mut packs;
-            let flown = [first.fly(&world, 0, &mut points), second.fly(&world, 1, &mut points)];
+            let flown = first.fly(&world, 0, &mut points);
+            let other_flown = second.fly(&world, 1, &mut points);
             let Twin(here, there) = world.extinction.pair(simd, &points);
             let Twin(a, b) = match (&world.albedo, &world.scene.albedo) {
                 (Some(field), _) => field.pair(simd, &points),
                 (None, albedo) => Twin::splat(simd, albedo.even().unwrap_or_default()),
             };
-            let found = [(here, a), (there, b)];
-            for (number, pack) in packs.iter_mut().enumerate() {
-                pack.collide(simd, &world, &flown[number], found[number]);
-                let ended = pack.ended.to_bitmask();
-                if ended != 0 {
-                    let over = pack.finish(&world, ended, buffer);
-                    bank::leave(streams, number, over, pack.numbers);
-                    pack.begin_anew(simd, &world);
-                }
-                pack.slots.step();
-                pack.redirect(&world);
+            first.collide(simd, &world, &flown, (here, a));
+            if first.ended.any_true() {
+                let over = first.finish(&world, &mut slots, buffer);
+                bank::leave(streams, 0, over, first.numbers);
+                first.begin_anew(simd, &world);
             }
+            first.redirect(&world);
+            second.collide(simd, &world, &other_flown, (there, b));
+            if second.ended.any_true() {
+                let over = second.finish(&world, &mut others, buffer);
+                bank::leave(streams, 1, over, second.numbers);
+                second.begin_anew(simd, &world);
+            }
+            second.redirect(&world);
         }
-        streams.turn = (streams.turn + count) % LANES;
+        streams.turn = (turn + count) % LANES;
     }
 }
 
-/// Writes the sums of walks that have ended into their draws.
+/// Writes the sums of walks that have ended into their draws; answers whose last ones these are.
+#[inline(always)]
+pub fn collect<S: Simd, const SUMS: usize>(
+    sums: &[f64x8<S>; SUMS],
+    lookups: &f64x8<S>,
+    channels: &[usize],
+    ends: (u64, &mut Slots),
+    buffer: &mut DrawBuffer,
+) -> u64 {
+    let (mut rows, mut counts) = ([[0.0; WIDTH]; SUMS], [0.0; WIDTH]);
+    for (sum, row) in rows.iter_mut().enumerate() {
+        sums[sum].store_slice(row);
+    }
+    lookups.store_slice(&mut counts);
+    write(&rows, &counts, channels, ends, buffer)
+}
+
 #[inline(never)]
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-pub fn collect<S: Simd>(
-    sums: &[f64x8<S>],
-    lookups: &f64x8<S>,
+fn write(
+    rows: &[[f64; WIDTH]],
+    lookups: &[f64; WIDTH],
     channels: &[usize],
     (ended, slots): (u64, &mut Slots),
     buffer: &mut DrawBuffer,
 ) -> u64 {
     slots.fill(ended, |Slot { lane, draw, .. }| {
         for (channel, &sum) in channels.iter().enumerate() {
-            buffer.values[channel][draw] = sums[sum].as_slice()[lane];
+            buffer.values[channel][draw] = rows[sum][lane];
         }
         buffer.defects[draw] = 0.0;
-        buffer.lookups[draw] = lookups.as_slice()[lane] as u32;
+        buffer.lookups[draw] = lookups[lane] as u32;
     })
 }

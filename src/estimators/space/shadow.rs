@@ -9,12 +9,12 @@
 //! walks of the other lanes. Bit for bit what
 //! [`transmittance`](crate::estimators::single_scattering::connection::transmittance) finds.
 
-use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::exit::{Points, chords, one_by_one, rows};
+use super::exit::{Points, rows};
 use crate::geometry::{Bounds, Point, Ray};
 use crate::kernels::packet::bank::Numbers;
-use crate::media::Volume;
+use crate::media::{Batches, Volume};
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
 use crate::theory::single::Tracking;
@@ -32,12 +32,40 @@ pub struct ShadowRays<'a> {
 /// Light as a point sees it, or eight.
 #[derive(Clone, Copy)]
 pub struct Light<L> {
-    /// In which direction it is looked for.
+    /// In which direction it is looked for, a unit vector.
     pub direction: [L; 3],
     /// What it is worth without a medium.
     pub share: L,
     /// How far it is.
     pub distance: L,
+}
+
+/// How shadow rays are aimed: at an angle from an axis, at any azimuth.
+#[derive(Clone, Copy)]
+pub struct Aim<L> {
+    /// A unit vector.
+    pub axis: [L; 3],
+    /// The cosine with it.
+    pub cosine: L,
+    /// What the light is worth without a medium.
+    pub share: L,
+    /// How far it is to the light's centre.
+    pub distance: L,
+}
+
+impl<L: Lane> Aim<L> {
+    /// The light in a direction that was drawn so: its surface, which is passed by some and met by the others so far
+    /// away, or one without end.
+    #[inline(always)]
+    pub fn light(self, direction: [L; 3], stop: Option<(L::Mask, L)>) -> Light<L> {
+        let Self { cosine, share, distance, .. } = self;
+        // A direction at the edge may miss by rounding: it ends at the point of the edge.
+        let distance = match stop {
+            Some((misses, near)) => L::select(misses, distance * cosine, near),
+            None => distance.each(f64::INFINITY),
+        };
+        Light { direction, share, distance }
+    }
 }
 
 /// Light that has been found, and by which rays.
@@ -88,29 +116,18 @@ impl<S: Simd> Shadows<S> {
         Self { on, direction: [zero; 3], t: zero, end: zero, through: zero, worth: zero }
     }
 
-    /// The rays that a mask names begin at places with weights; what needs no tracking is found at once.
+    /// The rays that a mask names begin at places with weights, their lines within the bounds from and to; what needs
+    /// no tracking is found at once.
     #[inline(always)]
     pub fn cast(
         &mut self,
-        rays: &ShadowRays,
+        (rays, field): (&ShadowRays, &Batches),
         which: mask64x8<S>,
         light: &Light<f64x8<S>>,
         (origin, weight): (Points<S>, f64x8<S>),
+        [from, to]: [f64x8<S>; 2],
     ) -> Found<S> {
         let (zero, one) = (weight.each(0.0), weight.each(1.0));
-        let [from, to] = match rays.bounds {
-            Bounds::Everywhere => [zero, light.distance],
-            Bounds::Sphere { centre, radius } => {
-                chords(centre, radius, [origin, light.direction], which)
-            }
-            Bounds::Box(_) => {
-                let lines = [rows(origin), rows(light.direction)];
-                let mut ends = rows([zero, zero, zero]);
-                one_by_one(&rays.bounds, &lines, which.to_bitmask(), &mut ends);
-                let simd = zero.token();
-                [f64x8::from_slice(simd, &ends[0]), f64x8::from_slice(simd, &ends[1])]
-            }
-        };
         let (from, end) = (from.or_more(zero), light.distance.or_less(to));
         let is_blocked = which & from.below(end);
         let worth = weight * light.share;
@@ -126,6 +143,11 @@ impl<S: Simd> Shadows<S> {
                     let through = (-((end - from) * value)).exp();
                     return (which, worth * Lane::select(is_blocked, through, one));
                 }
+                let ([a, b, c], [x, y, z]) = (origin, light.direction);
+                if let Some(depths) = field.depths(&[a, b, c, x, y, z, from, end]) {
+                    let through = (-depths).exp();
+                    return (which, worth * Lane::select(is_blocked, through, one));
+                }
                 let (lines, [start, ..]) = ([rows(origin), rows(light.direction)], rows([from; 3]));
                 let through = end.replaced(|ends| rays.exact(blocked, &lines, ends, &start));
                 return (which, worth * Lane::select(is_blocked, through, one));
@@ -138,7 +160,7 @@ impl<S: Simd> Shadows<S> {
         self.t = Lane::select(is_blocked, from, self.t);
         self.end = Lane::select(is_blocked, end, self.end);
         self.worth = Lane::select(is_blocked, worth, self.worth);
-        let through = ((end - from) * -control).exp();
+        let through = if control == 0.0 { one } else { ((end - from) * -control).exp() };
         self.through = Lane::select(is_blocked, through, self.through);
         (which & !is_blocked, worth)
     }

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, f64x8, mask64x8};
 
 use super::exit::Points;
-use super::shadow::{Found, Light, ShadowRays};
+use super::shadow::{Aim, Found, ShadowRays};
 use super::walk::Sink;
 use crate::geometry::Point;
 use crate::kernels::packet::bank::Numbers;
@@ -91,17 +91,17 @@ pub trait Tally<const SUMS: usize> {
         number * 2.0 - 1.0
     }
 
-    /// The light that shadow rays from places are cast to; those that a mask names may take numbers for it.
+    /// The one direction of all shadow rays, which take no numbers then.
+    fn parallel(&self) -> Option<Point> {
+        None
+    }
+
+    /// How shadow rays from places are aimed by uniform numbers.
     #[inline(always)]
-    fn light<S: Simd>(
-        &self,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-        place: Points<S>,
-    ) -> Light<f64x8<S>> {
-        let _ = (numbers, which);
-        let nothing = place[0].each(0.0);
-        Light { direction: place, share: nothing, distance: nothing }
+    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+        let _ = number;
+        let zero = place[0].each(0.0);
+        Aim { axis: place, cosine: zero, share: zero, distance: zero }
     }
 
     /// Those that a mask names are scattered at places, or begin there as if they were.

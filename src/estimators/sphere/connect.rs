@@ -11,6 +11,7 @@
 //! again; met before the first one, it is. A point whose mean intensity is sought is a first scattering of
 //! weight 1. A shadow ray of weight 0 is not cast, and one that leaves the ball at once costs nothing.
 
+use super::core;
 use crate::estimators::single_scattering::connection;
 use crate::estimators::space::shadow;
 use crate::estimators::space::{Scattering, Sink, exit};
@@ -69,39 +70,46 @@ pub fn meets(origin: Point, direction: Point, centre: Point, radius: f64) -> Opt
 /// Upwards: a direction from which any other is found by an even cosine and an even azimuth.
 pub const UP: Point = Point([0.0, 0.0, 1.0]);
 
-/// Where a shadow ray from a place is cast to, by uniform numbers.
+/// A point in all lanes.
 #[inline(always)]
-pub fn light<L: Lane>(
-    sphere: &Sphere,
-    place: [L; 3],
-    mut uniform: impl FnMut() -> L,
-) -> shadow::Light<L> {
+fn lanes<L: Lane>(like: L, Point([x, y, z]): Point) -> [L; 3] {
+    [like.each(x), like.each(y), like.each(z)]
+}
+
+/// How a shadow ray from a place is aimed at the light by a uniform number; a distant one needs none.
+#[inline(always)]
+pub fn aim<L: Lane>(sphere: &Sphere, place: [L; 3], number: L) -> shadow::Aim<L> {
     let one = place[0].each(1.0);
-    let points = |Point([x, y, z]): Point| [one.each(x), one.each(y), one.each(z)];
-    let endless = one.each(f64::INFINITY);
     match sphere.light {
         Light::Environment => {
-            let cosine = uniform() * 2.0 - 1.0;
-            let direction = frame::turned_lanes(points(UP), cosine, uniform());
-            shadow::Light { direction, share: one, distance: endless }
+            let (axis, distance) = (lanes(one, UP), one.each(f64::INFINITY));
+            shadow::Aim { axis, cosine: number * 2.0 - 1.0, share: one, distance }
         }
         Light::Distant(direction) => {
-            shadow::Light { direction: points(direction), share: one, distance: endless }
+            let (axis, distance) = (lanes(one, direction), one.each(f64::INFINITY));
+            shadow::Aim { axis, cosine: one, share: one, distance }
         }
         Light::BlackSphere(core) => {
-            let ([a, b, c], [x, y, z]) = (points(sphere.centre), place);
+            let ([a, b, c], [x, y, z]) = (lanes(one, sphere.centre), place);
             let [x, y, z] = [a - x, b - y, c - z];
             let distance = exit::dot([x, y, z], [x, y, z]).root();
             let cone = cone(core, distance);
-            let (cosine, scale) = (one - uniform() * cone, one / distance);
+            let (cosine, scale) = (one - number * cone, one / distance);
             let axis = [x * scale, y * scale, z * scale];
-            let direction = frame::turned_lanes(axis, cosine, uniform());
-            let (misses, near) = exit::meets(sphere.centre, core, place, direction);
-            // A direction at the edge may miss by rounding: it ends at the point of the edge.
-            let distance = L::select(misses, distance * cosine, near);
-            shadow::Light { direction, share: cone * 0.5, distance }
+            shadow::Aim { axis, cosine, share: cone * 0.5, distance }
         }
     }
+}
+
+/// Where a shadow ray from a place is cast to, by uniform numbers.
+fn light(sphere: &Sphere, place: Point, rng: &mut Stream) -> shadow::Light<f64> {
+    if let Light::Distant(Point(direction)) = sphere.light {
+        return shadow::Light { direction, share: 1.0, distance: f64::INFINITY };
+    }
+    let aim = aim(sphere, place.0, rng.uniform());
+    let direction = frame::turned_lanes(aim.axis, aim.cosine, rng.uniform());
+    let stop = core(sphere).map(|(centre, radius)| exit::meets(centre, radius, place.0, direction));
+    aim.light(direction, stop)
 }
 
 /// A shadow ray.
@@ -118,8 +126,7 @@ pub struct ShadowRay {
 impl ShadowRay {
     /// From a place to a light that is chosen by uniform numbers.
     pub fn cast(sphere: &Sphere, connect: &dyn Connect, place: Point, rng: &mut Stream) -> Self {
-        let shadow::Light { direction, mut share, distance } =
-            light(sphere, place.0, || rng.uniform());
+        let shadow::Light { direction, mut share, distance } = light(sphere, place, rng);
         if let Light::BlackSphere(core) = sphere.light {
             share = connect.share(core, (sphere.centre - place).norm());
         }

@@ -7,11 +7,11 @@ use fearless_simd::{Level, Simd, f64x8, mask64x8};
 
 use super::Page;
 use super::combined::Sharing;
-use super::connect::{UP, cone, light};
+use super::connect::{UP, aim, cone};
 use crate::estimators::Setup;
 use crate::estimators::space::exit::{Points, dot, splat};
 use crate::estimators::space::packet::walks;
-use crate::estimators::space::shadow::{Found, Light, ShadowRays};
+use crate::estimators::space::shadow::{Aim, Found, ShadowRays};
 use crate::estimators::space::tally::{Collision, Departure, add_where};
 use crate::estimators::space::{Particle, Tally};
 use crate::geometry::{Bounds, Point};
@@ -83,19 +83,16 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
         CASTS.then_some(ShadowRays { volume, bounds, tracking: self.shadow })
     }
 
+    fn parallel(&self) -> Option<Point> {
+        match self.sphere.light {
+            sphere::Light::Distant(direction) => Some(direction),
+            sphere::Light::Environment | sphere::Light::BlackSphere(_) => None,
+        }
+    }
+
     #[inline(always)]
-    fn light<S: Simd>(
-        &self,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-        place: Points<S>,
-    ) -> Light<f64x8<S>> {
-        light(
-            self.sphere,
-            place,
-            #[inline(always)]
-            || numbers.uniform_where(which),
-        )
+    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+        aim(self.sphere, place, number)
     }
 
     #[inline(always)]
@@ -194,14 +191,13 @@ impl Tally<3> for Sharers<'_> {
         self.seekers.shadow_rays()
     }
 
+    fn parallel(&self) -> Option<Point> {
+        self.seekers.parallel()
+    }
+
     #[inline(always)]
-    fn light<S: Simd>(
-        &self,
-        numbers: &mut Numbers<S>,
-        which: mask64x8<S>,
-        place: Points<S>,
-    ) -> Light<f64x8<S>> {
-        self.seekers.light(numbers, which, place)
+    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+        self.seekers.aim(place, number)
     }
 
     #[inline(always)]

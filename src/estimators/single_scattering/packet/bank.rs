@@ -2,58 +2,30 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::collisions::Collisions;
-use super::interactions::Interactions;
-use super::mis::Mis;
-use super::points::Points;
-use super::shared::Shared;
 use super::walk::{Walk, World};
-use super::{Page, Sums};
-use crate::estimators::single_scattering::delta_tracking::Absorption;
+use super::{Page, Pages, Sums, collisions, interactions, mis, points, shared};
 use crate::estimators::single_scattering::main_part::MainPart;
-use crate::estimators::single_scattering::source_delta_mis::Sharing;
+use crate::estimators::single_scattering::technique::{Kind, Sharing};
 use crate::estimators::space::exit;
+use crate::estimators::space::packet::collect;
 use crate::estimators::space::shadow::{Found, Light, ShadowRays, Shadows};
+use crate::estimators::space::tally::add_where;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::geometry::Bounds;
 use crate::kernels::packet::Request;
-use crate::kernels::packet::bank::{self, Numbers, Slot, Slots};
+use crate::kernels::packet::bank::{self, Numbers, Slots};
 use crate::media::course::Even;
 use crate::media::{Batches, Lookups, even};
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
 use crate::problems::{Problem, SingleScattering};
-use crate::rng::{LANES, PACKS};
+use crate::rng::{LANES, Streams};
 use crate::theory::single::{CameraTracking, Tracking};
 
 /// So many lanes of a pack cast their shadow rays together: to find where they lead costs more than a step. While
 /// fewer wait for it, others are on their way.
 const TOGETHER: u32 = 4;
-
-/// A technique.
-#[derive(Clone, Copy)]
-pub enum Kind {
-    /// Points from the light, from the main part of the control, or from both, each with a camera.
-    Points {
-        /// How the transmittance from the ray's origin is found.
-        camera: CameraTracking,
-        /// Whether points come from the light.
-        from_source: bool,
-        /// Whether points come from the main part.
-        from_main: bool,
-    },
-    /// The first real collision.
-    Collision(Absorption),
-    /// A point from the light, the first real collision, or both.
-    SourceAndCollision(Sharing),
-    /// All interaction points.
-    Interactions,
-    /// One of them.
-    Resampled,
-    /// So many points on one walk.
-    Shared(usize),
-}
 
 /// The draws of a technique, on the hardware of a level; a request is handed back where that is too narrow,
 /// where σ̂ has several values, and where one draw after the other is faster.
@@ -78,92 +50,77 @@ pub fn walks<'a>(
     let is_box = matches!(bounds, Bounds::Box(_));
     let is_tracked = matches!(kind, Kind::Points { camera, .. } if camera != CameraTracking::Exact);
     let is_single = setup.control.single_value().is_some();
-    // One cheap sample alone, clipped lookups of shadow rays, and a main part of many pieces beside a tracked camera
+    // One cheap sample alone, and a main part of many pieces beside a tracked camera
     // do not pay.
     let is_one = matches!(kind, Kind::SourceAndCollision(Sharing { is_one: true, .. }));
     let is_cheap = is_one && tracking == Tracking::Exact && !medium.is_costly();
-    let is_clipped = is_box && tracking != Tracking::Exact;
-    if is_cheap || is_clipped || (main.is_some() && is_tracked && !is_single) {
+    if is_cheap || (main.is_some() && is_tracked && !is_single) {
         return Some(request);
     }
     let in_space = volume.batches(level, is_box);
     let (support, extinction) = (setup.problem.medium().support(), medium.single_value());
     let world = World { setup, support, extinction };
-    let task = Walks { world, even, main, kind, rays, in_space, medium, request };
-    pack::on_wide(level, task).err().map(|task| task.request)
+    let frame = Frame { world, even, rays, in_space, medium };
+    match kind {
+        Kind::Points { camera, from_source, .. } => {
+            frame.make(level, points::Technique { camera, from_source, main }, request)
+        }
+        Kind::Collision(absorption) => {
+            frame.make(level, collisions::Technique { absorption }, request)
+        }
+        Kind::SourceAndCollision(sharing) => frame.make(level, mis::Technique { sharing }, request),
+        Kind::Interactions => frame.make(level, interactions::Technique::<false>, request),
+        Kind::Resampled => frame.make(level, interactions::Technique::<true>, request),
+        Kind::Shared(count) => frame.make(level, shared::Technique { count }, request),
+    }
 }
 
-struct Walks<'a, 'r> {
+/// What all techniques work on.
+struct Frame<'a> {
     world: World<'a>,
     even: &'a even::Even,
-    main: Option<MainPart<'a>>,
-    kind: Kind,
     rays: ShadowRays<'a>,
     in_space: Batches<'a>,
     medium: &'a Lookups<'a>,
+}
+
+impl<'a> Frame<'a> {
+    /// One function for each technique: compilers take the square of its length.
+    fn make<'r, P: Pages<'a>>(
+        self,
+        level: Level,
+        pages: P,
+        request: Request<'r>,
+    ) -> Option<Request<'r>> {
+        let task = Walks { frame: self, pages, request };
+        pack::on_wide(level, task).err().map(|task| task.request)
+    }
+}
+
+struct Walks<'a, 'r, P> {
+    frame: Frame<'a>,
+    pages: P,
     request: Request<'r>,
 }
 
-impl Task for Walks<'_, '_> {
+impl<'a, P: Pages<'a>> Task for Walks<'a, '_, P> {
     type Output = ();
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let (world, main) = (self.world, self.main);
-        let walk = Walk::new(simd, Even::new(simd, self.even), world.support.from);
-        let start = (world, walk);
-        match self.kind {
-            Kind::Points { camera, from_source, .. } => self.make(
-                simd,
-                #[inline(always)]
-                || Points::new(simd, start, camera, from_source, main),
-            ),
-            Kind::Collision(absorption) => self.make(
-                simd,
-                #[inline(always)]
-                || Collisions::new(simd, start, absorption),
-            ),
-            Kind::SourceAndCollision(sharing) => self.make(
-                simd,
-                #[inline(always)]
-                || Mis::new(simd, start, sharing),
-            ),
-            Kind::Interactions => self.make(
-                simd,
-                #[inline(always)]
-                || Interactions::<S, false>::new(simd, start),
-            ),
-            Kind::Resampled => self.make(
-                simd,
-                #[inline(always)]
-                || Interactions::<S, true>::new(simd, start),
-            ),
-            Kind::Shared(count) => self.make(
-                simd,
-                #[inline(always)]
-                || Shared::new(simd, start, count),
-            ),
-        }
-    }
-}
-
-impl Walks<'_, '_> {
-    #[inline(always)]
-    fn make<S: Simd, P: Page<S>>(self, simd: S, page: impl Fn() -> P) {
-        let Self { world, rays, in_space, medium, request, .. } = self;
+        let Self { frame: Frame { world, even, rays, in_space, medium }, pages, request } = self;
+        let walk = Walk::new(simd, Even::new(simd, even), world.support.from);
         let Request { streams, count, buffer } = request;
         buffer.make_room(count);
-        let lanes = streams.packs();
-        let mut packs: [Pack<S, P>; PACKS] = std::array::from_fn(
-            #[inline(always)]
-            |pack| {
-                let slots = Slots::new(count, streams.turn, pack);
-                Pack::begin(simd, page(), lanes[pack].awake(simd), slots)
-            },
-        );
-        while packs.iter().any(|pack| pack.slots.are_open()) {
+        let turn = streams.turn;
+        let [first, second] = streams.packs();
+        let (mut slots, mut others) = (Slots::new(count, turn, 0), Slots::new(count, turn, 1));
+        // Two names, not an array: what an index reaches lies in memory, and there AVX2 chooses by stores that cost
+        // more than all else.
+        let mut first = Pack::begin(simd, pages.page(simd, world, walk), first.awake(simd));
+        let mut second = Pack::begin(simd, pages.page(simd, world, walk), second.awake(simd));
+        while slots.are_open() || others.are_open() {
             let mut points = [[0.0; PAIR]; 3];
-            let [first, second] = &mut packs;
             let places = Twin(first.fly(&rays, 0, &mut points), second.fly(&rays, 1, &mut points));
             let on_ray = medium.pair(simd, places);
             let casts = first.casts | second.casts;
@@ -171,20 +128,12 @@ impl Walks<'_, '_> {
                 0 => on_ray,
                 _ => in_space.pair(simd, &points),
             };
-            let found = [(on_ray.0, on_shadow.0), (on_ray.1, on_shadow.1)];
-            for (number, pack) in packs.iter_mut().enumerate() {
-                pack.collide(&world, &rays, found[number]);
-                let [ended, begins] = pack.page.finish();
-                if ended.to_bitmask() != 0 {
-                    let over = pack.collect(ended, buffer);
-                    bank::leave(streams, number, over, pack.numbers);
-                }
-                if begins.to_bitmask() != 0 {
-                    pack.page.begin(&mut pack.numbers, begins);
-                }
-            }
+            first.collide(&world, (&rays, &in_space), (on_ray.0, on_shadow.0));
+            first.go_on(0, &mut slots, streams, buffer);
+            second.collide(&world, (&rays, &in_space), (on_ray.1, on_shadow.1));
+            second.go_on(1, &mut others, streams, buffer);
         }
-        streams.turn = (streams.turn + count) % LANES;
+        streams.turn = (turn + count) % LANES;
     }
 }
 
@@ -192,7 +141,6 @@ impl Walks<'_, '_> {
 struct Pack<S: Simd, P> {
     page: P,
     numbers: Numbers<S>,
-    slots: Slots,
     sums: Sums<S>,
     shadows: Shadows<S>,
     /// Where shadow rays begin.
@@ -209,25 +157,14 @@ struct Pack<S: Simd, P> {
 
 impl<S: Simd, P: Page<S>> Pack<S, P> {
     #[inline(always)]
-    fn begin(simd: S, mut page: P, mut numbers: Numbers<S>, slots: Slots) -> Self {
+    fn begin(simd: S, mut page: P, mut numbers: Numbers<S>) -> Self {
         let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
-        page.begin(&mut numbers, !none);
-        let (sums, shadows) = (Sums { value: zero, lookups: zero }, Shadows::new(simd));
+        let mut sums = Sums { value: zero, lookups: zero };
+        page.begin(&mut numbers, !none, &mut sums);
+        let shadows = Shadows::new(simd);
         let (origin, place) = ([zero; 3], [zero; 3]);
         let (inside, casts, aiming) = (none, none, none);
-        Self {
-            page,
-            numbers,
-            slots,
-            sums,
-            shadows,
-            origin,
-            place,
-            inside,
-            casts,
-            aiming,
-            from: zero,
-        }
+        Self { page, numbers, sums, shadows, origin, place, inside, casts, aiming, from: zero }
     }
 
     /// All fly on; answers where they are on the ray, and writes where they are on their shadow rays.
@@ -235,12 +172,9 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
     fn fly(&mut self, rays: &ShadowRays, number: usize, points: &mut [[f64; PAIR]; 3]) -> f64x8<S> {
         self.casts = self.shadows.on;
         let flies = self.page.flies() & !(self.casts | self.aiming);
-        let depth = match (flies | self.casts).to_bitmask() {
-            0 => self.sums.value.each(0.0),
-            0xff => -self.numbers.ln_uniform(),
-            _ => -self.numbers.ln_uniform_where(flies | self.casts),
-        };
-        if self.casts.to_bitmask() != 0 {
+        let depth = -self.numbers.ln_uniform_where(flies | self.casts);
+        // With nobody on a shadow ray, too: it costs less than a branch that no machine foresees.
+        if rays.tracking != Tracking::Exact {
             (self.place, self.inside) = self.shadows.fly(rays, self.origin, depth);
             for (axis, row) in points.iter_mut().enumerate() {
                 self.place[axis].store_slice(&mut row[number * WIDTH..][..WIDTH]);
@@ -254,7 +188,7 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
     fn collide(
         &mut self,
         world: &World,
-        rays: &ShadowRays,
+        (rays, in_space): (&ShadowRays, &Batches),
         (extinction, on_shadow): (f64x8<S>, f64x8<S>),
     ) {
         let (numbers, one) = (&mut self.numbers, extinction.each(1.0));
@@ -262,9 +196,9 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         let (aims, from) = self.page.collide(numbers, !held, extinction, &mut self.sums);
         let nobody = aims & !aims;
         let mut found: Found<S> = (nobody, one);
-        if self.casts.to_bitmask() != 0 {
+        if rays.tracking != Tracking::Exact {
             let inside = self.casts & self.inside;
-            self.sums.lookups = Lane::select(inside, self.sums.lookups + 1.0, self.sums.lookups);
+            add_where(&mut self.sums.lookups, inside, one);
             found = self.shadows.collide(rays, numbers, (self.place, inside), on_shadow);
         }
         self.from = Lane::select(aims, from, self.from);
@@ -277,7 +211,9 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
                 *to = Lane::select(casts, origin[axis], *to);
             }
             let light = Light { direction, share: one, distance };
-            let (which, through) = self.shadows.cast(rays, casts, &light, (origin, one));
+            let ends = exit::ends(&rays.bounds, [origin, direction], casts);
+            let from = (origin, one);
+            let (which, through) = self.shadows.cast((rays, in_space), casts, &light, from, ends);
             // What a ray that was cast before has found, and what one finds at once.
             found = (found.0 | which, Lane::select(which, through, found.1));
         }
@@ -286,33 +222,26 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         }
     }
 
-    /// Makes draws of those that a mask names; answers whose last ones these are.
+    /// Who has made its draw begins the next one.
     #[inline(always)]
-    fn collect(&mut self, ended: mask64x8<S>, buffer: &mut DrawBuffer) -> u64 {
-        let mut rows = [[0.0; WIDTH]; 2];
-        self.sums.value.store_slice(&mut rows[0]);
-        self.sums.lookups.store_slice(&mut rows[1]);
-        let zero = self.sums.value.each(0.0);
-        self.sums.value = Lane::select(ended, zero, self.sums.value);
-        self.sums.lookups = Lane::select(ended, zero, self.sums.lookups);
-        write(&rows, ended.to_bitmask(), &mut self.slots, buffer)
-    }
-}
-
-#[inline(never)]
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
-fn write(
-    [values, lookups]: &[[f64; WIDTH]; 2],
-    ended: u64,
-    slots: &mut Slots,
-    buffer: &mut DrawBuffer,
-) -> u64 {
-    let DrawBuffer { values: channels, lookups: counts, defects } = buffer;
-    slots.fill(ended, |Slot { lane, draw, .. }| {
-        if let [channel] = &mut channels[..] {
-            channel[draw] = values[lane];
+    fn go_on(
+        &mut self,
+        number: usize,
+        slots: &mut Slots,
+        streams: &mut Streams,
+        buffer: &mut DrawBuffer,
+    ) {
+        let [ended, begins] = self.page.finish();
+        if ended.any_true() {
+            let Sums { value, lookups } = self.sums;
+            let over = collect(&[value], &lookups, &[0], (ended.to_bitmask(), slots), buffer);
+            bank::leave(streams, number, over, self.numbers);
+            let zero = value.each(0.0);
+            self.sums.value = Lane::select(ended, zero, value);
+            self.sums.lookups = Lane::select(ended, zero, lookups);
         }
-        counts[draw] = lookups[lane] as u32;
-        defects[draw] = 0.0;
-    })
+        if begins.any_true() {
+            self.page.begin(&mut self.numbers, begins, &mut self.sums);
+        }
+    }
 }

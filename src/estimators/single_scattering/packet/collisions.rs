@@ -3,8 +3,8 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
-use super::{Page, Sums};
-use crate::estimators::single_scattering::delta_tracking::Absorption;
+use super::{Page, Pages, Sums};
+use crate::estimators::single_scattering::technique::Absorption;
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
@@ -21,19 +21,27 @@ pub struct Collisions<'a, S: Simd> {
     number: f64x8<S>,
 }
 
-impl<'a, S: Simd> Collisions<'a, S> {
-    /// None has begun.
+/// Delta tracking.
+#[derive(Clone, Copy)]
+pub struct Technique {
+    /// What absorption does.
+    pub absorption: Absorption,
+}
+
+impl<'a> Pages<'a> for Technique {
+    type Page<S: Simd> = Collisions<'a, S>;
+
     #[inline(always)]
-    pub fn new(simd: S, (world, walk): (World<'a>, Walk<'a, S>), absorption: Absorption) -> Self {
+    fn page<S: Simd>(self, simd: S, world: World<'a>, walk: Walk<'a, S>) -> Self::Page<S> {
         let (zero, done) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
-        let scatters = absorption.scatters(world.setup.problem.albedo());
-        Self { world, walk, scatters, done, s: walk.t, number: zero }
+        let scatters = self.absorption.scatters(world.setup.problem.albedo());
+        Collisions { world, walk, scatters, done, s: walk.t, number: zero }
     }
 }
 
 impl<S: Simd> Page<S> for Collisions<'_, S> {
     #[inline(always)]
-    fn begin(&mut self, _: &mut Numbers<S>, which: mask64x8<S>) {
+    fn begin(&mut self, _: &mut Numbers<S>, which: mask64x8<S>, _: &mut Sums<S>) {
         self.walk.begin(which);
     }
 

@@ -3,7 +3,7 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
-use super::{Page, Sums};
+use super::{Page, Pages, Sums};
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
@@ -24,18 +24,23 @@ pub struct Interactions<'a, S: Simd, const RESAMPLED: bool> {
     sum: f64x8<S>,
 }
 
-impl<'a, S: Simd, const RESAMPLED: bool> Interactions<'a, S, RESAMPLED> {
-    /// None has begun.
+/// Attenuation-driven, resampled or not.
+#[derive(Clone, Copy)]
+pub struct Technique<const RESAMPLED: bool>;
+
+impl<'a, const RESAMPLED: bool> Pages<'a> for Technique<RESAMPLED> {
+    type Page<S: Simd> = Interactions<'a, S, RESAMPLED>;
+
     #[inline(always)]
-    pub fn new(simd: S, (world, walk): (World<'a>, Walk<'a, S>)) -> Self {
+    fn page<S: Simd>(self, simd: S, world: World<'a>, walk: Walk<'a, S>) -> Self::Page<S> {
         let (zero, done) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
-        Self { world, walk, done, weight: zero, s: walk.t, worth: zero, sum: zero }
+        Interactions { world, walk, done, weight: zero, s: walk.t, worth: zero, sum: zero }
     }
 }
 
 impl<S: Simd, const RESAMPLED: bool> Page<S> for Interactions<'_, S, RESAMPLED> {
     #[inline(always)]
-    fn begin(&mut self, _: &mut Numbers<S>, which: mask64x8<S>) {
+    fn begin(&mut self, _: &mut Numbers<S>, which: mask64x8<S>, _: &mut Sums<S>) {
         self.walk.begin(which);
         self.weight = Lane::select(which, self.weight.each(1.0), self.weight);
         self.sum = Lane::select(which, self.sum.each(0.0), self.sum);

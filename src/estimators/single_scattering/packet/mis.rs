@@ -3,9 +3,8 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
-use super::{Page, Sums};
-use crate::estimators::single_scattering::source_delta_mis::Sharing;
-use crate::estimators::single_scattering::source_driven::point;
+use super::{Page, Pages, Sums};
+use crate::estimators::single_scattering::technique::{Sharing, point};
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
@@ -30,13 +29,22 @@ pub struct Mis<'a, S: Simd> {
     kept: f64x8<S>,
 }
 
-impl<'a, S: Simd> Mis<'a, S> {
-    /// None has begun.
+/// Both techniques.
+#[derive(Clone, Copy)]
+pub struct Technique {
+    /// How they share what they find.
+    pub sharing: Sharing,
+}
+
+impl<'a> Pages<'a> for Technique {
+    type Page<S: Simd> = Mis<'a, S>;
+
     #[inline(always)]
-    pub fn new(simd: S, (world, walk): (World<'a>, Walk<'a, S>), sharing: Sharing) -> Self {
+    fn page<S: Simd>(self, simd: S, world: World<'a>, walk: Walk<'a, S>) -> Self::Page<S> {
         let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
+        let sharing = self.sharing;
         let scatters = sharing.absorption.scatters(world.setup.problem.albedo());
-        Self {
+        Mis {
             world,
             walk,
             sharing,
@@ -50,7 +58,9 @@ impl<'a, S: Simd> Mis<'a, S> {
             kept: zero,
         }
     }
+}
 
+impl<S: Simd> Mis<'_, S> {
     #[inline(always)]
     fn is_tracked(&self) -> bool {
         self.sharing.camera == CameraTracking::Ratio
@@ -83,7 +93,7 @@ impl<'a, S: Simd> Mis<'a, S> {
 
 impl<S: Simd> Page<S> for Mis<'_, S> {
     #[inline(always)]
-    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>) {
+    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>) {
         let mut looks = which;
         if self.sharing.is_one {
             let u = numbers.uniform_where(which);
@@ -92,8 +102,16 @@ impl<S: Simd> Page<S> for Mis<'_, S> {
         }
         let s = point(&self.world.setup.problem, numbers.uniform_where(looks));
         self.s = Lane::select(looks, s, self.s);
-        self.looks |= looks;
         self.from_light |= looks;
+        match self.world.extinction {
+            // It needs no step to be looked up.
+            Some(value) if value > 0.0 && self.is_tracked() => {
+                add_where(&mut sums.lookups, looks, s.each(1.0));
+                self.extinction = s.each(value);
+                self.set_out(looks);
+            }
+            _ => self.looks |= looks,
+        }
     }
 
     #[inline(always)]

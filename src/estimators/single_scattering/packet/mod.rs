@@ -19,10 +19,11 @@ mod points;
 mod shared;
 mod walk;
 
-pub use bank::{Kind, walks};
+pub use bank::walks;
 
 use fearless_simd::{Simd, f64x8, mask64x8};
 
+use self::walk::{Walk, World};
 use crate::estimators::space::shadow::Found;
 use crate::kernels::packet::bank::Numbers;
 
@@ -38,7 +39,7 @@ pub struct Sums<S: Simd> {
 /// What a technique does with eight walks.
 pub trait Page<S: Simd> {
     /// The draws that a mask names begin, and those that go on with another point.
-    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>);
+    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>);
 
     /// Who flies along the ray in this step, unless it casts a shadow ray.
     fn flies(&self) -> mask64x8<S>;
@@ -61,4 +62,13 @@ pub trait Page<S: Simd> {
 
     /// Who has made its draw, and who has to begin: those, and who goes on with another point.
     fn finish(&mut self) -> [mask64x8<S>; 2];
+}
+
+/// The pages of a technique.
+pub trait Pages<'a>: Copy {
+    /// The page of eight walks.
+    type Page<S: Simd>: Page<S>;
+
+    /// A page of which none has begun.
+    fn page<S: Simd>(self, simd: S, world: World<'a>, walk: Walk<'a, S>) -> Self::Page<S>;
 }

@@ -3,9 +3,9 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
-use super::{Page, Sums};
+use super::{Page, Pages, Sums};
 use crate::estimators::single_scattering::main_part::MainPart;
-use crate::estimators::single_scattering::source_driven::point;
+use crate::estimators::single_scattering::technique::point;
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
@@ -14,14 +14,10 @@ use crate::theory::single::CameraTracking;
 
 /// Eight walks to points.
 pub struct Points<'a, S: Simd> {
-    /// The ray.
-    pub world: World<'a>,
-    /// How the transmittance from the ray's origin is found.
-    pub camera: CameraTracking,
-    /// Whether points are found from the light.
-    pub from_source: bool,
-    /// From what points are found, or those after the light's.
-    pub main: Option<MainPart<'a>>,
+    world: World<'a>,
+    camera: CameraTracking,
+    from_source: bool,
+    main: Option<MainPart<'a>>,
     walk: Walk<'a, S>,
     looks: mask64x8<S>,
     done: mask64x8<S>,
@@ -31,38 +27,56 @@ pub struct Points<'a, S: Simd> {
     weight: f64x8<S>,
 }
 
-impl<'a, S: Simd> Points<'a, S> {
-    /// None has begun.
+/// Points that are chosen beforehand.
+#[derive(Clone, Copy)]
+pub struct Technique<'a> {
+    /// How the transmittance from the ray's origin is found.
+    pub camera: CameraTracking,
+    /// Whether points are found from the light.
+    pub from_source: bool,
+    /// From what points are found, or those after the light's.
+    pub main: Option<MainPart<'a>>,
+}
+
+impl<'a> Pages<'a> for Technique<'a> {
+    type Page<S: Simd> = Points<'a, S>;
+
     #[inline(always)]
-    pub fn new(
-        simd: S,
-        (world, walk): (World<'a>, Walk<'a, S>),
-        camera: CameraTracking,
-        from_source: bool,
-        main: Option<MainPart<'a>>,
-    ) -> Self {
+    fn page<S: Simd>(self, simd: S, world: World<'a>, walk: Walk<'a, S>) -> Self::Page<S> {
         let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
-        let (looks, done, is_second) = (none, none, none);
-        let (s, extinction, weight) = (walk.t, zero, zero);
-        Self {
+        let Self { camera, from_source, main } = self;
+        Points {
             world,
             camera,
             from_source,
             main,
             walk,
-            looks,
-            done,
-            is_second,
-            s,
-            extinction,
-            weight,
+            looks: none,
+            done: none,
+            is_second: none,
+            s: walk.t,
+            extinction: zero,
+            weight: zero,
         }
+    }
+}
+
+impl<S: Simd> Points<'_, S> {
+    /// These set out from the ray's origin to their points.
+    #[inline(always)]
+    fn set_out(&mut self, which: mask64x8<S>) {
+        let begun = match self.camera {
+            CameraTracking::Delta => self.s.each(1.0),
+            _ => self.world.controlled(self.s),
+        };
+        self.weight = Lane::select(which, begun, self.weight);
+        self.walk.begin(which);
     }
 }
 
 impl<S: Simd> Page<S> for Points<'_, S> {
     #[inline(always)]
-    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>) {
+    fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>) {
         let u = numbers.uniform_where(which);
         let problem = &*self.world.setup.problem;
         let s = match (&self.main, self.from_source) {
@@ -71,7 +85,15 @@ impl<S: Simd> Page<S> for Points<'_, S> {
             (Some(main), true) => Lane::select(self.is_second, main.point(u), point(problem, u)),
         };
         self.s = Lane::select(which, s, self.s);
-        self.looks |= which;
+        match self.world.extinction {
+            // It needs no step to be looked up.
+            Some(value) if value > 0.0 && self.camera != CameraTracking::Exact => {
+                add_where(&mut sums.lookups, which, s.each(1.0));
+                self.extinction = s.each(value);
+                self.set_out(which);
+            }
+            _ => self.looks |= which,
+        }
     }
 
     #[inline(always)]
@@ -117,15 +139,14 @@ impl<S: Simd> Page<S> for Points<'_, S> {
                 let killed = inside & (number * self.walk.sampling()).below(extinction);
                 ends |= killed;
                 self.walk.on &= !killed;
-                self.weight = Lane::select(scatters, one, self.weight);
             } else {
                 let weight = self.weight * self.walk.kept(&self.world, extinction);
                 self.weight = Lane::select(inside, weight, self.weight);
-                let begun = self.world.controlled(self.s);
-                self.weight = Lane::select(scatters, begun, self.weight);
             }
             self.walk.on &= !arrives;
-            self.walk.begin(scatters);
+            if looked.any_true() {
+                self.set_out(scatters);
+            }
         }
         self.done |= ends;
         (arrives, self.s)

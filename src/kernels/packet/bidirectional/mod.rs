@@ -109,7 +109,8 @@ impl Task for Draws<'_, '_> {
                 draws.write(&sum, &mut buffer.values[channel]);
             }
             // Defects stand in for whole numbers, until all are written.
-            draws.write(&tracker.lookups, &mut buffer.defects);
+            let lookups = tracker.lookups;
+            draws.write(&lookups, &mut buffer.defects);
         }
         for (draw, lookups) in buffer.lookups.iter_mut().enumerate() {
             *lookups = whole(buffer.defects[draw]);
