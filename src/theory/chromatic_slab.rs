@@ -15,7 +15,7 @@ use super::prediction::Covariance;
 use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::slab::{self, Pieces, Walk};
-use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction, Tails};
+use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction};
 use crate::media::Piecewise;
 use crate::numeric::Known;
 use crate::problems::ChromaticSlab;
@@ -87,9 +87,7 @@ impl<'a> Spectrum<'a> {
             return self.independent(heroes);
         }
         let channels = self.channels(|truth, channel| {
-            let most = truth.value / heroes[channel] - truth.value * truth.value;
-            let unknown = Channel::unbiased(truth, None, Tails::LIGHT);
-            Channel { most_variance: Some(most), ..unknown }
+            Channel::bounded(truth, (truth.value + truth.error) / heroes[channel])
         });
         Prediction { channels, lookups: self.lookups(heroes), ..Prediction::default() }
     }

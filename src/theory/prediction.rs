@@ -91,6 +91,13 @@ impl Channel {
         }
     }
 
+    /// The same of a draw that is never negative, of which theory has a bound on `E[X²]` and no more.
+    pub fn bounded(truth: Known, square: f64) -> Self {
+        let least = (truth.value - truth.error).max(0.0);
+        let most_variance = Some((square - least * least).max(0.0));
+        Self { most_variance, ..Self::unbiased(truth, None, Tails::LIGHT) }
+    }
+
     /// A bound on the relative error of the variance and, where it is known, of the fourth central moment:
     /// that of the moments in units of the mean, that of the unit, and rounding.
     pub fn moments_error(&self) -> Option<f64> {

@@ -9,7 +9,7 @@
 
 use super::prediction::Covariance;
 use super::single::Points;
-use super::{Channel, CountLaw, Prediction, Tails};
+use super::{Channel, CountLaw, Prediction};
 
 /// The lookups of the walk of a hero, mixed over heroes.
 fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
@@ -56,10 +56,7 @@ pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
         Points { lookups: lookups(alone, heroes), ..*first }.prediction().lookups
     });
     let channel = |(points, chance): (&Points, &f64)| {
-        let mean = points.truth.value;
-        let bound = points.powers[2] * (1.0 + points.error) / chance - mean * mean;
-        let unknown = Channel::unbiased(points.truth, None, Tails::LIGHT);
-        Channel { most_variance: Some(bound.max(0.0)), ..unknown }
+        Channel::bounded(points.truth, points.powers[2] * (1.0 + points.error) / chance)
     };
     let channels = named(alone.iter().zip(heroes).map(channel));
     Prediction { channels, lookups: of_first, ..Prediction::default() }

@@ -275,6 +275,18 @@ fn without_shares_the_sum_is_what_it_was() {
     }
 }
 
+/// Where nothing is scattered all orders but the first are worth nothing, and the bound on their sum is that of the rest.
+#[test]
+fn techniques_that_are_worth_nothing_leave_a_bound_on_the_sum() {
+    let text = rod("transmitted", 2, 0, "{ full-mis.subpaths = \"shared\" }");
+    let text = text.replace("lowest = 0", "lowest = 0\nshares = false");
+    let dark = text.replace("albedo = 0.85", "albedo = 0");
+    assert_ne!(dark, text);
+    for row in rows(&dark, 200_000) {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}", row.reason);
+    }
+}
+
 #[test]
 fn unscattered_light_of_one_technique_does_not_vary() {
     let text = rod("transmitted", 0, 0, "{ technique.light-vertices = 1 }, { full-mis = {} }");

@@ -333,3 +333,24 @@ fn slabs_of_coloured_scatterers_are_drawn_as_predicted() {
         assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
     }
 }
+
+/// No weight of history-aware tracking exceeds the number of channels, in any medium.
+#[test]
+fn history_aware_tracking_of_smooth_forward_rods_is_judged_by_a_bound() {
+    let rows = rows(
+        "title = \"smooth\"
+        [problem.spectral-lit-rod]
+        medium = [{ exponential = { extinction = 1, rate = 1 } }, { constant.extinction = 0.7 }]
+        span = [0, 2]
+        albedos = [0.9, 0.3]
+        forward = 1
+        sampling.constant.value = 1.2
+        estimators = [{ spectral-tracking.probabilities = \"history\" }]",
+        400_000,
+    );
+    assert_eq!(rows.len(), 2);
+    for row in rows {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}", row.reason);
+        assert!(row.predicted_variance.is_none());
+    }
+}

@@ -229,6 +229,7 @@ fn variances_are_below_their_bounds() {
         (0.5, [0.9, 0.5], [0.6, 0.6], 1.0),
         (2.0, [1.0, 0.3], [0.9, 0.1], 1.3),
         (4.0, [0.9, 0.8], [0.5, 0.7], 1.0),
+        (0.5, [0.9, 0.5], [0.0, 0.5], 1.0),
     ] {
         let text = one_medium("constant.extinction = 1", depth, &albedos, &forward, majorant);
         let text = text.replace("{ independent = {} },", "");

@@ -166,9 +166,7 @@ const UNKNOWN: Answer = Answer {
 };
 
 fn prediction(value: Known, square: f64) -> Prediction {
-    let most = (square - value.value * value.value).max(0.0);
-    let channel = Channel::unbiased(value, Moments::certain(value.value), Tails::LIGHT);
-    Prediction::uncounted(Channel { moments: None, most_variance: Some(most), ..channel })
+    Prediction::uncounted(Channel::bounded(value, square))
 }
 
 /// A draw is 1 with the chance that is sought, else 0.

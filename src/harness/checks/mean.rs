@@ -6,10 +6,11 @@
 //!
 //! The mean may pass only if the variance of the same experiment passes too; where that one is
 //! underpowered the pass says so (`variance assumed`). Draws without spread must all be the truth
-//! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. A case that declares an experiment biased passes only if the bias is shown; where
-//! theory has no variance for it, that of pilot draws is used, doubled. Where theory has no more than a
-//! bound on the variance, V is that bound; where it has none but knows that tails are light, as of the
-//! length of a walk, V is again twice that of pilot draws.
+//! to rounding; where the spread is small but not nothing, the gate knows how much rounding may add. Where theory
+//! has no more than a bound on the variance, V is that bound, and no variance is tested: the promise of a pass is then
+//! made to draws that keep the bound. Where it has none but knows that tails are light, as of the length of a walk, V is
+//! twice that of pilot draws. A case that declares an experiment biased passes only if the bias is shown; where theory
+//! has no variance for it, that of pilot draws is used, doubled.
 
 use super::observe::Observe;
 use super::question::{Always, Kind, Known, Question, Scalar, Subject, Wanted, rounding_of};
@@ -71,7 +72,13 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
         return Kind::Untestable("a few of the pilot draws make all of their variance".into());
     }
     let doubled = pilot.map(|pilot| 2.0 * pilot.variance);
-    let known = match (channel.moments, channel.most_variance.or(doubled)) {
+    // A bound is that of the right estimator: what is declared biased has a spread of its own.
+    let assumed = if subject.expect_biased {
+        doubled.or(channel.most_variance)
+    } else {
+        channel.most_variance.or(doubled)
+    };
+    let known = match (channel.moments, assumed) {
         (Some(moments), _) => {
             let unit = moments.scale * scale;
             Known { variance: moments.relative[0] * unit * unit, error: moments.error, floor }
@@ -82,8 +89,8 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
     if !known.variance.is_finite() {
         return Kind::Untestable("the variance overflows".into());
     }
-    if known.variance == 0.0 {
-        return Kind::Untestable("all pilot draws are the same, which tells nothing here".into());
+    if known.variance <= 0.0 {
+        return Kind::Untestable("draws without a spread tell nothing here".into());
     }
     let observe = Observe::each_value(
         index,

@@ -61,9 +61,7 @@ pub fn predict(scene: &Scene, rules: &Rules, ratio: Option<f64>, laws: bool) -> 
             covariances.push(Covariance { pair: [last, last + 1], value, variance });
         }
         let moments = sum.moments.filter(|_| !rules.is_shared);
-        // Whatever their covariances are: the deviation of a sum is at most the sum of the deviations.
-        let most: f64 = channels.iter().map(|channel| variance(channel).sqrt()).sum();
-        let most_variance = rules.is_shared.then_some(most * most);
+        let most_variance = rules.is_shared.then(|| most_of_sum([&found, &rough]));
         channels.push(Channel { name: "sum".into(), moments, most_variance, ..sum });
     }
     if !rules.has_shares && channels.len() > 1 {
@@ -93,6 +91,13 @@ fn names(scene: &Scene, rules: &Rules) -> Vec<(usize, usize, String)> {
         techniques.map(move |s| (order, s, name(order, s)))
     };
     orders.flat_map(of).collect()
+}
+
+/// A bound on the variance of a sum of draws, however they vary together: its deviation is at most the sum of theirs.
+fn most_of_sum(resolutions: [&Vec<Powers>; 2]) -> f64 {
+    let deviation = |powers: &Powers| (powers[2] - powers[1] * powers[1]).max(0.0).sqrt();
+    let [fine, rough] = resolutions.map(|powers| powers.iter().map(deviation).sum::<f64>());
+    (fine + (fine - rough).abs()).powi(2)
 }
 
 fn variance(channel: &Channel) -> f64 {

@@ -85,8 +85,6 @@ impl Spectrum {
             None => Tails::LIGHT,
         };
         let truth = Known::new(value, error);
-        let most_variance =
-            moments.is_none().then(|| self.most_score(form) * value - value * value);
         let name = if !is_one {
             "luminance".to_owned()
         } else if self.channels() == 1 {
@@ -94,7 +92,13 @@ impl Spectrum {
         } else {
             format!("channel {}", index + 1)
         };
-        Channel { name, most_variance, ..Channel::unbiased(truth, moments, tails) }
+        if moments.is_none() {
+            return Channel {
+                name,
+                ..Channel::bounded(truth, self.most_score(form) * (value + error))
+            };
+        }
+        Channel { name, ..Channel::unbiased(truth, moments, tails) }
     }
 
     /// The most that a draw of MIS makes of a linear form, `max a_λ/w_λ`: a survivor scores

@@ -16,8 +16,9 @@
 //! w_λ E[X²] ≤ T_λ + (max Σ_v √(u_v² − b_v²) + √Σ_v b_v²)² ≤ T_λ + (Σ_v u_v + ½ max_v u_v)²
 //! ```
 //!
-//! `V_v` is that of one scattering, carried through v scatterings before it. Once each step of the rod loses at least a
-//! share from one v to the next, so do all that follow: the rest is a geometric series.
+//! `V_v` is that of one scattering, carried through v scatterings before it. If `V_{v+2} ≤ s V_v` everywhere in the rod
+//! then so it is from there on, as all is positive: the rest is two geometric series. (Where light mostly turns, every
+//! other `V_v` is small.)
 //!
 //! Source: derived.
 
@@ -32,8 +33,8 @@ use crate::theory::Mesh;
 
 /// Grids agree to this.
 const PRECISION: Precision = Precision { agreement: 1e-5, levels: 4 };
-/// Vertices whose `V_v` is less, relative to that of the first, are a geometric series.
-const RARE: f64 = 1e-16;
+/// A rest that is less, relative to the sum before it, need not be any smaller.
+const ENOUGH: f64 = 1e-6;
 /// The most vertices.
 const MOST: usize = 4000;
 
@@ -60,33 +61,39 @@ fn spread(grid: &Grid, techniques: Techniques) -> Option<f64> {
         let worth = |vertex: &Vertex| vertex.connected[2] + vertex.towards * vertex.hit[2];
         connections.at(i).each_ref().map(|vertex| scattering(step) * worth(vertex))
     };
-    let mut here = grid.solve(real, last, [0.0; 2])?;
-    let (mut sum, mut most, first) = (0.0, 0.0f64, here.entering());
-    for _ in 0..MOST {
-        let own = here.entering().max(0.0).sqrt();
-        sum += own;
-        most = most.max(own);
+    let earlier = |here: &Importance| {
         let carried = |i: usize, step: &Step| {
             step.spread(here.middle(i)).map(|worth| scattering(step) * worth)
         };
-        let before = grid.solve(real, carried, [0.0; 2])?;
-        if before.entering() <= RARE * first {
-            let share = largest_share(grid, &before, &here);
-            let rest = if share > 0.0 { own * share.sqrt() / (1.0 - share.sqrt()) } else { 0.0 };
-            return (share < 1.0).then_some(sum + rest + 0.5 * most);
+        grid.solve(real, carried, [0.0; 2])
+    };
+    let root = |importance: &Importance| importance.entering().max(0.0).sqrt();
+    let mut before = grid.solve(real, last, [0.0; 2])?;
+    let mut here = earlier(&before)?;
+    let (mut sum, mut most) = (0.0, 0.0f64);
+    for _ in 0..MOST {
+        let own = root(&before);
+        sum += own;
+        most = most.max(own);
+        let next = earlier(&here)?;
+        let share = largest_share(grid, &next, &before).sqrt();
+        let two = root(&here) + root(&next);
+        let rest = if share > 0.0 { two / (1.0 - share) } else { two };
+        if share < 1.0 && rest <= ENOUGH * sum {
+            return Some(sum + rest + 0.5 * most);
         }
-        here = before;
+        (before, here) = (here, next);
     }
     None
 }
 
-/// The largest share of one vertex's worth that the vertex before it has, in any step.
-fn largest_share(grid: &Grid, before: &Importance, here: &Importance) -> f64 {
+/// The largest share that one vertex's worth is of another's, in any step.
+fn largest_share(grid: &Grid, worth: &Importance, other: &Importance) -> f64 {
     let mut largest = 0.0f64;
     for i in 0..grid.steps().len() {
-        for (before, here) in before.middle(i).into_iter().zip(here.middle(i)) {
-            if before > 0.0 {
-                largest = largest.max(before / here);
+        for (worth, other) in worth.middle(i).into_iter().zip(other.middle(i)) {
+            if worth > 0.0 {
+                largest = largest.max(worth / other);
             }
         }
     }

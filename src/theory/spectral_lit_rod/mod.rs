@@ -127,11 +127,13 @@ impl<'a> Spectrum<'a> {
             let raw = moments.as_ref().map(|moments| &moments.raw[index]);
             let one = self.channels() == 1;
             let name = if one { String::new() } else { format!("channel {}", index + 1) };
-            let most_variance =
-                if raw.is_none() { self.most_variance(index, answer) } else { None };
             let tails = raw.map_or(Tails::LIGHT, tails);
             let central = raw.map(|raw| central(answer, raw));
-            Channel { name, most_variance, ..Channel::unbiased(answer, central, tails) }
+            let is_unknown = raw.is_none() && laws;
+            match is_unknown.then(|| self.most_square(index, answer)).flatten() {
+                Some(square) => Channel { name, ..Channel::bounded(answer, square) },
+                None => Channel { name, ..Channel::unbiased(answer, central, tails) },
+            }
         };
         let channels = answers.iter().enumerate().map(channel).collect();
         let mut covariances = Vec::new();
@@ -145,17 +147,20 @@ impl<'a> Spectrum<'a> {
         Prediction { channels, lookups, covariances, ..Prediction::default() }
     }
 
-    /// A bound on the variance of a channel by MIS over heroes.
-    fn most_variance(&self, channel: usize, answer: Known) -> Option<f64> {
-        let Tracker::Mis { casts } = self.tracker else { return None };
-        let weighted = if casts {
-            let (mesh, sampling) = self.media[channel];
-            bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
-        } else {
-            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ.
-            answer.value
+    /// A bound on `E[X²]` of a channel by MIS over heroes.
+    fn most_square(&self, channel: usize, answer: Known) -> Option<f64> {
+        let weighted = match self.tracker {
+            Tracker::Mis { casts: true } => {
+                let (mesh, sampling) = self.media[channel];
+                bound::weighted_square(mesh, &self.problem.rods[channel], sampling, FULL)?
+            }
+            // A hit is f_λ/Σ w_h p_h ≤ 1/w_λ; that of history-aware tracking likewise.
+            Tracker::Mis { casts: false } | Tracker::Tracking(Chances::History) => {
+                answer.value + answer.error
+            }
+            Tracker::Independent { .. } | Tracker::Tracking(_) => return None,
         };
-        Some(weighted / self.heroes[channel] - answer.value * answer.value)
+        Some(weighted / self.heroes[channel])
     }
 
     /// Those of one channel a draw; of a single channel, whatever the tracker is.

@@ -210,10 +210,12 @@ impl<'a> Spectrum<'a> {
         };
         let side = if end == End::Reflected { "reflectance" } else { "transmittance" };
         let name = format!("{side}, channel {}", channel + 1);
-        // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
-        let most = truth.value / self.hero[channel] - truth.value * truth.value;
-        let most_variance = moments.is_none().then_some(most);
-        Channel { name, most_variance, ..Channel::unbiased(truth, moments, tails) }
+        if moments.is_none() {
+            // A draw of MIS is a^r/Σ w_h a_h^r ≤ 1/w or 0, hence E[X²] ≤ E[X]/w.
+            let square = (truth.value + truth.error) / self.hero[channel];
+            return Channel { name, ..Channel::bounded(truth, square) };
+        }
+        Channel { name, ..Channel::unbiased(truth, moments, tails) }
     }
 
     fn covariance(
