@@ -275,16 +275,27 @@ fn without_shares_the_sum_is_what_it_was() {
     }
 }
 
-/// Where nothing is scattered all orders but the first are worth nothing, and the bound on their sum is that of the rest.
 #[test]
-fn techniques_that_are_worth_nothing_leave_a_bound_on_the_sum() {
-    let text = rod("transmitted", 2, 0, "{ full-mis.subpaths = \"shared\" }");
-    let text = text.replace("lowest = 0", "lowest = 0\nshares = false");
-    let dark = text.replace("albedo = 0.85", "albedo = 0");
-    assert_ne!(dark, text);
-    for row in rows(&dark, 200_000) {
-        assert_eq!(row.verdict, Some(Verdict::Pass), "{}", row.reason);
+fn orders_without_light_are_refused() {
+    let of = |sensor, orders, albedo: &str, forward: &str| {
+        let text = rod(sensor, orders, orders - 1, "{ full-mis.subpaths = \"shared\" }");
+        let text = text.replace("albedo = 0.85", albedo).replace("forward = 0.35", forward);
+        rows(&text.replace("lowest =", "shares = false\nlowest ="), 2000)
+    };
+    for (sensor, orders, albedo, forward, dark) in [
+        ("transmitted", 2, "albedo = 0", "forward = 0.5", 1),
+        ("transmitted", 2, "albedo = 0.5", "forward = 0", 1),
+        ("reflected", 3, "albedo = 0.5", "forward = 0", 2),
+        ("reflected", 3, "albedo = 0.5", "forward = 1", 2),
+    ] {
+        let reason = &of(sensor, orders, albedo, forward)[0].reason;
+        let words = format!("leave none to r = {dark}");
+        assert!(reason.contains(&words), "{sensor}, {albedo}, {forward}: {reason}");
     }
+    assert_ne!(
+        of("transmitted", 2, "albedo = 0.5", "forward = 1")[0].verdict,
+        Some(Verdict::Refused)
+    );
 }
 
 #[test]

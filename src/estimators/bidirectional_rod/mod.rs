@@ -111,6 +111,11 @@ impl Page {
             }
         }
         let orders = &setup.problem.orders;
+        if let Some(order) = orders.clone().find(|&order| is_dark(&setup.problem, order)) {
+            let BidirectionalRod { albedo, forward, .. } = &*setup.problem;
+            let found = format!("a = {albedo}, p_f = {forward} leave none to r = {order}");
+            return Err(Refusal::mismatch("light in every order of scattering", found));
+        }
         match self.combination {
             Combination::Technique(s) if s > orders.start() + 2 => {
                 let needs = "at most r + 2 light vertices, r the lowest order";
@@ -138,6 +143,14 @@ impl Page {
         let rules = Rules { combination, connection, is_shared, has_shares: problem.has_shares };
         bidirectional_rod::predict(&scene, &rules, ratio, setup.laws)
     }
+}
+
+/// Whether no path of so many scatterings arrives: of what it is worth nothing is left to share.
+fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
+    let is_transmitted = problem.sensor == Sensor::Transmitted;
+    let never_turns = problem.forward == 1.0 && !is_transmitted;
+    let always_turns = problem.forward == 0.0 && order.is_multiple_of(2) != is_transmitted;
+    order > 0 && (problem.albedo == 0.0 || never_turns || always_turns)
 }
 
 /// `σ_t/σ̂`, if it is the same wherever there is a medium.
