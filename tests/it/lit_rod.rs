@@ -3,6 +3,7 @@
 
 use serde::Deserialize;
 
+use crate::common::lit::{self, ESTIMATORS, techniques};
 use crate::common::{failing, medium, mistakes, none, predicted, row, rows};
 use trueflight::harness::record::Verdict;
 use trueflight::media::Piecewise;
@@ -33,22 +34,6 @@ impl Reference {
             _ => "medium.piecewise-linear = { knots = [0, 3], values = [0.5, 1] }\nspan = [0, 3]",
         }
     }
-
-    fn techniques(&self) -> Techniques {
-        use Combination::{Mis, NextEvent, Unidirectional};
-        let balanced = |densities| Mis(densities, Heuristic::Balance);
-        let (shadow, combination) = match self.what.as_str() {
-            "uni" | "mean" => (None, Unidirectional),
-            "nee-ratio" => (Some(Shadow::Ratio), NextEvent),
-            "nee-delta" => (Some(Shadow::Delta), NextEvent),
-            "nee-analytic" => (Some(Shadow::Exact), NextEvent),
-            "mis-directional" => (Some(Shadow::Delta), balanced(Densities::Directional)),
-            "mis-analytic" => (Some(Shadow::Exact), balanced(Densities::Full)),
-            "mis-full" => (Some(Shadow::Ratio), balanced(Densities::Full)),
-            other => panic!("{other}"),
-        };
-        Techniques { shadow, combination }
-    }
 }
 
 fn references() -> Vec<Reference> {
@@ -76,19 +61,9 @@ fn means_and_variances_are_those_of_the_references() {
     assert_eq!(all.len(), 20);
     let mut wrong = Vec::new();
     for reference in &all {
-        let Prediction { channels, .. } = predict(reference, reference.techniques());
-        let channel = &channels[0];
-        let (found, error) = if reference.what == "mean" {
-            (channel.truth.value, channel.truth.error)
-        } else {
-            let moments = channel.moments.expect("a variance");
-            (moments.variance(), moments.error * moments.variance())
-        };
-        let off = (found - reference.value[0]).abs();
-        if off > reference.error || off > error + reference.error || error > 1e-9 {
-            let Reference { case, what, value, .. } = reference;
-            wrong.push(format!("{case}, {what}: {found} ± {error:e} against {}", value[0]));
-        }
+        let asked = (reference.what.as_str(), reference.value[0], reference.error);
+        let found = lit::differs(asked, &predict(reference, techniques(&reference.what)), 1e-9);
+        wrong.extend(found.map(|found| format!("{}, {found}", reference.case)));
     }
     none(&wrong);
 }
@@ -97,7 +72,7 @@ fn means_and_variances_are_those_of_the_references() {
 fn lookups_are_those_of_the_references() {
     for reference in references().iter().filter(|reference| reference.what != "mean") {
         let (mesh, problem, sampling) = rod(reference);
-        let techniques = reference.techniques();
+        let techniques = techniques(&reference.what);
         let found = lit_rod::lookups(&mesh, &problem, &sampling, techniques).expect("lookups");
         let [real, null, shadow] = found.map(|known| known.value);
         let error: f64 = found.iter().map(|known| known.error).sum();
@@ -174,10 +149,11 @@ fn draws_agree(draws: u64) {
         let text = format!(
             "title = \"t\"\n[problem.lit-rod]\n{}\nalbedo = {}\nforward = {}
             sampling.constant.value = {}
-            estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
-                {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
-                {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }}, {{ full-mis.heuristic = \"power\" }}]",
-            reference.medium(), reference.a, reference.p_f, reference.majorant
+            estimators = [{ESTIMATORS}]",
+            reference.medium(),
+            reference.a,
+            reference.p_f,
+            reference.majorant
         );
         let rows = rows(&text, draws);
         assert_eq!(rows.len(), 8);
@@ -207,10 +183,7 @@ fn extreme_rods_are_predicted_or_refused() {
                 let text = format!(
                     "title = \"t\"\n[problem.lit-rod]\nmedium.constant.extinction = {depth:e}\nspan = [0, 1]
                     albedo = {albedo}\nforward = {forward}\nsampling.constant.value = {:e}
-                    estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
-                        {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
-                        {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }},
-                        {{ full-mis.heuristic = \"power\" }}]",
+                    estimators = [{ESTIMATORS}]",
                     depth * factor
                 );
                 for row in predicted(&text) {

@@ -3,6 +3,7 @@
 
 use serde::Deserialize;
 
+use crate::common::lit::{self, ESTIMATORS, techniques};
 use crate::common::{failing, medium, mistakes, none, predicted, rows};
 use trueflight::harness::record::Verdict;
 use trueflight::media::Piecewise;
@@ -60,25 +61,9 @@ impl Reference {
         format!("medium.constant.extinction = {}\nspan = [0, {}]", self.sigma, self.thickness)
     }
 
-    fn techniques(&self) -> Techniques {
-        use Combination::{Mis, NextEvent, Unidirectional};
-        let balanced = |densities| Mis(densities, Heuristic::Balance);
-        let (shadow, combination) = match self.what.as_str() {
-            "uni" | "mean" => (None, Unidirectional),
-            "nee-ratio" => (Some(Shadow::Ratio), NextEvent),
-            "nee-delta" => (Some(Shadow::Delta), NextEvent),
-            "nee-analytic" => (Some(Shadow::Exact), NextEvent),
-            "mis-directional" => (Some(Shadow::Delta), balanced(Densities::Directional)),
-            "mis-analytic" => (Some(Shadow::Exact), balanced(Densities::Full)),
-            "mis-full" => (Some(Shadow::Ratio), balanced(Densities::Full)),
-            other => panic!("{other}"),
-        };
-        Techniques { shadow, combination }
-    }
-
     fn predict(&self) -> Prediction {
         let text = self.medium();
-        predict(&text, (self.a, self.g), self.light(), self.majorant, self.techniques())
+        predict(&text, (self.a, self.g), self.light(), self.majorant, techniques(&self.what))
     }
 }
 
@@ -106,23 +91,9 @@ fn means_and_variances_are_those_of_the_references() {
     assert_eq!(all.len(), 24);
     let mut wrong = Vec::new();
     for reference in &all {
-        let Prediction { channels, .. } = reference.predict();
-        let channel = &channels[0];
-        let (found, error) = if reference.what == "mean" {
-            (channel.truth.value, channel.truth.error)
-        } else {
-            let moments = channel.moments.expect("a variance");
-            (moments.variance(), moments.error * moments.variance())
-        };
-        let off = (found - reference.value).abs();
-        println!(
-            "{} {}: {found:e}, off {off:.1e}, bound {error:.1e}",
-            reference.case, reference.what
-        );
-        if off > reference.error || off > error + reference.error || error > 1e-10 {
-            let Reference { case, what, value, .. } = reference;
-            wrong.push(format!("{case}, {what}: {found} ± {error:e} against {value}"));
-        }
+        let asked = (reference.what.as_str(), reference.value, reference.error);
+        let found = lit::differs(asked, &reference.predict(), 1e-10);
+        wrong.extend(found.map(|found| format!("{}, {found}", reference.case)));
     }
     none(&wrong);
 }
@@ -244,9 +215,7 @@ fn draws_agree(draws: u64) {
         let text = format!(
             "title = \"t\"\n[problem.lit-slab]\n{}\nalbedo = {}\nphase.henyey-greenstein = {{ g = {} }}
             light.{}\nsampling.constant.value = {}
-            estimators = [{{ unidirectional = {{}} }}, {{ next-event.shadow = \"exact\" }},
-                {{ next-event.shadow = \"delta\" }}, {{ next-event = {{}} }}, {{ directional-mis = {{}} }},
-                {{ full-mis.shadow = \"exact\" }}, {{ full-mis = {{}} }}, {{ full-mis.heuristic = \"power\" }}]
+            estimators = [{ESTIMATORS}]
             [tolerance]\nmean = {}\nvariance = {}",
             reference.medium(), reference.a, reference.g, reference.light_in_words(), reference.majorant,
             if reference.case == "CAP-NARROW" { 0.5 } else { 0.05 },

@@ -1,6 +1,7 @@
 //! Cases written as text, read, predicted, drawn and judged.
 
 pub mod grids;
+pub mod lit;
 pub mod mutated;
 
 use std::cell::RefCell;

@@ -3,8 +3,8 @@
 //! Values, lookups, and where the streams are left, for every shipped case, and for every technique with every
 //! camera, shadow ray and control in bodies of all kinds (in the long form; a quarter of them in the short one).
 
+use super::{compare, fusing_levels};
 use crate::common::case;
-use crate::space_packets::{compare, fusing_levels};
 use trueflight::harness::Case;
 
 const VOLUMES: [&str; 8] = [

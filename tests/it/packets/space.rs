@@ -4,15 +4,9 @@
 //! and that fuses multiplication and addition, for every problem in space, every field, every phase
 //! function, and for one σ̂ as well as for cells.
 
-use crate::common::{case, none, options};
-use fearless_simd::Level;
-use trueflight::estimators::{DrawBuffer, Kernel};
-use trueflight::harness::plan::Planned;
-use trueflight::harness::{Case, Plan};
-use trueflight::numeric::pack::fuses;
-
-/// Draws of several requests in a row, which no number of lanes divides.
-const REQUESTS: [usize; 5] = [1, 5, 16, 100, 701];
+use super::{compare, fusing_levels};
+use crate::common::case;
+use trueflight::harness::Case;
 
 const BALL: &str = "bounds.sphere = { centre = [0.5, 0, 0], radius = 1.5 }";
 const CUBE: &str = "bounds.box = { low = [-1, -1, -1], high = [1, 1.5, 2] }";
@@ -109,60 +103,6 @@ fn cases() -> Vec<Case> {
         }
     }
     cases
-}
-
-/// All that an experiment draws, as bits, and its streams afterwards.
-fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
-    let ready = planned.outcome.as_ref().expect("it is not refused");
-    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
-    let mut streams = planned.streams(3);
-    let mut bits = Vec::new();
-    for count in REQUESTS {
-        ready.experiment.fill_by(kernel, &mut streams, count, &mut buffer);
-        assert_eq!(buffer.lookups.len(), count);
-        for channel in &buffer.values {
-            bits.extend(channel.iter().map(|value| value.to_bits()));
-        }
-        bits.extend(buffer.lookups.iter().map(|&lookups| u64::from(lookups)));
-        bits.extend(buffer.defects.iter().map(|defect| defect.to_bits()));
-    }
-    bits.push(streams.turn as u64);
-    bits.extend(streams.words().take(16));
-    bits
-}
-
-/// Every level that fuses, from the best down.
-pub fn fusing_levels() -> Vec<Level> {
-    let mut levels = vec![Level::new()];
-    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-    levels.extend(Level::new().as_avx2().map(Level::Avx2));
-    levels.retain(|&level| fuses(level));
-    levels
-}
-
-/// Compares all experiments of cases on all levels; answers how many comparisons that were.
-pub fn compare(cases: &[Case]) -> usize {
-    let plan = Plan::new(cases, &options(1, 1_000));
-    let (mut wrong, mut compared) = (Vec::new(), 0);
-    for (case, planned) in plan.experiments().filter(|(_, planned)| planned.outcome.is_ok()) {
-        let single = drawn(planned, Kernel::Single);
-        for level in fusing_levels() {
-            compared += 1;
-            let packets = drawn(planned, Kernel::Packets(level));
-            let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
-            if differing.is_some() || single.len() != packets.len() {
-                let name = &planned.names.estimator;
-                let sampling = &planned.names.sampling_kind;
-                wrong.push(format!(
-                    "{}, {name}, {sampling}, {level:?}: {differing:?}",
-                    case.case.name
-                ));
-            }
-        }
-    }
-    println!("{compared} compared");
-    none(&wrong);
-    compared
 }
 
 #[test]

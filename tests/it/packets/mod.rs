@@ -1,0 +1,76 @@
+//! Draws made side by side are the draws made one by one, to the bit.
+//!
+//! On every level of vector hardware that this machine has and that fuses multiplication and
+//! addition: values, lookups, defects, and where the streams are left. Below those levels the same
+//! kernels round differently and are judged like any estimator.
+
+mod fields;
+mod order_free;
+mod rays;
+mod single_scattering;
+mod space;
+
+use crate::common::{none, options};
+use fearless_simd::Level;
+use trueflight::estimators::{DrawBuffer, Kernel, Order};
+use trueflight::harness::plan::Planned;
+use trueflight::harness::{Case, Plan};
+use trueflight::numeric::pack::fuses;
+
+/// Draws of several requests in a row, which no number of lanes divides.
+const REQUESTS: [usize; 6] = [1, 3, 8, 100, 257, 5];
+
+/// All that an experiment draws, as bits, and its streams afterwards.
+fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
+    let ready = planned.outcome.as_ref().expect("it is not refused");
+    let mut buffer = DrawBuffer::new(ready.prediction.channels.len());
+    let mut streams = planned.streams(3);
+    let mut bits = Vec::new();
+    for count in REQUESTS {
+        ready.experiment.fill_by(kernel, &mut streams, count, &mut buffer);
+        assert_eq!(buffer.lookups.len(), count);
+        for channel in &buffer.values {
+            bits.extend(channel.iter().map(|value| value.to_bits()));
+        }
+        bits.extend(buffer.lookups.iter().map(|&lookups| u64::from(lookups)));
+        bits.extend(buffer.defects.iter().map(|defect| defect.to_bits()));
+    }
+    bits.push(streams.turn as u64);
+    bits.extend(streams.words().take(16));
+    bits
+}
+
+/// Every level that fuses, from the best down.
+fn fusing_levels() -> Vec<Level> {
+    let mut levels = vec![Level::new()];
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    levels.extend(Level::new().as_avx2().map(Level::Avx2));
+    levels.retain(|&level| fuses(level));
+    levels
+}
+
+/// Compares all ordered experiments of cases on all levels; answers how many comparisons that were.
+fn compare(cases: &[Case]) -> usize {
+    let plan = Plan::new(cases, &options(1, 1_000));
+    let (mut wrong, mut compared) = (Vec::new(), 0);
+    for (case, planned) in plan.experiments() {
+        let Ok(ready) = &planned.outcome else { continue };
+        if ready.experiment.order() == Order::Free {
+            continue; // Those are other draws.
+        }
+        let single = drawn(planned, Kernel::Single);
+        for level in fusing_levels() {
+            compared += 1;
+            let packets = drawn(planned, Kernel::Packets(level));
+            let differing = single.iter().zip(&packets).position(|(a, b)| a != b);
+            if differing.is_some() || single.len() != packets.len() {
+                let (name, sampling) = (&planned.names.estimator, &planned.names.sampling_kind);
+                let place = format!("{}, {name}, {sampling}, {level:?}", case.case.name);
+                wrong.push(format!("{place}: {differing:?}"));
+            }
+        }
+    }
+    println!("{compared} compared");
+    none(&wrong);
+    compared
+}
