@@ -19,14 +19,9 @@
 //! section 4.1, `SimulateParticle`.
 
 use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Rod;
-use crate::theory::ParticleRule;
 
 /// The adaptive rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Adaptive;
 
-impl Estimator<Rod> for Adaptive {
-    walks!(ParticleRule::Adaptive);
-}
+walks!(Adaptive);

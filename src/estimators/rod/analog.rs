@@ -11,14 +11,9 @@
 //! transport*, ACM Transactions on Graphics 38 (2019), section 5.2.
 
 use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Rod;
-use crate::theory::ParticleRule;
 
 /// Analog delta tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Analog;
 
-impl Estimator<Rod> for Analog {
-    walks!(ParticleRule::Analog);
-}
+walks!(Analog);

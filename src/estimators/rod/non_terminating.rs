@@ -16,14 +16,9 @@
 //! sections 3.2 and 3.3, Eq. 12.
 
 use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Rod;
-use crate::theory::ParticleRule;
 
 /// The non-terminating rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct NonTerminating;
 
-impl Estimator<Rod> for NonTerminating {
-    walks!(ParticleRule::NonTerminating);
-}
+walks!(NonTerminating);

@@ -25,8 +25,8 @@
 
 use fearless_simd::Level;
 
-use super::packet;
 use super::walk::{self, Steps};
+use super::{ByRule, packet};
 use crate::catalogue::{Domain, Settings};
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
@@ -86,7 +86,7 @@ impl Estimator<Rod> for Roulette {
         }
         setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
-        super::realisable(setup, ParticleRule::NonTerminating)
+        Rod::realisable(setup, ParticleRule::NonTerminating)
     }
 
     fn predict(&self, setup: &Setup<Rod>) -> Prediction {

@@ -14,14 +14,9 @@
 //! sections 3.1 and 3.2, Eq. 9, and `SimulateParticle`.
 
 use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Rod;
-use crate::theory::ParticleRule;
 
 /// The terminating rule; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Terminating;
 
-impl Estimator<Rod> for Terminating {
-    walks!(ParticleRule::Terminating);
-}
+walks!(Terminating);

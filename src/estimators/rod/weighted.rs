@@ -16,14 +16,9 @@
 //! algorithms*, Journal of Quantitative Spectroscopy and Radiative Transfer 125 (2013).
 
 use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Rod;
-use crate::theory::ParticleRule;
 
 /// Weighted delta tracking; σ̂ is its only input.
 #[derive(Debug, Clone)]
 pub struct Weighted;
 
-impl Estimator<Rod> for Weighted {
-    walks!(ParticleRule::Weighted);
-}
+walks!(Weighted);

@@ -12,15 +12,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! section 4.1, `SimulateParticle`.
 
-use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Slab;
-use crate::theory::ParticleRule;
-
-/// The adaptive rule; σ̂ is its only input.
-#[derive(Debug, Clone)]
-pub struct Adaptive;
-
-impl Estimator<Slab> for Adaptive {
-    walks!(ParticleRule::Adaptive);
-}
+pub use crate::estimators::rod::adaptive::Adaptive;

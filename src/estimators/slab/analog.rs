@@ -13,15 +13,4 @@
 //! null-scattering path integral formulation of light transport*, ACM Transactions on Graphics 38
 //! (2019), section 5.2.
 
-use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Slab;
-use crate::theory::ParticleRule;
-
-/// Analog delta tracking; σ̂ is its only input.
-#[derive(Debug, Clone)]
-pub struct Analog;
-
-impl Estimator<Slab> for Analog {
-    walks!(ParticleRule::Analog);
-}
+pub use crate::estimators::rod::analog::Analog;

@@ -8,9 +8,15 @@ pub mod terminating;
 pub mod walk;
 pub mod weighted;
 
+use fearless_simd::Level;
+
+use super::rod::ByRule;
 use crate::catalogue::rounded;
-use crate::estimators::{Refusal, Setup, estimators};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
+use crate::kernels::packet::Request;
+use crate::media::Lookups;
 use crate::problems::{Problem, Slab};
+use crate::rng::Stream;
 use crate::theory::slab::{self, Answer, Existence, Pieces, Walk};
 use crate::theory::{ParticleRule, Prediction};
 
@@ -46,86 +52,60 @@ fn truth(setup: &Setup<Slab>) -> Option<Answer> {
     [answer.reflected, answer.transmitted].iter().all(is_sharp).then_some(answer)
 }
 
-/// Whether a rule exists in a slab, reaches all of it, and has a variance there.
-fn realisable(setup: &Setup<Slab>, rule: ParticleRule) -> Result<(), Refusal> {
-    setup.require_coverage()?;
-    setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
-    if !rule.needs().is_empty() {
-        let limit = rule.limits(setup.problem.albedo)[1];
-        setup.require_ratio_at_most(limit, rule.needs())?;
+impl ByRule for Slab {
+    fn realisable(setup: &Setup<Self>, rule: ParticleRule) -> Result<(), Refusal> {
+        setup.require_coverage()?;
+        setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
+        if !rule.needs().is_empty() {
+            let limit = rule.limits(setup.problem.albedo)[1];
+            setup.require_ratio_at_most(limit, rule.needs())?;
+        }
+        if truth(setup).is_none() {
+            let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
+                         (a > 0, |g| ≤ 0.93, a moderate τ)";
+            let slab = &setup.problem;
+            let depth = slab.medium().optical_depth(setup.mesh.support()).value;
+            let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
+            let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
+            return Err(Refusal::mismatch(needs, found));
+        }
+        let found = match walk_of(setup, rule).second_moment() {
+            Existence::Finite => return Ok(()),
+            Existence::Diverges => {
+                "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them"
+            }
+            Existence::Unknown => {
+                "σ̂ is so near to where E[X²] diverges that theory does not tell on which side"
+            }
+        };
+        Err(Refusal::mismatch("a finite variance", found))
     }
-    if truth(setup).is_none() {
-        let needs = "a reflectance and a transmittance above 0 that adding and doubling resolve \
-                     (a > 0, |g| ≤ 0.93, a moderate τ)";
-        let slab = &setup.problem;
-        let depth = slab.medium().optical_depth(setup.mesh.support()).value;
-        let (albedo, phase) = (slab.albedo, slab.incidence.phase.label());
-        let found = format!("a = {albedo}, τ = {}, phase {phase}", rounded(depth));
-        return Err(Refusal::mismatch(needs, found));
+
+    /// Without an answer its values are no numbers, and are refused as such.
+    fn predict(setup: &Setup<Self>, rule: ParticleRule) -> Prediction {
+        walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
     }
-    let found = match walk_of(setup, rule).second_moment() {
-        Existence::Finite => return Ok(()),
-        Existence::Diverges => {
-            "σ̂ is so far below σ_t that E[X²] diverges: along the layers, or between them"
-        }
-        Existence::Unknown => {
-            "σ̂ is so near to where E[X²] diverges that theory does not tell on which side"
-        }
-    };
-    Err(Refusal::mismatch("a finite variance", found))
+
+    #[inline(always)]
+    fn draw(
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Draw<[f64; 2]> {
+        walk::draw(&rule, setup, medium, rng)
+    }
+
+    fn packets<'a>(
+        level: Level,
+        rule: ParticleRule,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks(level, setup, rule, medium, request)
+    }
 }
-
-/// What theory says of a rule; without an answer its values are no numbers, and are refused as such.
-fn predict(setup: &Setup<Slab>, rule: ParticleRule) -> Prediction {
-    walk_of(setup, rule).predict(&truth(setup).unwrap_or(Answer::UNKNOWN))
-}
-
-/// The plumbing of a page: all that differs is the rule, as in `walks!(ParticleRule::Adaptive)`.
-macro_rules! walks {
-    ($rule:expr) => {
-        const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
-        const IN_PACKETS: bool = true;
-
-        fn read(_: &$crate::catalogue::Settings) -> Option<Self> {
-            Some(Self)
-        }
-
-        fn domain(
-            &self,
-            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
-        ) -> Result<(), $crate::estimators::Refusal> {
-            $crate::estimators::slab::realisable(setup, $rule)
-        }
-
-        fn predict(
-            &self,
-            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
-        ) -> $crate::theory::Prediction {
-            $crate::estimators::slab::predict(setup, $rule)
-        }
-
-        #[inline(always)]
-        fn draw(
-            &self,
-            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
-            medium: &$crate::media::Lookups,
-            rng: &mut $crate::rng::Stream,
-        ) -> $crate::estimators::Draw<[f64; 2]> {
-            $crate::estimators::slab::walk::draw(&$rule, setup, medium, rng)
-        }
-
-        fn draw_packets<'a>(
-            &self,
-            level: fearless_simd::Level,
-            setup: &$crate::estimators::Setup<$crate::problems::Slab>,
-            medium: &$crate::media::Lookups,
-            request: $crate::kernels::packet::Request<'a>,
-        ) -> Option<$crate::kernels::packet::Request<'a>> {
-            $crate::estimators::slab::packet::walks(level, setup, $rule, medium, request)
-        }
-    };
-}
-use walks;
 
 estimators! {
     Slab:

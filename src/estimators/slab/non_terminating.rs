@@ -17,15 +17,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.2 and 3.3, Eq. 12.
 
-use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Slab;
-use crate::theory::ParticleRule;
-
-/// The non-terminating rule; σ̂ is its only input.
-#[derive(Debug, Clone)]
-pub struct NonTerminating;
-
-impl Estimator<Slab> for NonTerminating {
-    walks!(ParticleRule::NonTerminating);
-}
+pub use crate::estimators::rod::non_terminating::NonTerminating;

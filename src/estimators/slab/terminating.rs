@@ -13,15 +13,4 @@
 //! Transport Estimators for Inhomogeneous Participating Media*, Computer Graphics Forum 36 (2017),
 //! sections 3.1 and 3.2, Eq. 9, and `SimulateParticle`.
 
-use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Slab;
-use crate::theory::ParticleRule;
-
-/// The terminating rule; σ̂ is its only input.
-#[derive(Debug, Clone)]
-pub struct Terminating;
-
-impl Estimator<Slab> for Terminating {
-    walks!(ParticleRule::Terminating);
-}
+pub use crate::estimators::rod::terminating::Terminating;

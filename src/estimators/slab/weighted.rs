@@ -15,15 +15,4 @@
 //! et al., *Integral formulation of null-collision Monte Carlo algorithms*, Journal of Quantitative
 //! Spectroscopy and Radiative Transfer 125 (2013).
 
-use super::walks;
-use crate::estimators::Estimator;
-use crate::problems::Slab;
-use crate::theory::ParticleRule;
-
-/// Weighted delta tracking; σ̂ is its only input.
-#[derive(Debug, Clone)]
-pub struct Weighted;
-
-impl Estimator<Slab> for Weighted {
-    walks!(ParticleRule::Weighted);
-}
+pub use crate::estimators::rod::weighted::Weighted;
