@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::common::{medium, mistakes, none, predicted, rows, source};
+use crate::common::{failing, medium, mistakes, none, predicted, rows, source};
 use trueflight::catalogue::Settings;
 use trueflight::harness::record::{Row, Verdict};
 use trueflight::media::{Body, Control, Piecewise};
@@ -251,22 +251,6 @@ fn weights_of_null_paths_share_all_of_what_varies() {
             assert!(off.abs() <= allowed && allowed < 1e-11, "{s}: {off:e}, {allowed:e}");
         }
     }
-}
-
-/// What of some rows does not pass, or was not asked about mean, variance and lookups.
-fn failing(rows: &[Row]) -> Vec<String> {
-    let mut wrong = Vec::new();
-    for row in rows {
-        let unasked: Vec<&str> = ["mean", "variance", "lookups"]
-            .into_iter()
-            .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
-            .collect();
-        if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
-            let name = &row.estimator;
-            wrong.push(format!("{name}: {:?}, {}, without {unasked:?}", row.verdict, row.reason));
-        }
-    }
-    wrong
 }
 
 /// All that shares, in a medium of two layers and in one that varies.

@@ -16,19 +16,22 @@ use crate::media::Lookups;
 use crate::media::course::BothWays;
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
-use crate::problems::LitRod;
+use crate::problems::{LitRod, Problem};
 use crate::theory::ParticleRule;
 use crate::theory::lit_rod::{Shadow, Techniques};
 
 /// The draws of techniques on the hardware of a level; a request is handed back where the hardware is too narrow
 /// or one draw after the other is faster.
-pub fn walks<'a>(
+pub(in crate::estimators) fn walks<'a, P: Problem>(
     level: Level,
-    setup: &Setup<LitRod>,
+    setup: &Setup<P>,
     techniques: Techniques,
     medium: &Lookups,
     request: Request<'a>,
-) -> Option<Request<'a>> {
+) -> Option<Request<'a>>
+where
+    for<'s> Walks<'s, P>: line::Walks,
+{
     // Lanes that turn from walks to shadow rays and back take other pieces of σ̂ to hand each time.
     if setup.sampling.even().is_none() && !medium.is_costly() {
         return Some(request);
@@ -36,12 +39,39 @@ pub fn walks<'a>(
     line::walks(level, &Walks { setup, techniques }, &setup.sampling, medium, request)
 }
 
-struct Walks<'a> {
-    setup: &'a Setup<LitRod>,
-    techniques: Techniques,
+/// Walks of a problem by techniques.
+pub(in crate::estimators) struct Walks<'a, P: Problem> {
+    /// Where they walk.
+    pub setup: &'a Setup<P>,
+    /// What finds the light.
+    pub techniques: Techniques,
 }
 
-impl<'a> line::Walks for Walks<'a> {
+impl<P: Problem> Walks<'_, P> {
+    /// The exact transmittances from where some are to the end, along directions of these cosines; those of the
+    /// others mean nothing.
+    #[inline(always)]
+    pub fn transmittances<S: Simd>(
+        setup: &Setup<P>,
+        [t, cosines]: [f64x8<S>; 2],
+        which: mask64x8<S>,
+    ) -> f64x8<S> {
+        let (mut row, mut along) = ([0.0; WIDTH], [0.0; WIDTH]);
+        let bits = which.to_bitmask();
+        if bits == 0 {
+            return t.each(0.0);
+        }
+        t.store_slice(&mut row);
+        cosines.store_slice(&mut along);
+        for (lane, t) in row.iter_mut().enumerate() {
+            let is_asked = bits >> lane & 1 == 1;
+            *t = if is_asked { log_transmittance(setup, *t, along[lane]) } else { 0.0 };
+        }
+        f64x8::from_slice(t.token(), &row).exp()
+    }
+}
+
+impl<'a> line::Walks for Walks<'a, LitRod> {
     type Pack<S: Simd, C: BothWays<S> + Copy> = InLitRod<'a, S, C>;
 
     #[inline(always)]
@@ -78,7 +108,7 @@ impl<'a> line::Walks for Walks<'a> {
 
 /// Eight walks.
 #[derive(Clone, Copy)]
-struct InLitRod<'a, S: Simd, C> {
+pub(in crate::estimators) struct InLitRod<'a, S: Simd, C> {
     setup: &'a Setup<LitRod>,
     techniques: Techniques,
     from: f64x8<S>,
@@ -105,20 +135,6 @@ struct InLitRod<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> InLitRod<'_, S, C> {
-    /// The exact transmittances to the emitter from where some are; those of the others mean nothing.
-    #[inline(always)]
-    fn transmittances(&self, which: mask64x8<S>) -> f64x8<S> {
-        let (mut row, bits) = ([0.0; WIDTH], which.to_bitmask());
-        if bits == 0 {
-            return self.t.each(0.0);
-        }
-        self.t.store_slice(&mut row);
-        for (lane, t) in row.iter_mut().enumerate() {
-            *t = if bits >> lane & 1 == 1 { log_transmittance(self.setup, *t, 1.0) } else { 0.0 };
-        }
-        f64x8::from_slice(self.t.token(), &row).exp()
-    }
-
     /// What shadow rays find, those on their way and those of walks that are scattered here.
     #[inline(always)]
     fn shadow_rays(&mut self, is_scattered: mask64x8<S>, phase: f64x8<S>, real: f64x8<S>) {
@@ -127,7 +143,7 @@ impl<S: Simd, C: BothWays<S>> InLitRod<'_, S, C> {
         match techniques.shadow {
             None => {}
             Some(Shadow::Exact) => {
-                exact = self.transmittances(is_scattered);
+                exact = Walks::transmittances(self.setup, [self.t, exact.each(1.0)], is_scattered);
                 let scored = self.score + techniques.of_shadow_ray(phase, exact);
                 self.score = Lane::select(is_scattered, scored, self.score);
             }

@@ -9,7 +9,7 @@ pub mod walk;
 
 use fearless_simd::Level;
 
-use super::lit_rod::Lit;
+use super::lit_rod::{self, Lit};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::kernels::packet::Request;
 use crate::media::Lookups;
@@ -60,7 +60,7 @@ impl Lit for LitSlab {
         request: Request<'a>,
     ) -> Option<Request<'a>> {
         let techniques = lit_slab::possible(techniques, setup.problem.light);
-        packet::walks(level, setup, techniques, medium, request)
+        lit_rod::packet::walks(level, setup, techniques, medium, request)
     }
 }
 

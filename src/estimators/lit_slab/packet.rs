@@ -5,43 +5,20 @@
 //! A lane flies as a camera ray, as a shadow ray or to a hit, and in every step all three take the same random numbers.
 //! Where it is scattered its place and its next direction are kept until its shadow ray has ended.
 
-use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdMask, f64x8, mask64x8};
 
-use crate::estimators::lit_rod::walk::log_transmittance;
+use crate::estimators::lit_rod::packet::Walks;
 use crate::estimators::space::packet::collect;
 use crate::estimators::{DrawBuffer, Setup};
 use crate::kernels::packet::bank::{Numbers, Particles, Slots};
-use crate::kernels::packet::{Request, line};
-use crate::media::Lookups;
+use crate::kernels::packet::line;
 use crate::media::course::BothWays;
 use crate::numeric::Lane;
-use crate::numeric::pack::WIDTH;
 use crate::problems::LitSlab;
 use crate::theory::ParticleRule;
 use crate::theory::lit_rod::{Shadow, Techniques};
 
-/// The draws of techniques on the hardware of a level; a request is handed back where the hardware is too narrow
-/// or one draw after the other is faster.
-pub fn walks<'a>(
-    level: Level,
-    setup: &Setup<LitSlab>,
-    techniques: Techniques,
-    medium: &Lookups,
-    request: Request<'a>,
-) -> Option<Request<'a>> {
-    // Lanes that turn from walks to shadow rays and back take other pieces of σ̂ to hand each time.
-    if setup.sampling.even().is_none() && !medium.is_costly() {
-        return Some(request);
-    }
-    line::walks(level, &Walks { setup, techniques }, &setup.sampling, medium, request)
-}
-
-struct Walks<'a> {
-    setup: &'a Setup<LitSlab>,
-    techniques: Techniques,
-}
-
-impl<'a> line::Walks for Walks<'a> {
+impl<'a> line::Walks for Walks<'a, LitSlab> {
     type Pack<S: Simd, C: BothWays<S> + Copy> = InLitSlab<'a, S, C>;
 
     #[inline(always)]
@@ -80,7 +57,7 @@ impl<'a> line::Walks for Walks<'a> {
 
 /// Eight walks.
 #[derive(Clone, Copy)]
-struct InLitSlab<'a, S: Simd, C> {
+pub(in crate::estimators) struct InLitSlab<'a, S: Simd, C> {
     setup: &'a Setup<LitSlab>,
     techniques: Techniques,
     from: f64x8<S>,
@@ -112,20 +89,6 @@ struct InLitSlab<'a, S: Simd, C> {
 }
 
 impl<S: Simd, C: BothWays<S>> InLitSlab<'_, S, C> {
-    /// The exact transmittances from where some are, along directions; those of the others mean nothing.
-    #[inline(always)]
-    fn transmittances(&self, which: mask64x8<S>, cosines: f64x8<S>) -> f64x8<S> {
-        let (mut row, mut along) = ([0.0; WIDTH], [0.0; WIDTH]);
-        let bits = which.to_bitmask();
-        self.t.store_slice(&mut row);
-        cosines.store_slice(&mut along);
-        for (lane, t) in row.iter_mut().enumerate() {
-            let is_asked = bits >> lane & 1 == 1;
-            *t = if is_asked { log_transmittance(self.setup, *t, along[lane]) } else { 0.0 };
-        }
-        f64x8::from_slice(self.t.token(), &row).exp()
-    }
-
     /// Those that are scattered here choose a direction to the light, and draw one.
     #[inline(always)]
     fn scatter(&mut self, which: mask64x8<S>, numbers: &mut Numbers<S>) {
@@ -143,7 +106,7 @@ impl<S: Simd, C: BothWays<S>> InLitSlab<'_, S, C> {
             self.density = Lane::select(which, density, self.density);
             self.found = Lane::select(which, t.each(1.0), self.found);
             if is_exact {
-                let found = self.transmittances(which, chosen);
+                let found = Walks::transmittances(setup, [t, chosen], which);
                 let scored = self.score + techniques.of_shadow_ray(density, found);
                 self.score = Lane::select(which, scored, self.score);
             }
@@ -153,7 +116,11 @@ impl<S: Simd, C: BothWays<S>> InLitSlab<'_, S, C> {
             let meets = which & light.is_met(drawn, before);
             if techniques.shadow.is_some() && meets.any_true() {
                 let density = phase.value(drawn) * light.spread(drawn, before);
-                let found = if is_exact { self.transmittances(meets, drawn) } else { t.each(0.0) };
+                let found = if is_exact {
+                    Walks::transmittances(setup, [t, drawn], meets)
+                } else {
+                    t.each(0.0)
+                };
                 self.ratio = Lane::select(meets, techniques.ratio(density, found), self.ratio);
             }
             self.drawn = Lane::select(which, drawn, self.drawn);

@@ -305,16 +305,9 @@ fn covariances(channels: &[Quantity], truth: &[Known], found: &RawMoments) -> Ve
             | ([_, Quantity::Absorbed] | [Quantity::Flux(_), _], _) => continue,
             _ => [[0.0; 2]; 2],
         };
-        let [a, b] = means;
         let [[ab, abb], [aab, aabb]] = joint;
-        let value = ab - a * b;
-        let square = aabb - 2.0 * b * aab - 2.0 * a * abb
-            + 4.0 * a * b * ab
-            + b * b * squares[0]
-            + a * a * squares[1]
-            - 3.0 * a * a * b * b;
-        let variance = square - value * value;
-        covariances.push(Covariance { pair: [first, first + 1], value, variance });
+        let pair = [first, first + 1];
+        covariances.push(Covariance::of_raw(pair, means, squares, [ab, aab, abb, aabb]));
     }
     covariances
 }

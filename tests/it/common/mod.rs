@@ -74,7 +74,8 @@ pub fn failing(rows: &[Row]) -> Vec<String> {
             .filter(|check| row.findings.iter().all(|finding| finding.check != *check))
             .collect();
         if row.verdict != Some(Verdict::Pass) || !unasked.is_empty() {
-            wrong.push(format!("{}: {}, without {unasked:?}", row.estimator, row.reason));
+            let name = &row.estimator;
+            wrong.push(format!("{name}: {:?}, {}, without {unasked:?}", row.verdict, row.reason));
         }
     }
     wrong
