@@ -68,40 +68,43 @@ impl Ball<'_> {
         crossings(chord, shells, |shell, from, to| {
             let nodes = (shell.nodes + BEYOND).max(FEWEST);
             let part = Chord { from, to, ..*chord };
-            self.panel(&part, rules.of(nodes), &mut depth, |r2, share| {
-                row.add(shell, r2, weight * share);
+            self.panel(&part, rules.of(nodes), &mut depth, |places, shares| {
+                shares.iter_mut().for_each(|share| *share *= weight);
+                row.add(shell, places, shares);
             });
         });
         (-depth).exp()
     }
 
-    /// One panel: hands out `r²` and `σ_t e^{−τ} dt` at each node, and adds to the optical depth.
+    /// One panel, in parts: hands out `r²` and `σ_t e^{−τ} dt` at the nodes, and adds to the optical depth.
     pub(super) fn panel(
         &self,
         part: &Chord,
         rule: &GaussLegendre,
         depth: &mut f64,
-        mut each: impl FnMut(f64, f64),
+        mut each: impl FnMut(&[f64], &mut [f64]),
     ) {
         let &Chord { offset2, from, to, .. } = part;
         let middle = 0.5 * (from + to);
         let guess = (self.extinction)(offset2 + middle * middle) * (to - from);
         let parts = (guess / SMOOTH).ceil().clamp(1.0, 64.0);
         let length = (to - from) / parts;
-        let mut sigma = [0.0; MOST];
-        let sigma = &mut sigma[..rule.nodes.len().min(MOST)];
+        let [mut places, mut sigma, mut shares] = [[0.0; MOST]; 3];
+        let count = rule.nodes.len().min(MOST);
+        let (places, sigma) = (&mut places[..count], &mut sigma[..count]);
+        let shares = &mut shares[..count];
         for part in 0..whole(parts) {
             let begin = from + length * part as f64;
-            for (sigma, x) in sigma.iter_mut().zip(&rule.nodes) {
+            for (i, x) in rule.nodes.iter().enumerate().take(count) {
                 let t = begin + length * x;
-                *sigma = (self.extinction)(offset2 + t * t);
+                places[i] = offset2 + t * t;
+                sigma[i] = (self.extinction)(places[i]);
             }
-            for (i, x) in rule.nodes.iter().enumerate() {
-                let t = begin + length * x;
+            for (i, share) in shares.iter_mut().enumerate() {
                 let running: f64 = rule.running[i].iter().zip(&*sigma).map(|(w, s)| w * s).sum();
-                let share = rule.weights[i] * length * sigma[i];
-                each(offset2 + t * t, share * (-*depth - length * running).exp());
+                *share = rule.weights[i] * length * sigma[i] * (-*depth - length * running).exp();
             }
+            each(places, shares);
             let mean: f64 = rule.weights.iter().zip(&*sigma).map(|(w, s)| w * s).sum();
             *depth += length * mean;
         }

@@ -71,9 +71,11 @@ pub(super) fn unscattered(
         if from < to {
             let part = Chord { from, to, ..*chord };
             let rule = rules.of(resolution.nodes + 4);
-            ball.panel(&part, rule, &mut depth, |r2, share| {
-                let depth = radial.integrate(0.0, r2.sqrt(), |r| (ball.extinction)(r * r));
-                sum += share * (-depth).exp() / (16.0 * PI * PI * r2);
+            ball.panel(&part, rule, &mut depth, |places, shares| {
+                for (r2, share) in places.iter().zip(shares) {
+                    let depth = radial.integrate(0.0, r2.sqrt(), |r| (ball.extinction)(r * r));
+                    sum += *share * (-depth).exp() / (16.0 * PI * PI * r2);
+                }
             });
         }
     }

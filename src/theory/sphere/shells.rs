@@ -6,6 +6,7 @@
 //! distance from the centre and t the distance from its foot: what is smooth in `r²` is smooth along
 //! the ray, even where it passes the centre.
 
+use super::ball::MOST;
 use crate::numeric::Known;
 use crate::numeric::quadrature::GaussLegendre;
 
@@ -207,6 +208,19 @@ impl Rules {
     }
 }
 
+/// Places at once.
+const SIDE: usize = 8;
+
+/// `(2m + 1)/(m + 1)` and `m/(m + 1)` of `Pₘ₊₁ = up x Pₘ − down Pₘ₋₁`.
+const RECURRENCE: [[f64; 2]; MOST] = {
+    let (mut steps, mut i, mut m) = ([[0.0; 2]; MOST], 0, 0.0);
+    while i < MOST {
+        steps[i] = [(2.0 * m + 1.0) / (m + 1.0), m / (m + 1.0)];
+        (i, m) = (i + 1, m + 1.0);
+    }
+    steps
+};
+
 /// What a linear functional says of the Legendre polynomials of each shell, and by that of the values
 /// at the nodes.
 ///
@@ -222,15 +236,24 @@ impl Row {
         Self(vec![0.0; count])
     }
 
-    /// Adds `weight` times the value at `r²` within a shell.
+    /// Adds weights times the values at places of `r²` within a shell, some at once.
     #[inline]
-    pub fn add(&mut self, shell: &Shell, r2: f64, weight: f64) {
-        let x = 2.0 * (r2 - shell.from) / (shell.to - shell.from) - 1.0;
-        let (mut previous, mut value) = (0.0, weight);
-        for (m, moment) in self.0[shell.first..][..shell.nodes].iter_mut().enumerate() {
-            *moment += value;
-            let m = m as f64;
-            (previous, value) = (value, ((2.0 * m + 1.0) * x * value - m * previous) / (m + 1.0));
+    pub fn add(&mut self, shell: &Shell, places: &[f64], weights: &[f64]) {
+        let moments = &mut self.0[shell.first..][..shell.nodes];
+        for (places, weights) in places.chunks(SIDE).zip(weights.chunks(SIDE)) {
+            let [mut x, mut previous, mut value] = [[0.0; SIDE]; 3];
+            for (x, r2) in x.iter_mut().zip(places) {
+                *x = 2.0 * (r2 - shell.from) / (shell.to - shell.from) - 1.0;
+            }
+            value[..weights.len()].copy_from_slice(weights);
+            for (moment, [up, down]) in moments.iter_mut().zip(RECURRENCE) {
+                let [a, b, c, d, e, f, g, h] = value;
+                *moment += ((a + e) + (c + g)) + ((b + f) + (d + h));
+                for i in 0..SIDE {
+                    let next = up * x[i] * value[i] - down * previous[i];
+                    (previous[i], value[i]) = (value[i], next);
+                }
+            }
         }
     }
 
@@ -243,11 +266,9 @@ impl Row {
             for (&node, &w) in rule.nodes.iter().zip(&rule.weights) {
                 let x = 2.0 * node - 1.0;
                 let (mut previous, mut value, mut sum) = (0.0, 1.0, 0.0);
-                for (m, moment) in moments.iter().enumerate() {
-                    let m = m as f64;
-                    sum += (2.0 * m + 1.0) * value * moment;
-                    (previous, value) =
-                        (value, ((2.0 * m + 1.0) * x * value - m * previous) / (m + 1.0));
+                for (m, (moment, [up, down])) in moments.iter().zip(RECURRENCE).enumerate() {
+                    sum += (2.0 * m as f64 + 1.0) * value * moment;
+                    (previous, value) = (value, up * x * value - down * previous);
                 }
                 weights.push(w * sum);
             }
@@ -282,7 +303,7 @@ mod tests {
         for shell in &shells.shells {
             let mut row = Row::new(shells.count);
             let u = shell.from + 0.3 * (shell.to - shell.from);
-            row.add(shell, u, 2.0);
+            row.add(shell, &[u], &[2.0]);
             let weights = row.weights(&shells, &rules);
             let found: f64 = weights.iter().zip(&values).map(|(w, x)| w * x).sum();
             assert!((found - 2.0 * (1.0 + u * u * u)).abs() < 1e-12, "{found}");
