@@ -73,8 +73,6 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
         budget,
         fixed: arguments.fixed_draws,
         strict: arguments.strict,
-        // There are no plots.
-        optima: false,
         ..selection.options(DRAWS)?
     };
     arguments.writable(&cases)?;

@@ -18,13 +18,19 @@ use super::{Console, output};
 /// The file beside the results that keeps what was drawn.
 const CACHE: &str = "draws.bin";
 
-/// Draws a plan and judges it.
+/// Draws a plan and judges it, for no plots.
 pub fn draw(plan: &Plan, console: &Console) -> Record {
-    draw_uncached(plan, &mut Cache::default(), console)
+    judged(plan, &mut Cache::default(), console)
 }
 
-/// Draws what has not been kept, keeps it, and judges all.
+/// Draws what has not been kept, keeps it, judges all, and adds the lines of plots.
 pub fn draw_uncached(plan: &Plan, cache: &mut Cache, console: &Console) -> Record {
+    let mut record = judged(plan, cache, console);
+    verdict::add_curves(plan, &mut record);
+    record
+}
+
+fn judged(plan: &Plan, cache: &mut Cache, console: &Console) -> Record {
     let begin = Instant::now();
     let bar = progress(plan, console);
     let draws = run::draw_uncached(plan, cache, &|draws| bar.inc(draws));

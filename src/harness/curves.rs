@@ -2,7 +2,6 @@
 
 use super::case::Case;
 use super::names::Names;
-use super::options::Options;
 use super::plan::{Planned, PlannedCase};
 use super::record::{Curve, CurvePoint, Sweep};
 use super::sweep::{SweepAxis, Variation, What};
@@ -13,10 +12,9 @@ use crate::theory::optimum::{Optimum, best_constants};
 /// Points of a line.
 const POINTS: usize = 48;
 
-/// The lines of a case with a sweep.
-pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Sweep> {
-    let seed = options.seed;
-    let axis = case.sweep.as_ref()?;
+/// The lines of a case; none without a sweep. Each takes fifty predictions.
+pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
+    let Some(axis) = &case.sweep else { return Vec::new() };
     let swept = (0..case.scenario.estimators()).filter(|&i| case.scenario.depends_on(i, axis.what));
     let swept: Vec<usize> = swept.collect();
     let x = abscissae(axis);
@@ -25,7 +23,7 @@ pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Swe
         let predicted: Vec<Vec<(String, Option<CurvePoint>)>> =
             parallel::map(&x, |&x| points(case, seed, estimator, Some((axis.what, x)), x));
         let names = case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
-        let is_sought = options.optima && axis.what == What::Sampling;
+        let is_sought = axis.what == What::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
         let optimum = |channel: usize| {
             let at = best.as_ref()?.get(channel).copied().flatten()?.sampling;
@@ -46,8 +44,7 @@ pub fn sweep(case: &Case, options: &Options, z_limit: Option<f64>) -> Option<Swe
         let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
         if curves.is_empty() { vec![refused(names)] } else { curves }
     });
-    let curves = curves.into_iter().flatten().collect();
-    self::axis(case).map(|sweep| Sweep { z_limit, curves, ..sweep })
+    curves.into_iter().flatten().collect()
 }
 
 /// What a case sweeps, without lines.

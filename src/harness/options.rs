@@ -30,8 +30,6 @@ pub struct Options {
     pub until_failed: Option<String>,
     /// Only these experiments.
     pub filter: Option<Filter>,
-    /// Whether sweeps of σ̂ are searched for the best one, as plots show it.
-    pub optima: bool,
 }
 
 /// How many draws an experiment makes.
@@ -66,7 +64,6 @@ impl Default for Options {
             strict: false,
             until_failed: None,
             filter: None,
-            optima: true,
         }
     }
 }

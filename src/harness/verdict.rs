@@ -5,7 +5,7 @@ use super::drawn::{Drawn, Draws};
 use super::measured::{measure, measure_lookups, not_normal};
 use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
-    Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Timing, Verdict,
+    Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Sweep, Timing, Verdict,
 };
 use super::repeat::command;
 use super::theory_rows::theory_rows;
@@ -66,7 +66,7 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
     record
 }
 
-/// What a plan drew, judged.
+/// What a plan drew, judged. The lines of plots are left out, see [`add_curves`].
 pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     let findings = evaluate::run(plan, draws);
     let found: Vec<_> = plan.cases.iter().zip(&draws.cases).zip(&findings).collect();
@@ -76,7 +76,8 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
             drawn_rows(plan, case, planned, drawn, findings)
         });
         let rows: Vec<Row> = rows.collect();
-        let sweep = curves::sweep(case.case, &plan.options, Some(plan.levels.z));
+        let z_limit = Some(plan.levels.z);
+        let sweep = curves::axis(case.case).map(|sweep| Sweep { z_limit, ..sweep });
         let anatomy = both.clone().find_map(|(planned, drawn)| anatomy(case, planned, drawn));
         (rows, sweep, anatomy)
     });
@@ -96,7 +97,17 @@ pub fn judged(plan: &Plan, draws: &Draws, seconds: f64) -> Record {
     record
 }
 
-type Part = (Vec<Row>, Option<super::record::Sweep>, Option<Anatomy>);
+/// Adds the theory's lines along sweeps, which plots show.
+pub fn add_curves(plan: &Plan, record: &mut Record) {
+    let found = parallel::map(&plan.cases, |case| curves::curves(case.case, plan.options.seed));
+    for (case, curves) in record.results.cases.iter_mut().zip(found) {
+        if let Some(sweep) = &mut case.sweep {
+            sweep.curves = curves;
+        }
+    }
+}
+
+type Part = (Vec<Row>, Option<Sweep>, Option<Anatomy>);
 
 fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
     let cases: Vec<CaseRecord> = plan

@@ -8,8 +8,8 @@
 //! rounding errors kept
 //! ```
 
-use super::trial::central;
-use super::{Dice, Effort, Measure, Row};
+use super::trial::{Trial, central};
+use super::{Dice, Effort, Measure, Row, in_parts};
 use crate::numeric::Wide;
 use crate::numeric::parallel;
 use crate::numeric::sum::Sum;
@@ -28,7 +28,10 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let mut rows = whole_numbers("uniform draws", seed, parts, &UNIFORM);
     rows.extend(whole_numbers("draws of variance 4e-21 mean²", seed, parts, &NEAR_CONSTANT));
     rows.extend(one_huge_draw(effort, seed));
-    rows.push(cancelling(effort, seed));
+    let range = "±x of 1e-12 … 1e12 and a rest of 1, any order";
+    let sum = Row::relative("compensated sum that cancels", range, 1e-15);
+    let parts = effort.of(20, 400);
+    rows.extend(in_parts(parts, "cancelling", seed, |part| part.run(1, [sum.clone()], cancelling)));
     rows.push(threads(effort, seed));
     rows
 }
@@ -202,24 +205,19 @@ fn one_huge_draw(effort: Effort, seed: u64) -> Vec<Row> {
 }
 
 /// Terms of both signs and all sizes that add up to almost nothing.
-fn cancelling(effort: Effort, seed: u64) -> Row {
-    let range = "±x of 1e-12 … 1e12 and a rest of 1, any order";
-    let mut row = Row::relative("compensated sum that cancels", range, 1e-15);
-    for part in 0..effort.of(20, 400) {
-        let mut dice = Dice::new(seed, "cancelling", part);
-        let mut terms = vec![1.0];
-        for _ in 0..500 {
-            let x = dice.sized(-12.0, 12.0);
-            terms.extend([x, -x]);
-        }
-        for i in (1..terms.len()).rev() {
-            let j = dice.below(i + 1);
-            terms.swap(i, j);
-        }
-        let sum: Sum = terms.iter().copied().collect();
-        row.see((sum.value() - 1.0).abs(), || format!("part {part}"));
+fn cancelling(t: &mut Trial) {
+    let mut terms = vec![1.0];
+    for _ in 0..500 {
+        let x = t.dice.sized(-12.0, 12.0);
+        terms.extend([x, -x]);
     }
-    row
+    for i in (1..terms.len()).rev() {
+        let j = t.dice.below(i + 1);
+        terms.swap(i, j);
+    }
+    let sum: Sum = terms.iter().copied().collect();
+    t.place = format!("part {}", t.part);
+    t.see(0, (sum.value() - 1.0).abs());
 }
 
 /// The same sums on any number of threads.

@@ -26,8 +26,7 @@ const ORDERS: usize = 4;
 /// All rows.
 pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let range = "1 … 4 layers, r = 0 … 1.7, 0.1 … 12 collisions";
-    let rows = ["variance", "fourth moment"]
-        .map(|what| Row::stated(format!("{what} of next-flight and MIS"), range));
+    let rows = Row::moments("next-flight and MIS", range);
     in_parts(16, "collided", seed, |part| part.run(effort.of(1, 40), rows.clone(), trial))
 }
 

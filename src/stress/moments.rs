@@ -24,8 +24,7 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     ];
     in_parts(32, "moments", seed, |part| {
         for (range, draw) in ranges {
-            let rows = ["variance of products", "fourth moment of products"];
-            part.run(trials, rows.map(|what| Row::stated(what, range)), |t| products(t, draw));
+            part.run(trials, Row::moments("products", range), |t| products(t, draw));
         }
         let range = "τ = 1e-12 … 1e9, in units of e^{−τ} beyond 300";
         part.run(trials, [Row::stated("transmittance", range)], transmittances);

@@ -26,12 +26,9 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let range = "two halves of other albedos, τ = 1e-6 … 100";
         part.run(trials, [Row::stated("rod, two-stream equations", range)], solved);
         let range = "3 rules, r = 0.1 … 3, τ = 1e-3 … 10";
-        let rows = [
-            Row::stated("variance of walks in a rod", range),
-            Row::stated("fourth moment of walks in a rod", range),
-            Row::wrong("diverging variances, wrong", range),
-        ];
-        part.run(trials / 2, rows, moments);
+        let [second, fourth] = Row::moments("walks in a rod", range);
+        let diverging = Row::wrong("diverging variances, wrong", range);
+        part.run(trials / 2, [second, fourth, diverging], moments);
     })
 }
 

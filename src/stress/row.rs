@@ -73,6 +73,11 @@ impl Row {
         Self::new(quantity, range, Measure::OfStated, 1.0)
     }
 
+    /// Variance and fourth moment of draws, in units of their stated errors.
+    pub fn moments(of: &str, range: &str) -> [Self; 2] {
+        ["variance", "fourth moment"].map(|what| Self::stated(format!("{what} of {of}"), range))
+    }
+
     /// Relative to what is exact.
     pub fn relative(quantity: impl Into<String>, range: impl Into<String>, bound: f64) -> Self {
         Self::new(quantity, range, Measure::Relative, bound)

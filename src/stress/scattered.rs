@@ -39,11 +39,10 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
     let deep = in_parts(16, "scattered, deep", seed, |part| {
         let range = "homogeneous, 3 shadows, residuals, σ_t ℓ = 10 … 1e3, σ̂/σ_t = 0.3 … 1e3, \
                      light 1e-4 … 100 mean free paths away";
-        let number = part.number;
-        part.run(trials(number, 1), kinds(range), |t| {
+        part.run(trials(part.number, 1), kinds(range), |t| {
             let setting = Setting::deep(t.dice);
             // A chain through many mean free paths takes seconds for all techniques.
-            let turn = (number / 2 + u64::from(t.number)) % TECHNIQUES;
+            let turn = (t.part / 2 + u64::from(t.number)) % TECHNIQUES;
             trial(t, &setting, &|technique| technique == turn)
         });
     });

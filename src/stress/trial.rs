@@ -103,7 +103,8 @@ impl Part {
         trial: impl Fn(&mut Trial) -> O,
     ) {
         let (place, mut rows) = (String::new(), rows);
-        let mut at = Trial { number: 0, dice: &mut self.dice, rows: &mut rows, place };
+        let (part, dice) = (self.number, &mut self.dice);
+        let mut at = Trial { part, number: 0, dice, rows: &mut rows, place };
         for number in 0..trials {
             at.number = number;
             at.place.clear();
@@ -117,6 +118,8 @@ impl Part {
 
 /// One draw of parameters, and the rows that it may add to.
 pub struct Trial<'a> {
+    /// Which part of the page.
+    pub part: u64,
     /// Which of the trials of a part.
     pub number: u32,
     /// The random parameters.

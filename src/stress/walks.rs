@@ -36,6 +36,8 @@ const FINER: Resolution =
     Resolution { faintest: 1e-9, directions: 24, first_layer: 1e-12, ..Resolution::FINE };
 /// The same where r varies, of which many layers are solved.
 const LAYERED: Resolution = Resolution { faintest: 1e-6, first_layer: 1e-9, ..FINER };
+/// What the rows are about.
+const WALKS: &str = "walks in a slab";
 /// Fainter light is not resolved to 1e-4, and refused.
 const FAINT: f64 = 1e-9;
 
@@ -46,23 +48,18 @@ pub fn rows(effort: Effort, seed: u64) -> Vec<Row> {
         let trials = [some(4, 4), some(8, 4), some(8, 3), some(8, 1)];
         let range =
             "isotropic, 3 rules, r = 0.1 … 3, τ = 1e-3 … 30, μ₀ = 1e-4 … 1; discrete ordinates";
-        let [second, fourth] = kinds(range);
+        let [second, fourth] = Row::moments(WALKS, range);
         let lookups = |range| Row::stated("lookups of walks in a slab", range);
         let diverging = Row::wrong("diverging variances in slabs, wrong", range);
         part.run(trials[0], [second, fourth, lookups(range), diverging], even);
         let range = "1 … 3 layers, |g| to 0.935, 3 rules, r = 0.1 … 2, τ = 1e-3 … 30; half as many directions again";
-        let [second, fourth] = kinds(range);
+        let [second, fourth] = Row::moments(WALKS, range);
         part.run(trials[1], [second, fourth, lookups(range)], finer);
         let range = "r varies, isotropic, 2 rules, r = 0 … 1.4, τ = 1e-2 … 5, μ₀ = 1e-4 … 1; Peierls' equation";
-        part.run(trials[2], kinds(range), graded);
+        part.run(trials[2], Row::moments(WALKS, range), graded);
         let range = "r varies, |g| to 0.6, 2 rules, r = 0 … 1.4, ∫σ̂ = 1e-3 … 5; same layers, half as many directions again";
-        part.run(trials[3], kinds(range), ramps);
+        part.run(trials[3], Row::moments(WALKS, range), ramps);
     })
-}
-
-fn kinds(range: &str) -> [Row; 2] {
-    ["variance", "fourth moment"]
-        .map(|what| Row::stated(format!("{what} of walks in a slab"), range))
 }
 
 /// One channel; `raw` has no more moments than are finite. Those that both find infinite agree; next to

@@ -2,7 +2,7 @@
 
 use crate::common::{case, differs, mistakes, none, options, predicted, row, rows, verdict};
 use trueflight::harness::record::{Row, Verdict};
-use trueflight::harness::{Options, Plan, curves, verdict};
+use trueflight::harness::{Plan, curves, verdict};
 use trueflight::media::{Control, Piecewise};
 use trueflight::report::console::layout::{self, Pen};
 use trueflight::report::console::{self, View};
@@ -222,12 +222,7 @@ fn an_optimum_at_the_edge_of_a_domain_is_inside() {
 #[test]
 fn every_curve_of_a_plot_has_an_optimum_of_its_own() {
     let cases = [case("test", &rod("albedo = 0.7\nsweep.sampling.values = [0.7, 0.9, 1.5]"))];
-    let of = |optima: bool| {
-        let sweep = curves::sweep(&cases[0], &Options { optima, ..options(1, 1000) }, None);
-        sweep.expect("a sweep").curves
-    };
-    assert!(of(false).iter().all(|curve| curve.optimum.is_none()), "not asked for");
-    let stars: Vec<f64> = of(true)
+    let stars: Vec<f64> = curves::curves(&cases[0], 1)
         .iter()
         .map(|curve| {
             let star = curve.optimum.expect("inside the sweep");

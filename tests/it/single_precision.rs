@@ -12,7 +12,7 @@ use trueflight::theory::ParticleRule;
 #[test]
 fn doubles_find_the_mean_of_every_unbiased_estimator() {
     for depth in [0.3, 4.0] {
-        let scene = Scene { depth, collisions: 9.0 * depth, from: 2.0 };
+        let scene = Scene::new(depth, 9.0 * depth, 2.0);
         // Enough walks for the spread that roulette makes, 15 times the squared mean.
         let trial = Trial { scene, seed: 7, budget: 16_000.0 * scene.collisions };
         for (name, estimator, _) in FAMILIES.iter().flat_map(|family| family.entries) {
@@ -30,7 +30,7 @@ fn doubles_find_the_mean_of_every_unbiased_estimator() {
 #[test]
 fn what_is_far_from_the_origin_fails_in_single_precision_and_what_is_near_does_not() {
     let at = |from: f64, estimator: &dyn Compare| {
-        let scene = Scene { depth: 2.0, collisions: 20.0, from };
+        let scene = Scene::new(2.0, 20.0, from);
         estimator.compare(Trial { scene, seed: 3, budget: 2e5 })
     };
     let failing = ["ratio", "next-flight", "source-driven", "attenuation-driven"];
@@ -50,7 +50,7 @@ fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
     let mut named = products.filter(|(name, ..)| *name == "ratio");
     let ratio = named.next().expect("an estimator").1;
     let at = |collisions: f64, walks: f64| {
-        let scene = Scene { depth: 2.0, collisions, from: 0.0 };
+        let scene = Scene::new(2.0, collisions, 0.0);
         ratio.compare(Trial { scene, seed: 1, budget: walks * collisions })
     };
     let (short, long) = (at(10.0, 2000.0), at(1e5, 8.0));
@@ -61,7 +61,7 @@ fn long_walks_fail_in_single_precision_and_short_ones_do_not() {
 #[test]
 fn decisions_that_are_repeated_have_the_mean_of_walks_that_make_their_own() {
     // So far away that single precision is off by some per cent.
-    let scene = Scene { depth: 2.0, collisions: 12.0, from: 3e6 };
+    let scene = Scene::new(2.0, 12.0, 3e6);
     let walk = rod(ParticleRule::Weighted);
     let (mut own, mut repeated) = ([0.0; 2], [0.0; 2]);
     let walks = 20_000;

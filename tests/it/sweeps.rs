@@ -158,7 +158,7 @@ fn the_lines_of_theory_go_through_the_experiments_and_between_them() {
     let record = verdict::predicted(&Plan::new(&cases, &options));
     let case = &record.results.cases[0];
     assert_eq!(case.sweep.as_ref().map(|sweep| &*sweep.what), Some("contrast"));
-    let curves = curves::sweep(&cases[0], &options, None).expect("a sweep").curves;
+    let curves = curves::curves(&cases[0], options.seed);
     assert_eq!(curves.len(), 9, "three estimators, two channels and the luminance");
     for row in &case.rows {
         let is_own = |curve: &&_| {

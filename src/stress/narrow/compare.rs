@@ -5,6 +5,7 @@ use super::scene::Scene;
 use super::trail::Trail;
 use super::{DRAWS, Point, Trial};
 use crate::numeric::Narrow as F32;
+use crate::numeric::pack::in_fused_code;
 use crate::stress::Dice;
 
 /// Walks at most.
@@ -153,6 +154,14 @@ impl Sums {
     }
 }
 
+/// A draw, in the code of machines that multiply and add at once: the same numbers, sooner.
+fn draw<E: Estimator, P: Precision>(estimator: &E, scene: &Scene, trail: &mut Trail) -> f64 {
+    in_fused_code(
+        #[inline(always)]
+        || estimator.draw::<P>(scene, trail),
+    )
+}
+
 /// How many walks a budget pays for: those that scatter say by some pilots what they cost.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // at most MOST
 fn walks<E: Estimator>(estimator: &E, Trial { scene, seed, budget }: Trial) -> u64 {
@@ -161,7 +170,7 @@ fn walks<E: Estimator>(estimator: &E, Trial { scene, seed, budget }: Trial) -> u
     }
     let pilot = |number: u64| {
         let mut trail = Trail::new(Dice::new(seed, "narrow-cost", number));
-        estimator.draw::<f64>(&scene, &mut trail);
+        draw::<_, f64>(estimator, &scene, &mut trail);
         trail.length()
     };
     let cost = (0..PILOTS).map(pilot).sum::<f64>() / PILOTS as f64 + OVERHEAD;
@@ -173,7 +182,7 @@ fn own_variance<E: Estimator>(estimator: &E, trial: Trial) -> f64 {
     let scene = estimator.pilots(trial.scene);
     let pilots = Sums::of(walks(estimator, Trial { scene, ..trial }), |number| {
         let mut trail = Trail::by_chance(Dice::new(trial.seed, "narrow-pilot", number));
-        [estimator.draw::<f64>(&scene, &mut trail), 0.0]
+        [draw::<_, f64>(estimator, &scene, &mut trail), 0.0]
     });
     let [_, spread] = pilots.mean(pilots.double);
     spread * spread * (pilots.walks - 1.0)
@@ -189,8 +198,8 @@ impl<E: Estimator> Compare for E {
         let sums = Sums::of(walks(self, trial), |number| {
             let dice = || Dice::new(seed, "narrow", number);
             let mut trail = Trail::new(dice());
-            let double = self.draw::<f64>(&scene, &mut trail) / unit;
-            [double, self.draw::<F32>(&scene, &mut trail.again(dice())) / unit]
+            let double = draw::<_, f64>(self, &scene, &mut trail) / unit;
+            [double, draw::<_, F32>(self, &scene, &mut trail.again(dice())) / unit]
         });
         let [mean, own] = sums.mean(sums.double);
         let exact = if scatters { truth.unwrap_or(mean) } else { 1.0 };

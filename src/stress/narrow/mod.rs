@@ -76,9 +76,9 @@ impl Along {
     /// The scenes along it.
     fn scene(self, x: f64) -> Scene {
         match self {
-            Self::Steps => Scene { depth: 2.0, collisions: x, from: 0.0 },
-            Self::Depth => Scene { depth: x, collisions: 20.0 * 1.8 * x, from: 0.0 },
-            Self::Origin => Scene { depth: 2.0, collisions: 40.0, from: x },
+            Self::Steps => Scene::new(2.0, x, 0.0),
+            Self::Depth => Scene::new(x, 20.0 * 1.8 * x, 0.0),
+            Self::Origin => Scene::new(2.0, 40.0, x),
         }
     }
 }

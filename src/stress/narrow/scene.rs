@@ -16,6 +16,8 @@ pub struct Scene {
     pub collisions: f64,
     /// t₀.
     pub from: f64,
+    /// σ̂ of each cell: as many collisions, shared like the largest σ_t.
+    pub majorants: [f64; CELLS],
 }
 
 /// One over the period of the waves, times 2π.
@@ -34,6 +36,18 @@ impl Extinction for Scene {
 }
 
 impl Scene {
+    /// Of an optical depth, a number of collisions and a distance from the origin.
+    pub fn new(depth: f64, collisions: f64, from: f64) -> Self {
+        let scene = Self { depth, collisions, from, majorants: [0.0; CELLS] };
+        let width = 1.0 / CELLS as f64;
+        let most: [f64; CELLS] = std::array::from_fn(|cell| {
+            let place = |i: i32| (cell as f64 + f64::from(i) / 64.0) * width;
+            (0..=64).map(|i| scene.at(place(i))).fold(0.0, f64::max)
+        });
+        let mean = most.iter().sum::<f64>() * width;
+        Self { majorants: most.map(|most| collisions * most / mean), ..scene }
+    }
+
     /// σ_t at a share of the ray.
     fn at(&self, share: f64) -> f64 {
         self.extinction(self.from + share)
@@ -75,17 +89,6 @@ impl Scene {
         )
     }
 
-    /// σ̂ of each cell: as many collisions, shared like the largest σ_t.
-    pub fn majorants(&self) -> [f64; CELLS] {
-        let width = 1.0 / CELLS as f64;
-        let most: [f64; CELLS] = std::array::from_fn(|cell| {
-            let place = |i: i32| (cell as f64 + f64::from(i) / 64.0) * width;
-            (0..=64).map(|i| self.at(place(i))).fold(0.0, f64::max)
-        });
-        let mean = most.iter().sum::<f64>() * width;
-        most.map(|most| self.collisions * most / mean)
-    }
-
     /// `V/T²` of a product estimator, `expm1 ∫σ̂ E[(1 − W)²]`.
     pub fn of_product(&self, control: f64, rule: &dyn Rule) -> f64 {
         let loss = |s: f64| {
@@ -97,10 +100,9 @@ impl Scene {
 
     /// The same of ratio tracking with local majorants: `expm1 ∫σ_t²/σ̂`.
     pub fn of_cells(&self) -> f64 {
-        let majorants = self.majorants();
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share of the cells
         let cell = |s: f64| ((s * CELLS as f64) as usize).min(CELLS - 1);
-        integral(|s| self.at(s).powi(2) / majorants[cell(s)]).exp_m1()
+        integral(|s| self.at(s).powi(2) / self.majorants[cell(s)]).exp_m1()
     }
 
     /// The same of next-flight and unidirectional MIS; `None` where theory has lost it.

@@ -294,7 +294,7 @@ impl Estimator for Space {
         // With a majorant, neither analog nor weighted walks depend on it.
         let depends = self.splits > 0 || self.sought == Sought::Ratio;
         let few = if depends { f64::INFINITY } else { 4.0 * scene.depth };
-        Scene { collisions: scene.collisions.min(few), ..scene }
+        Scene::new(scene.depth, scene.collisions.min(few), scene.from)
     }
 
     #[inline(always)]

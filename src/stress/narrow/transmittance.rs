@@ -106,7 +106,7 @@ impl<R: Collision> Estimator for Cells<R> {
     fn draw<P: Precision>(&self, scene: &Scene, trail: &mut Trail) -> f64 {
         let (mut t, mut weight, mut chance) = (P::of(scene.from), P::of(1.0), 1.0);
         let mut left = flight::<P>(trail);
-        for (cell, majorant) in scene.majorants().into_iter().enumerate() {
+        for (cell, majorant) in scene.majorants.into_iter().enumerate() {
             let sampling = P::of(majorant);
             let edge = P::of(scene.from + (cell + 1) as f64 / CELLS as f64);
             loop {
@@ -299,7 +299,7 @@ mod tests {
 
     #[test]
     fn a_flight_through_the_control_passes_with_its_chance() {
-        let scene = Scene { depth: 2.0, collisions: 9.0, from: 0.0 };
+        let scene = Scene::new(2.0, 9.0, 0.0);
         let control = scene.least();
         let exact = (-control).exp();
         assert!((passing::<f64>(&scene, control) - exact).abs() < 1e-15);

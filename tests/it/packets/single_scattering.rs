@@ -1,7 +1,7 @@
 //! Single scattering drawn side by side is single scattering drawn one by one, to the bit.
 //!
-//! Values, lookups, and where the streams are left, for every shipped case, and for every technique with every
-//! camera, shadow ray and control in bodies of all kinds (in the long form; a quarter of them in the short one).
+//! Values, lookups, and where the streams are left, for every technique with every camera, shadow ray and control: in
+//! the long form in bodies of all kinds and in every shipped case, in the short one in a quarter of the bodies.
 
 use super::{compare, fusing_levels};
 use crate::common::case;
@@ -62,11 +62,9 @@ const TECHNIQUES: [&str; 28] = [
     "delta-tracking = { sampling.piecewise-constant = { breaks = [0, 2, 9], values = [1, 1.5] },",
 ];
 
-/// The shipped cases, and one for every `step`-th body with a light.
+/// One for every `step`-th body with a light.
 fn cases(step: usize) -> Vec<Case> {
-    let mut cases = Case::read_all(&["cases/single-scattering"]).unwrap_or_else(|errors| {
-        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
-    });
+    let mut cases = Vec::new();
     let lit = VOLUMES.iter().flat_map(|volume| LIGHTS.map(|light| (volume, light)));
     for (number, (volume, light)) in lit.enumerate().step_by(step) {
         // Each technique in each body, with two of the shadow rays.
@@ -105,6 +103,9 @@ fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
 #[test]
 #[ignore = "long: every technique in bodies of all kinds, 45 s of two cores"]
 fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
-    let compared = compare(&cases(1));
+    let shipped = Case::read_all(&["cases/single-scattering"]).unwrap_or_else(|errors| {
+        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
+    });
+    let compared = compare(&cases(1)) + compare(&shipped);
     assert!(fusing_levels().is_empty() || compared > 500, "only {compared} compared");
 }
