@@ -6,7 +6,6 @@
 //! distance from the centre and t the distance from its foot: what is smooth in `r²` is smooth along
 //! the ray, even where it passes the centre.
 
-use super::ball::MOST;
 use crate::numeric::Known;
 use crate::numeric::quadrature::GaussLegendre;
 
@@ -208,18 +207,8 @@ impl Rules {
     }
 }
 
-/// Places at once.
+/// Places side by side.
 const SIDE: usize = 8;
-
-/// `(2m + 1)/(m + 1)` and `m/(m + 1)` of `Pₘ₊₁ = up x Pₘ − down Pₘ₋₁`.
-const RECURRENCE: [[f64; 2]; MOST] = {
-    let (mut steps, mut i, mut m) = ([[0.0; 2]; MOST], 0, 0.0);
-    while i < MOST {
-        steps[i] = [(2.0 * m + 1.0) / (m + 1.0), m / (m + 1.0)];
-        (i, m) = (i + 1, m + 1.0);
-    }
-    steps
-};
 
 /// What a linear functional says of the Legendre polynomials of each shell, and by that of the values
 /// at the nodes.
@@ -236,7 +225,7 @@ impl Row {
         Self(vec![0.0; count])
     }
 
-    /// Adds weights times the values at places of `r²` within a shell, some at once.
+    /// Adds weights times the values at places of `r²` within a shell, some side by side.
     #[inline]
     pub fn add(&mut self, shell: &Shell, places: &[f64], weights: &[f64]) {
         let moments = &mut self.0[shell.first..][..shell.nodes];
@@ -246,11 +235,11 @@ impl Row {
                 *x = 2.0 * (r2 - shell.from) / (shell.to - shell.from) - 1.0;
             }
             value[..weights.len()].copy_from_slice(weights);
-            for (moment, [up, down]) in moments.iter_mut().zip(RECURRENCE) {
-                let [a, b, c, d, e, f, g, h] = value;
-                *moment += ((a + e) + (c + g)) + ((b + f) + (d + h));
+            for (m, moment) in moments.iter_mut().enumerate() {
+                value.iter().for_each(|value| *moment += value);
+                let m = m as f64;
                 for i in 0..SIDE {
-                    let next = up * x[i] * value[i] - down * previous[i];
+                    let next = ((2.0 * m + 1.0) * x[i] * value[i] - m * previous[i]) / (m + 1.0);
                     (previous[i], value[i]) = (value[i], next);
                 }
             }
@@ -266,9 +255,11 @@ impl Row {
             for (&node, &w) in rule.nodes.iter().zip(&rule.weights) {
                 let x = 2.0 * node - 1.0;
                 let (mut previous, mut value, mut sum) = (0.0, 1.0, 0.0);
-                for (m, (moment, [up, down])) in moments.iter().zip(RECURRENCE).enumerate() {
-                    sum += (2.0 * m as f64 + 1.0) * value * moment;
-                    (previous, value) = (value, up * x * value - down * previous);
+                for (m, moment) in moments.iter().enumerate() {
+                    let m = m as f64;
+                    sum += (2.0 * m + 1.0) * value * moment;
+                    (previous, value) =
+                        (value, ((2.0 * m + 1.0) * x * value - m * previous) / (m + 1.0));
                 }
                 weights.push(w * sum);
             }
