@@ -1,7 +1,7 @@
 //! The transmittance from the ray's origin to any point of the ray, as it is estimated.
 
 use super::CameraTracking;
-use super::segment::{POWERS, Segment, counts, loss, rounding, size};
+use super::segment::{POWERS, Segment, counts, loss, losses, rounding, size};
 use crate::media::{Control, Piecewise};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::{Known, Span};
@@ -97,7 +97,7 @@ impl<'a> Camera<'a> {
         }
         let residual = extinction - control;
         let weight = 1.0 - residual / sampling;
-        let [a, b, c, d, e] = POWERS.map(|k| loss(k, control, residual, weight));
+        let [a, b, c, d, e] = losses(control, residual, weight);
         let [one, three, two] = if weight < 0.0 {
             // σ̂(1 − |w|) = 2σ̂ − (σ_t − σ_c), and 1 − w|w| = 1 + w².
             let size = -weight;

@@ -54,12 +54,27 @@ const ROUNDINGS: f64 = 8.0;
 /// ```
 ///
 /// The difference would leave ε σ̂ of rounding, however small the residual.
+#[inline]
 pub fn loss(k: i32, control: f64, residual: f64, weight: f64) -> f64 {
     let sum = (0..k).fold(0.0, |sum, _| sum * weight + 1.0);
     f64::from(k) * control + residual * sum
 }
 
+/// The same of all [`POWERS`], which share their sums.
+#[inline]
+pub fn losses(control: f64, residual: f64, weight: f64) -> [f64; POWERS.len()] {
+    let (mut k, mut sum, mut found) = (0, 0.0, [0.0; POWERS.len()]);
+    for (i, power) in POWERS.into_iter().enumerate() {
+        while k < power {
+            (k, sum) = (k + 1, sum * weight + 1.0);
+        }
+        found[i] = f64::from(power) * control + residual * sum;
+    }
+    found
+}
+
 /// What [`loss`] sums up for k = 4, all with the same sign: at least as much as for a smaller k.
+#[inline]
 pub fn size(control: f64, residual: f64, weight: f64) -> f64 {
     loss(4, control.abs(), residual.abs(), weight.abs())
 }
@@ -125,13 +140,13 @@ impl Segment {
         match tracking {
             Tracking::Exact => Self::exact(depth),
             Tracking::Ratio { sampling, control } => {
-                let losses = |_: f64, sigma: f64| {
+                let lost = |_: f64, sigma: f64| {
                     let residual = sigma - control;
                     let weight = 1.0 - residual / sampling;
-                    let [a, b, c, d, e] = POWERS.map(|k| loss(k, control, residual, weight));
+                    let [a, b, c, d, e] = losses(control, residual, weight);
                     [a, b, c, d, e, size(control, residual, weight)]
                 };
-                let (value, apart) = along(medium, rule, losses);
+                let (value, apart) = along(medium, rule, lost);
                 let [_, b, c, d, e, size] = value;
                 let apart = apart[1..4].iter().fold(0.0, |most: f64, &apart| most.max(apart));
                 let error = [rounding(size) + apart.max(4.0 * depth.error), size];
@@ -176,8 +191,9 @@ fn along<const N: usize>(
                 nodes.extend(rule.nodes.iter().map(|x| from + x * step));
                 let sigma = medium.extinctions(&nodes);
                 for ((&t, &sigma), &weight) in nodes.iter().zip(&sigma).zip(&rule.weights) {
-                    let values = f(t, sigma);
-                    sum.iter_mut().zip(values).for_each(|(sum, x)| *sum += weight * step * x);
+                    for (sum, x) in sum.iter_mut().zip(&f(t, sigma)) {
+                        *sum += weight * step * x;
+                    }
                 }
             }
         }
@@ -209,9 +225,11 @@ mod tests {
         // Elsewhere both are one, beyond weights of −1, too, where losses are gains.
         for (residual, control) in [(0.3, 0.0), (1.7, 0.2), (2.9, 0.1), (-0.4, 0.5)] {
             let weight: f64 = 1.0 - residual;
-            for k in POWERS {
+            let together = losses(control, residual, weight);
+            for (k, of_all) in POWERS.into_iter().zip(together) {
                 let apart = f64::from(k) * control + (1.0 - weight.powi(k));
                 let found = loss(k, control, residual, weight);
+                assert!(found.to_bits() == of_all.to_bits(), "{k}");
                 assert!((found - apart).abs() < 1e-14 * (1.0 + weight.powi(k).abs()), "{k}");
                 assert!(k > 4 || found.abs() <= size(control, residual, weight));
             }
