@@ -69,7 +69,9 @@ impl Ball<'_> {
             let nodes = (shell.nodes + BEYOND).max(FEWEST);
             let part = Chord { from, to, ..*chord };
             self.panel(&part, rules.of(nodes), &mut depth, |places, shares| {
-                shares.iter_mut().for_each(|share| *share *= weight);
+                for share in shares.iter_mut() {
+                    *share *= weight;
+                }
                 row.add(shell, places, shares);
             });
         });

@@ -236,7 +236,9 @@ impl Row {
             }
             value[..weights.len()].copy_from_slice(weights);
             for (m, moment) in moments.iter_mut().enumerate() {
-                value.iter().for_each(|value| *moment += value);
+                for value in &value {
+                    *moment += value;
+                }
                 let m = m as f64;
                 for i in 0..SIDE {
                     let next = ((2.0 * m + 1.0) * x[i] * value[i] - m * previous[i]) / (m + 1.0);
