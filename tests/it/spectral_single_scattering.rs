@@ -3,7 +3,7 @@
 use trueflight::harness::record::{Row, Verdict};
 
 use crate::common::{case, mistakes, predicted, rows};
-use crate::space_packets::{compare, fusing_levels};
+use crate::packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../../cases/spectral-single-scattering/magnet.toml");
 

@@ -41,7 +41,7 @@ fn drawn(planned: &Planned, kernel: Kernel) -> Vec<u64> {
 }
 
 /// Every level that fuses, from the best down.
-fn fusing_levels() -> Vec<Level> {
+pub fn fusing_levels() -> Vec<Level> {
     let mut levels = vec![Level::new()];
     #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
     levels.extend(Level::new().as_avx2().map(Level::Avx2));
@@ -50,7 +50,7 @@ fn fusing_levels() -> Vec<Level> {
 }
 
 /// Compares all ordered experiments of cases on all levels; answers how many comparisons that were.
-fn compare(cases: &[Case]) -> usize {
+pub fn compare(cases: &[Case]) -> usize {
     let plan = Plan::new(cases, &options(1, 1_000));
     let (mut wrong, mut compared) = (Vec::new(), 0);
     for (case, planned) in plan.experiments() {
