@@ -326,7 +326,7 @@ fn what_does_not_fit_is_refused() {
     let beyond = "{ technique.light-vertices = 4 }";
     says(&rod("transmitted", 3, 1, beyond), "light vertices");
     let white = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("0.35", "0");
-    says(&white, "an answer between");
+    says(&white, "light in every order");
     let thick = rod("transmitted", 1, 1, "{ full-mis = {} }").replace("2.6", "20");
     says(&thick, "τ ≤ 12");
 }
