@@ -46,9 +46,8 @@ impl Problem for ChromaticSlab {
 
     fn read(body: Option<&Body>, settings: &Settings) -> Option<Self> {
         let light = read_light(settings);
-        let bodies = body?.channels();
-        let (albedos, phases) = spectral_furnace::read_scatterers(bodies.len(), settings)?;
-        let light = light?;
+        let scatterers = spectral_furnace::read_scatterers(body, settings);
+        let (light, (albedos, phases), bodies) = (light?, scatterers?, body?.channels());
         let incidences = phases.into_iter().map(|phase| Incidence { light, phase }).collect();
         let media = bodies.iter().map(Body::medium).collect();
         Some(Self { media, colours: Colours::new(albedos, true), incidences })

@@ -58,14 +58,14 @@ pub struct SpectralFurnace {
     media: Vec<Medium>,
 }
 
-/// Reads `albedos` and `phases`, one of each for each of so many channels.
-pub fn read_scatterers(count: usize, settings: &Settings) -> Option<(Vec<f64>, Vec<Phase>)> {
+/// Reads `albedos` and `phases`, one of each for each channel of a field.
+pub fn read_scatterers(body: Option<&Body>, settings: &Settings) -> Option<(Vec<f64>, Vec<Phase>)> {
     let albedos = settings.numbers("albedos", Domain::Unit, 1);
     let phases = settings.tables("phases").and_then(|tables| {
         let phases: Vec<_> = tables.iter().map(Phase::read_listed).collect();
         phases.into_iter().collect::<Option<Vec<Phase>>>()
     });
-    let (albedos, phases) = (albedos?, phases?);
+    let (albedos, phases, count) = (albedos?, phases?, body?.channels().len());
     for (key, listed) in [("albedos", albedos.len()), ("phases", phases.len())] {
         if listed != count {
             let message = format!("`{key}` lists {listed} channels, and the medium has {count}");
@@ -78,8 +78,8 @@ pub fn read_scatterers(count: usize, settings: &Settings) -> Option<(Vec<f64>, V
 
 /// Reads `albedos` and `phases` beside a field in space for each channel.
 pub fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Channel>> {
+    let (albedos, phases) = read_scatterers(body, settings)?;
     let bodies = body?.channels();
-    let (albedos, phases) = read_scatterers(bodies.len(), settings)?;
     let mut channels = Vec::new();
     for ((body, albedo), phase) in bodies.iter().zip(albedos).zip(phases) {
         let Body::Volume { volume, .. } = body else {

@@ -110,6 +110,8 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
         let said = said(from, to);
         assert!(said.contains(words), "{words}:\n{said}");
     }
+    let said = said("constant.extinction = 0.8", "constant.extinction = -1");
+    assert!(!said.contains("not known here"), "{said}");
     let refused = [
         (
             "constant.value = 0.8",
