@@ -71,6 +71,28 @@ impl<F: Extinction, S: Simd> Batch for Compiled<'_, F, S> {
     }
 }
 
+/// Those of one place after the other, where the hardware has no wide packs.
+struct OneByOne<'a, F>(&'a F);
+
+impl<F: Extinction> Batch for OneByOne<'_, F> {
+    fn one(&self, t: f64) -> f64 {
+        in_fused_code(
+            #[inline(always)]
+            || self.0.extinction(t),
+        )
+    }
+
+    fn pair(&self, t: &mut [f64; PAIR]) {
+        self.all(t);
+    }
+
+    fn all(&self, t: &mut [f64]) {
+        for t in t {
+            *t = self.one(*t);
+        }
+    }
+}
+
 /// A field along a ray as kernels see it: `σ_t` in 1/length at distances inside the support.
 pub struct Lookups<'a> {
     batch: Box<dyn Batch + 'a>,
@@ -84,7 +106,10 @@ impl<'a> Lookups<'a> {
     /// Those of a field on the hardware of a level.
     pub fn new<F: Extinction>(field: &'a F, level: Level) -> Self {
         let (single_value, is_costly) = (field.single_value(), field.is_costly());
-        let batch = pack::on(level, Compile(field));
+        let batch = match pack::on_wide(level, Compile(field)) {
+            Ok(batch) => batch,
+            Err(Compile(field)) => Box::new(OneByOne(field)),
+        };
         Self { batch, single_value, is_costly, further: Vec::new() }
     }
 
@@ -212,10 +237,8 @@ trait PointBatch: Send + Sync {
 }
 
 struct CompiledInSpace<'a, F, S> {
-    field: &'a F,
+    field: CompileInSpace<'a, F>,
     simd: S,
-    /// Outside it σ_t is 0.
-    bounds: Option<Bounds>,
 }
 
 impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
@@ -228,7 +251,8 @@ impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
                 let Twin(c, d) = Twin::from_slice(self.simd, y);
                 let Twin(e, f) = Twin::from_slice(self.simd, z);
                 let mut found = [0.0; PAIR];
-                Twin(self.look_up([a, c, e]), self.look_up([b, d, f])).store_slice(&mut found);
+                Twin(self.field.look_up([a, c, e]), self.field.look_up([b, d, f]))
+                    .store_slice(&mut found);
                 found
             },
         )
@@ -243,7 +267,7 @@ impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
                     lanes[number] = f64x8::from_slice(self.simd, row);
                 }
                 let [a, b, c, x, y, z, from, to] = lanes;
-                let depths = self.field.depths_along([[a, b, c], [x, y, z]], [from, to])?;
+                let depths = self.field.field.depths_along([[a, b, c], [x, y, z]], [from, to])?;
                 let mut found = [0.0; WIDTH];
                 depths.store_slice(&mut found);
                 Some(found)
@@ -252,9 +276,30 @@ impl<F: Field, S: Simd> PointBatch for CompiledInSpace<'_, F, S> {
     }
 }
 
-impl<F: Field, S: Simd> CompiledInSpace<'_, F, S> {
+/// Those of one point after the other, where the hardware has no wide packs.
+struct PointByPoint<'a, F>(CompileInSpace<'a, F>);
+
+impl<F: Field> PointBatch for PointByPoint<'_, F> {
+    fn pair(&self, points: &[[f64; PAIR]; 3]) -> [f64; PAIR] {
+        let mut found = [0.0; PAIR];
+        for (number, found) in found.iter_mut().enumerate() {
+            let [x, y, z] = points;
+            *found = in_fused_code(
+                #[inline(always)]
+                || self.0.look_up([x[number], y[number], z[number]]),
+            );
+        }
+        found
+    }
+
+    fn depths(&self, _: &[[f64; WIDTH]; 8]) -> Option<[f64; WIDTH]> {
+        None
+    }
+}
+
+impl<F: Field> CompileInSpace<'_, F> {
     #[inline(always)]
-    fn look_up(&self, points: [f64x8<S>; 3]) -> f64x8<S> {
+    fn look_up<L: Lane>(&self, points: [L; 3]) -> L {
         let found = self.field.extinction_at(points);
         match &self.bounds {
             Some(bounds) => Lane::select(bounds.contain(points), found, found.each(0.0)),
@@ -275,7 +320,11 @@ impl<'a> Batches<'a> {
     pub fn new<F: Field>(field: &'a F, level: Level, clipped: bool) -> Self {
         let bounds = clipped.then(|| field.bounds()).filter(|&b| b != Bounds::Everywhere);
         let single_value = field.single_value().filter(|_| bounds.is_none());
-        Self { batch: pack::on(level, CompileInSpace { field, bounds }), single_value }
+        let batch = match pack::on_wide(level, CompileInSpace { field, bounds }) {
+            Ok(batch) => batch,
+            Err(field) => Box::new(PointByPoint(field)),
+        };
+        Self { batch, single_value }
     }
 
     /// `σ_t` at the points of two packs.
@@ -303,6 +352,7 @@ impl<'a> Batches<'a> {
 
 struct CompileInSpace<'a, F> {
     field: &'a F,
+    /// Outside it σ_t is 0.
     bounds: Option<Bounds>,
 }
 
@@ -310,6 +360,6 @@ impl<'a, F: Field> Task for CompileInSpace<'a, F> {
     type Output = Box<dyn PointBatch + 'a>;
 
     fn run<S: Simd>(self, simd: S) -> Self::Output {
-        Box::new(CompiledInSpace { field: self.field, simd, bounds: self.bounds })
+        Box::new(CompiledInSpace { field: self, simd })
     }
 }

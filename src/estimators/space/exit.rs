@@ -76,7 +76,11 @@ pub fn chords<S: Simd>(
         return [from, to];
     }
     if fuses(to.token().level()) && SIZES.contains(&radius) {
-        let [begin, end] = grazing::chord(centre, radius, origin, direction);
+        // A function of its own: the compiler takes the square of a function's length.
+        let [begin, end] = to.token().vectorize(
+            #[inline(always)]
+            move || grazing::chord(centre, radius, origin, direction),
+        );
         return [Lane::select(is_grazing, begin, from), Lane::select(is_grazing, end, to)];
     }
     let mut ends = rows([from, to, to]);

@@ -10,6 +10,7 @@ use super::tally::{Collision, Departure, Tally, add_where};
 use crate::estimators::DrawBuffer;
 use crate::geometry::frame;
 use crate::kernels::packet::bank::{Numbers, Slots};
+use crate::kernels::packet::kept::aside;
 use crate::numeric::Lane;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::twin::PAIR;
@@ -19,6 +20,7 @@ use crate::numeric::twin::PAIR;
 const TOGETHER: u32 = 3;
 
 /// Eight walks.
+#[derive(Clone, Copy)]
 pub struct Pack<S: Simd, const SUMS: usize> {
     /// Their streams.
     pub numbers: Numbers<S>,
@@ -70,6 +72,16 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     /// Those that have ended begin the next walk.
     #[inline(always)]
     pub fn begin_anew<T: Tally<SUMS>>(&mut self, simd: S, world: &World<T>) {
+        aside(
+            simd,
+            self,
+            #[inline(always)]
+            |pack| pack.replace(simd, world),
+        );
+    }
+
+    #[inline(always)]
+    fn replace<T: Tally<SUMS>>(&mut self, simd: S, world: &World<T>) {
         let ended = self.ended;
         let [origin, direction] = world.tally.begin(simd, &mut self.numbers, ended);
         for axis in 0..3 {
@@ -180,8 +192,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     /// Shadow rays and new directions are drawn, and clipped, together.
     #[inline(always)]
     pub fn redirect<T: Tally<SUMS>>(&mut self, world: &World<T>) {
-        let (zero, one) = (self.weight.each(0.0), self.weight.each(1.0));
-        let origin = self.flights.origin;
+        let (zero, origin) = (self.weight.each(0.0), self.flights.origin);
         let sets_out = self.scattered | self.ended;
         let turns = if world.tally.begins_turned() { sets_out } else { self.scattered };
         self.begins |= sets_out & !turns;
@@ -194,9 +205,21 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             self.turns |= turns;
         }
         let moves = self.waits();
-        if moves.to_bitmask().count_ones() < TOGETHER {
-            return;
+        if moves.to_bitmask().count_ones() >= TOGETHER {
+            aside(
+                zero.token(),
+                self,
+                #[inline(always)]
+                |pack| pack.set_out(world),
+            );
         }
+    }
+
+    /// All that wait set out.
+    #[inline(always)]
+    fn set_out<T: Tally<SUMS>>(&mut self, world: &World<T>) {
+        let (zero, one) = (self.weight.each(0.0), self.weight.each(1.0));
+        let (moves, origin) = (self.waits(), self.flights.origin);
         let (casts, turns, sets_out) = (self.aims, self.turns, self.turns | self.begins);
         let nobody = moves & !moves;
         (self.aims, self.turns, self.begins) = (nobody, nobody, nobody);

@@ -11,7 +11,7 @@
 //!
 //! Loops over channels count: a kernel does not inline iterators of two slices, and would lose its registers to the call.
 
-use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use crate::estimators::Setup;
 use crate::estimators::space::exit::{Points, exits};
@@ -20,7 +20,7 @@ use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Slots};
 use crate::kernels::packet::colours::{Densities, Events, Scatterers, alone, balance};
 use crate::kernels::packet::hero::{Law, Media, number_of_hero};
-use crate::kernels::packet::kept::Keep;
+use crate::kernels::packet::kept::{Keep, aside};
 use crate::kernels::packet::left::{Left, Made};
 use crate::media::Batches;
 use crate::media::body::MOST_CHANNELS;
@@ -123,6 +123,7 @@ impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
 }
 
 /// Eight walks.
+#[derive(Clone, Copy)]
 struct Pack<S: Simd> {
     numbers: Numbers<S>,
     slots: Slots,
@@ -171,6 +172,16 @@ impl<S: Simd> Pack<S> {
     /// Those that have ended begin the next walk.
     #[inline(always)]
     fn begin_anew<const BALANCED: bool>(&mut self, world: &World<BALANCED>, which: mask64x8<S>) {
+        aside(
+            self.length.token(),
+            self,
+            #[inline(always)]
+            |pack| pack.replace(world, which),
+        );
+    }
+
+    #[inline(always)]
+    fn replace<const BALANCED: bool>(&mut self, world: &World<BALANCED>, which: mask64x8<S>) {
         let (World { problem, law, media, scatterers, .. }, keep) = (world, self.keep);
         let zero = self.length.each(0.0);
         let hero = law.choose(self.numbers.uniform_where(which));
@@ -238,9 +249,17 @@ impl<S: Simd> Pack<S> {
         world: &World<BALANCED>,
         which: mask64x8<S>,
     ) -> f64x8<S> {
-        let cosine = world.scatterers.cosine(self.hero, self.numbers.uniform_where(which));
+        let (scatterers, hero, direction) = (&world.scatterers, self.hero, self.direction);
+        let number = self.numbers.uniform_where(which);
         let turns = self.numbers.uniform_where(which);
-        let turned = frame::turned_lanes(self.direction, cosine, turns);
+        // As `aside` does.
+        let (cosine, turned) = turns.token().vectorize(
+            #[inline(always)]
+            move || {
+                let cosine = scatterers.cosine(hero, number);
+                (cosine, frame::turned_lanes(direction, cosine, turns))
+            },
+        );
         for (axis, to) in self.direction.iter_mut().enumerate() {
             self.keep.put(to, which, turned[axis]);
         }

@@ -9,6 +9,18 @@ use fearless_simd::{Bytes, Simd, SimdBase, f64x8, mask64x8, u64x8};
 use crate::numeric::Lane;
 use crate::numeric::pack::converts;
 
+/// Takes a step that is not taken each time in a function of its own, on a copy: the loop around it keeps its registers,
+/// and a compiler, which takes the square of a function's length, has two short ones.
+#[inline(always)]
+pub fn aside<S: Simd, P: Copy>(simd: S, kept: &mut P, step: impl FnOnce(&mut P)) {
+    let mut copy = *kept;
+    simd.vectorize(
+        #[inline(always)]
+        || step(&mut copy),
+    );
+    *kept = copy;
+}
+
 /// Writes what is kept.
 #[derive(Clone, Copy)]
 pub struct Keep<S: Simd> {

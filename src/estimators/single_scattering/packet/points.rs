@@ -1,6 +1,6 @@
 //! Points that are chosen beforehand: source-driven, scattering-driven, and both by multiple importance sampling.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::walk::{Walk, World};
 use super::{Page, Pages, Sums};
@@ -74,6 +74,24 @@ impl<S: Simd> Points<'_, S> {
     }
 }
 
+/// [`MainPart::point`] in a function of its own: the compiler takes the square of a function's length.
+#[inline(always)]
+fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
+    u.token().vectorize(
+        #[inline(always)]
+        move || main.point(u),
+    )
+}
+
+/// [`MainPart::density`] likewise.
+#[inline(always)]
+fn density_of<S: Simd>(main: MainPart, s: f64x8<S>) -> f64x8<S> {
+    s.token().vectorize(
+        #[inline(always)]
+        move || main.density(s),
+    )
+}
+
 impl<S: Simd> Page<S> for Points<'_, S> {
     #[inline(always)]
     fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>) {
@@ -81,8 +99,10 @@ impl<S: Simd> Page<S> for Points<'_, S> {
         let problem = &*self.world.setup.problem;
         let s = match (&self.main, self.from_source) {
             (None, _) => point(problem, u),
-            (Some(main), false) => main.point(u),
-            (Some(main), true) => Lane::select(self.is_second, main.point(u), point(problem, u)),
+            (Some(main), false) => point_of(*main, u),
+            (Some(main), true) => {
+                Lane::select(self.is_second, point_of(*main, u), point(problem, u))
+            }
         };
         self.s = Lane::select(which, s, self.s);
         match self.world.extinction {
@@ -158,8 +178,8 @@ impl<S: Simd> Page<S> for Points<'_, S> {
         let radiance = self.weight * (self.extinction * problem.source(self.s)) * light;
         let density = match (&self.main, self.from_source) {
             (None, _) => problem.equiangular_density(self.s),
-            (Some(main), false) => main.density(self.s),
-            (Some(main), true) => problem.equiangular_density(self.s) + main.density(self.s),
+            (Some(main), false) => density_of(*main, self.s),
+            (Some(main), true) => problem.equiangular_density(self.s) + density_of(*main, self.s),
         };
         let (value, is_one_of_two) = (radiance / density, self.from_source && self.main.is_some());
         // The one point's value is the draw's, its sign included where it is 0.
