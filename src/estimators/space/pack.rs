@@ -20,7 +20,6 @@ use crate::numeric::twin::PAIR;
 const TOGETHER: u32 = 3;
 
 /// Eight walks.
-#[derive(Clone, Copy)]
 pub struct Pack<S: Simd, const SUMS: usize> {
     /// Their streams.
     pub numbers: Numbers<S>,
@@ -64,24 +63,19 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             turns: none,
             begins: none,
         };
-        pack.begin_anew(simd, world);
-        pack.redirect(world);
+        simd.vectorize(
+            #[inline(always)]
+            || {
+                pack.begin_anew(simd, world);
+                pack.redirect(world);
+            },
+        );
         pack
     }
 
     /// Those that have ended begin the next walk.
     #[inline(always)]
     pub fn begin_anew<T: Tally<SUMS>>(&mut self, simd: S, world: &World<T>) {
-        aside(
-            simd,
-            self,
-            #[inline(always)]
-            |pack| pack.replace(simd, world),
-        );
-    }
-
-    #[inline(always)]
-    fn replace<T: Tally<SUMS>>(&mut self, simd: S, world: &World<T>) {
         let ended = self.ended;
         let [origin, direction] = world.tally.begin(simd, &mut self.numbers, ended);
         for axis in 0..3 {
@@ -206,12 +200,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         }
         let moves = self.waits();
         if moves.to_bitmask().count_ones() >= TOGETHER {
-            aside(
-                zero.token(),
-                self,
-                #[inline(always)]
-                |pack| pack.set_out(world),
-            );
+            self.set_out(world);
         }
     }
 
@@ -264,7 +253,12 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             (axis, cosine) =
                 (chosen(casts, aim.axis, axis), Lane::select(casts, aim.cosine, cosine));
         }
-        let turned = frame::turned_lanes(axis, cosine, self.numbers.uniform_where(which));
+        let turns = self.numbers.uniform_where(which);
+        let turned = aside(
+            turns.token(),
+            #[inline(always)]
+            move || frame::turned_lanes(axis, cosine, turns),
+        );
         chosen(which, turned, self.flights.direction)
     }
 

@@ -123,7 +123,6 @@ impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
 }
 
 /// Eight walks.
-#[derive(Clone, Copy)]
 struct Pack<S: Simd> {
     numbers: Numbers<S>,
     slots: Slots,
@@ -165,23 +164,16 @@ impl<S: Simd> Pack<S> {
             densities: Densities::new(simd),
             keep: Keep::new(simd),
         };
-        pack.begin_anew(world, all);
+        simd.vectorize(
+            #[inline(always)]
+            || pack.begin_anew(world, all),
+        );
         pack
     }
 
     /// Those that have ended begin the next walk.
     #[inline(always)]
     fn begin_anew<const BALANCED: bool>(&mut self, world: &World<BALANCED>, which: mask64x8<S>) {
-        aside(
-            self.length.token(),
-            self,
-            #[inline(always)]
-            |pack| pack.replace(world, which),
-        );
-    }
-
-    #[inline(always)]
-    fn replace<const BALANCED: bool>(&mut self, world: &World<BALANCED>, which: mask64x8<S>) {
         let (World { problem, law, media, scatterers, .. }, keep) = (world, self.keep);
         let zero = self.length.each(0.0);
         let hero = law.choose(self.numbers.uniform_where(which));
@@ -252,8 +244,8 @@ impl<S: Simd> Pack<S> {
         let (scatterers, hero, direction) = (&world.scatterers, self.hero, self.direction);
         let number = self.numbers.uniform_where(which);
         let turns = self.numbers.uniform_where(which);
-        // As `aside` does.
-        let (cosine, turned) = turns.token().vectorize(
+        let (cosine, turned) = aside(
+            turns.token(),
             #[inline(always)]
             move || {
                 let cosine = scatterers.cosine(hero, number);

@@ -109,7 +109,6 @@ pub fn of_channels<S: Simd>(
 }
 
 /// What each lane has to do and has done.
-#[derive(Clone, Copy)]
 pub struct Slots {
     /// The number of each lane's next draw.
     next: [usize; WIDTH],

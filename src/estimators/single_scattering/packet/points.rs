@@ -9,6 +9,7 @@ use crate::estimators::single_scattering::technique::point;
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
+use crate::kernels::packet::kept::aside;
 use crate::numeric::Lane;
 use crate::theory::single::CameraTracking;
 
@@ -74,19 +75,21 @@ impl<S: Simd> Points<'_, S> {
     }
 }
 
-/// [`MainPart::point`] in a function of its own: the compiler takes the square of a function's length.
+/// [`MainPart::point`].
 #[inline(always)]
 fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
-    u.token().vectorize(
+    aside(
+        u.token(),
         #[inline(always)]
         move || main.point(u),
     )
 }
 
-/// [`MainPart::density`] likewise.
+/// [`MainPart::density`].
 #[inline(always)]
 fn density_of<S: Simd>(main: MainPart, s: f64x8<S>) -> f64x8<S> {
-    s.token().vectorize(
+    aside(
+        s.token(),
         #[inline(always)]
         move || main.density(s),
     )
