@@ -10,9 +10,8 @@ use super::tally::{Collision, Departure, Tally, add_where};
 use crate::estimators::DrawBuffer;
 use crate::geometry::frame;
 use crate::kernels::packet::bank::{Numbers, Slots};
-use crate::kernels::packet::kept::aside;
 use crate::numeric::Lane;
-use crate::numeric::pack::WIDTH;
+use crate::numeric::pack::{self, WIDTH};
 use crate::numeric::twin::PAIR;
 
 /// So many particles of a pack set out together: a direction costs more than a step. While fewer wait for it, the
@@ -254,7 +253,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
                 (chosen(casts, aim.axis, axis), Lane::select(casts, aim.cosine, cosine));
         }
         let turns = self.numbers.uniform_where(which);
-        let turned = aside(
+        let turned = pack::aside(
             turns.token(),
             #[inline(always)]
             move || frame::turned_lanes(axis, cosine, turns),

@@ -20,7 +20,7 @@ use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Slots};
 use crate::kernels::packet::colours::{Densities, Events, Scatterers, alone, balance};
 use crate::kernels::packet::hero::{Law, Media, number_of_hero};
-use crate::kernels::packet::kept::{Keep, aside};
+use crate::kernels::packet::kept::Keep;
 use crate::kernels::packet::left::{Left, Made};
 use crate::media::Batches;
 use crate::media::body::MOST_CHANNELS;
@@ -244,7 +244,7 @@ impl<S: Simd> Pack<S> {
         let (scatterers, hero, direction) = (&world.scatterers, self.hero, self.direction);
         let number = self.numbers.uniform_where(which);
         let turns = self.numbers.uniform_where(which);
-        let (cosine, turned) = aside(
+        let (cosine, turned) = pack::aside(
             turns.token(),
             #[inline(always)]
             move || {

@@ -9,16 +9,6 @@ use fearless_simd::{Bytes, Simd, SimdBase, f64x8, mask64x8, u64x8};
 use crate::numeric::Lane;
 use crate::numeric::pack::converts;
 
-/// Computes in a function of its own where packs take several registers: there a compiler takes the square of a function's
-/// length. What is computed from is taken by value, so that the loop around it keeps its registers.
-#[inline(always)]
-pub fn aside<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
-    if const { size_of::<S::f64s>() >= size_of::<f64x8<S>>() } {
-        return compute();
-    }
-    simd.vectorize(compute)
-}
-
 /// Writes what is kept.
 #[derive(Clone, Copy)]
 pub struct Keep<S: Simd> {

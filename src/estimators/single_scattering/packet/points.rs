@@ -9,8 +9,7 @@ use crate::estimators::single_scattering::technique::point;
 use crate::estimators::space::shadow::Found;
 use crate::estimators::space::tally::add_where;
 use crate::kernels::packet::bank::Numbers;
-use crate::kernels::packet::kept::aside;
-use crate::numeric::Lane;
+use crate::numeric::{Lane, pack};
 use crate::theory::single::CameraTracking;
 
 /// Eight walks to points.
@@ -78,7 +77,7 @@ impl<S: Simd> Points<'_, S> {
 /// [`MainPart::point`].
 #[inline(always)]
 fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
-    aside(
+    pack::aside(
         u.token(),
         #[inline(always)]
         move || main.point(u),
@@ -88,7 +87,7 @@ fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
 /// [`MainPart::density`].
 #[inline(always)]
 fn density_of<S: Simd>(main: MainPart, s: f64x8<S>) -> f64x8<S> {
-    aside(
+    pack::aside(
         s.token(),
         #[inline(always)]
         move || main.density(s),
