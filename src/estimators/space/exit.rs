@@ -14,7 +14,7 @@ use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 use super::grazing;
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Lane;
-use crate::numeric::pack::{WIDTH, fuses};
+use crate::numeric::pack::{self, WIDTH, fuses};
 
 /// Radii of which no square overflows or underflows, nor what is left of one after 32 digits.
 const SIZES: RangeInclusive<f64> = 1e-60..=1e60;
@@ -76,8 +76,8 @@ pub fn chords<S: Simd>(
         return [from, to];
     }
     if fuses(to.token().level()) && SIZES.contains(&radius) {
-        // A function of its own: the compiler takes the square of a function's length.
-        let [begin, end] = to.token().vectorize(
+        let [begin, end] = pack::aside(
+            to.token(),
             #[inline(always)]
             move || grazing::chord(centre, radius, origin, direction),
         );

@@ -62,14 +62,15 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             turns: none,
             begins: none,
         };
-        simd.vectorize(
+        pack::aside(
+            simd,
             #[inline(always)]
-            || {
+            move || {
                 pack.begin_anew(simd, world);
                 pack.redirect(world);
+                pack
             },
-        );
-        pack
+        )
     }
 
     /// Those that have ended begin the next walk.

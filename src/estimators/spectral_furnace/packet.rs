@@ -164,11 +164,14 @@ impl<S: Simd> Pack<S> {
             densities: Densities::new(simd),
             keep: Keep::new(simd),
         };
-        simd.vectorize(
+        pack::aside(
+            simd,
             #[inline(always)]
-            || pack.begin_anew(world, all),
-        );
-        pack
+            move || {
+                pack.begin_anew(world, all);
+                pack
+            },
+        )
     }
 
     /// Those that have ended begin the next walk.
