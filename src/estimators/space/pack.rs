@@ -65,12 +65,12 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         pack::aside(
             simd,
             #[inline(always)]
-            move || {
+            || {
                 pack.begin_anew(simd, world);
                 pack.redirect(world);
-                pack
             },
-        )
+        );
+        pack
     }
 
     /// Those that have ended begin the next walk.

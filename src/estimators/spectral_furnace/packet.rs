@@ -167,11 +167,9 @@ impl<S: Simd> Pack<S> {
         pack::aside(
             simd,
             #[inline(always)]
-            move || {
-                pack.begin_anew(world, all);
-                pack
-            },
-        )
+            || pack.begin_anew(world, all),
+        );
+        pack
     }
 
     /// Those that have ended begin the next walk.
