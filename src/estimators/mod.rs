@@ -5,6 +5,7 @@
 //! one problem form one folder and one list; the recipes for σ̂ and for the control have theirs.
 
 pub mod bidirectional_rod;
+pub mod chromatic;
 pub mod chromatic_slab;
 pub mod free_flight;
 pub mod furnace;

@@ -104,15 +104,16 @@ impl Path {
         self.last = piece;
     }
 
-    /// Multiplies the densities of so many channels at a collision; they stay relative to the hero's.
+    /// Multiplies the densities of so many channels at a collision; they stay relative to the hero's, or to the density
+    /// of what happened where all channels walk together.
     #[inline(always)]
-    pub fn collide(&mut self, count: usize, factor: impl Fn(usize) -> f64) {
+    pub fn collide(&mut self, count: usize, of_all: Option<f64>, factor: impl Fn(usize) -> f64) {
         self.collisions += 1;
         for (channel, weight) in self.weights[..count].iter_mut().enumerate() {
             *weight *= factor(channel);
         }
         // Only a bug can make the hero's 0.
-        let scale = self.weights[self.hero];
+        let scale = of_all.unwrap_or(self.weights[self.hero]);
         if scale > 0.0 {
             for weight in &mut self.weights[..count] {
                 *weight /= scale;
@@ -128,7 +129,18 @@ impl Path {
         self.weights[channel] * Lane::exp(log - (own.majorant - hero.majorant) * length)
     }
 
-    /// What it scores.
+    /// What it scores without multiple importance sampling, where there is no next-event estimation: the densities of
+    /// all channels relative to the walker's.
+    #[inline(always)]
+    pub fn relative<P>(&self, setup: &Setup<P>) -> [f64; MOST_CHANNELS] {
+        let mut found = [0.0; MOST_CHANNELS];
+        for (channel, found) in found[..setup.channels.len()].iter_mut().enumerate() {
+            *found = self.common(setup, channel, self.length);
+        }
+        found
+    }
+
+    /// What it scores by the balance heuristic.
     #[inline(always)]
     pub fn score<P>(
         &self,

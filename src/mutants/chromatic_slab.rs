@@ -7,41 +7,41 @@
 //!
 //! Absorbed walks score nothing: the slips of the furnace that only those show are none here.
 
-use super::spectral_furnace::{Slip, Wrong};
-use super::target::CHROMATIC_SLAB;
-use super::{About, Mutant, with};
-use crate::estimators::chromatic_slab::page::balanced;
-use crate::estimators::chromatic_slab::spectral_mis::SpectralMis;
-use crate::estimators::chromatic_slab::walk::Steps;
-use crate::estimators::spectral_furnace::page::WEIGHING;
+use super::spectral_furnace::{Right, Slip, Wrong};
+use super::target::{CHROMATIC_SLAB, CHROMATIC_SLAB_TRACKING};
+use super::{About, Mutant, Target, with};
+use crate::estimators::chromatic::{WEIGHING, draw};
 use crate::problems::ChromaticSlab;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
+use crate::theory::spectral::Chance;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<ChromaticSlab>> {
-    let of = |name, bug, slip: Slip| {
-        let about = About { name, bug, target: CHROMATIC_SLAB, check: "mean" };
-        let right = SpectralMis { heroes: Heroes::Uniform };
+    let of = |name, bug, target: Target, slip: Slip| {
+        let about = About { name, bug, target, check: "mean" };
+        let walker = if target == CHROMATIC_SLAB {
+            Walker::Balanced(Heroes::Uniform)
+        } else {
+            Walker::Together(Some(Chance::Average))
+        };
+        let right = Right(walker.clone());
         Mutant::new(
             about,
-            with(Wrong(slip), |wrong, setup, medium, rng| balanced(wrong, (&Heroes::Uniform, wrong.weighing()), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| balanced(right, (&right.heroes, WEIGHING), setup, medium, rng)),
+            with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| draw(right, (&right.0, WEIGHING), setup, medium, rng)),
         )
     };
     vec![
-        of("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", Slip::NullsLeftOut),
-        of("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", Slip::OtherMajorant),
-        of("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", Slip::PhaseOfHero),
-        of("chromatic-slab-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", Slip::AlbedoMissing),
-        of("chromatic-slab-dropped", "the last channel is missing from the denominator", Slip::Dropped),
-        of("chromatic-slab-exit-missing", "the transmittance of the last flight is missing from all densities", Slip::ExitMissing),
-        of("chromatic-slab-upright", "the transmittance of a flight is that of its depth, not of its length", Slip::Upright),
+        of("chromatic-slab-nulls-left-out", "null collisions are left out of all densities", CHROMATIC_SLAB, Slip::NullsLeftOut),
+        of("chromatic-slab-other-majorant", "the ratio of every channel is taken with the hero's σ̂", CHROMATIC_SLAB, Slip::OtherMajorant),
+        of("chromatic-slab-phase-of-hero", "every channel has the phase function of the hero", CHROMATIC_SLAB, Slip::PhaseOfHero),
+        of("chromatic-slab-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", CHROMATIC_SLAB, Slip::AlbedoMissing),
+        of("chromatic-slab-dropped", "the last channel is missing from the denominator", CHROMATIC_SLAB, Slip::Dropped),
+        of("chromatic-slab-exit-missing", "the transmittance of the last flight is missing from all densities", CHROMATIC_SLAB, Slip::ExitMissing),
+        of("chromatic-slab-upright", "the transmittance of a flight is that of its depth, not of its length", CHROMATIC_SLAB, Slip::Upright),
+        of("chromatic-slab-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", CHROMATIC_SLAB_TRACKING, Slip::NullsLeftOut),
+        of("chromatic-slab-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", CHROMATIC_SLAB_TRACKING, Slip::AlbedoMissing),
     ]
-}
-
-impl Steps for Wrong {
-    fn flown(&self, depth: f64, cosine: f64) -> f64 {
-        if self.0 == Slip::Upright { depth.abs() } else { depth / cosine }
-    }
 }

@@ -6,36 +6,43 @@
 //!
 //! Most of them keep `Σ w_λ X_λ = 1`: only the channels apart tell.
 
-use super::target::SPECTRAL_FURNACE;
-use super::{About, Mutant, with};
-use crate::estimators::spectral_furnace::page::{WEIGHING, balanced};
-use crate::estimators::spectral_furnace::spectral_mis::SpectralMis;
-use crate::estimators::spectral_furnace::walk::Steps;
+use super::target::{SPECTRAL_FURNACE, SPECTRAL_FURNACE_TRACKING};
+use super::{About, Mutant, Target, with};
+use crate::estimators::chromatic::{Steps, WEIGHING, draw};
 use crate::kernels::hero::{LastPiece, Weighing};
 use crate::problems::SpectralFurnace;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
 use crate::theory::particle::Event;
+use crate::theory::spectral::Chance;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
-    let of = |name, bug, slip: Slip| {
-        let about = About { name, bug, target: SPECTRAL_FURNACE, check: "mean" };
-        let right = SpectralMis { heroes: Heroes::Uniform };
+    let of = |name, bug, target: Target, slip: Slip| {
+        let about = About { name, bug, target, check: "mean" };
+        let walker = if target == SPECTRAL_FURNACE {
+            Walker::Balanced(Heroes::Uniform)
+        } else {
+            Walker::Together(Some(Chance::Maximum))
+        };
+        let right = Right(walker.clone());
         Mutant::new(
             about,
-            with(Wrong(slip), |wrong, setup, _, rng| balanced(wrong, (&Heroes::Uniform, wrong.weighing()), setup, rng)),
-            with(right, |right, setup, _, rng| balanced(right, (&right.heroes, WEIGHING), setup, rng)),
+            with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| draw(right, (&right.0, WEIGHING), setup, medium, rng)),
         )
     };
     vec![
-        of("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", Slip::NullsLeftOut),
-        of("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", Slip::OtherMajorant),
-        of("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", Slip::PhaseOfHero),
-        of("spectral-furnace-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", Slip::AlbedoMissing),
-        of("spectral-furnace-absorbed-whole", "an absorption multiplies f by r, not by r (1 − a)", Slip::AbsorbedWhole),
-        of("spectral-furnace-dropped", "the last channel is missing from the denominator", Slip::Dropped),
-        of("spectral-furnace-exit-missing", "the transmittance of the last flight is missing from all densities", Slip::ExitMissing),
+        of("spectral-furnace-nulls-left-out", "null collisions are left out of all densities", SPECTRAL_FURNACE, Slip::NullsLeftOut),
+        of("spectral-furnace-other-majorant", "the ratio of every channel is taken with the hero's σ̂", SPECTRAL_FURNACE, Slip::OtherMajorant),
+        of("spectral-furnace-phase-of-hero", "every channel has the phase function of the hero", SPECTRAL_FURNACE, Slip::PhaseOfHero),
+        of("spectral-furnace-albedo-missing", "a scattering multiplies f by r p(cos θ), without the albedo", SPECTRAL_FURNACE, Slip::AlbedoMissing),
+        of("spectral-furnace-absorbed-whole", "an absorption multiplies f by r, not by r (1 − a)", SPECTRAL_FURNACE, Slip::AbsorbedWhole),
+        of("spectral-furnace-dropped", "the last channel is missing from the denominator", SPECTRAL_FURNACE, Slip::Dropped),
+        of("spectral-furnace-exit-missing", "the transmittance of the last flight is missing from all densities", SPECTRAL_FURNACE, Slip::ExitMissing),
+        of("spectral-furnace-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", SPECTRAL_FURNACE_TRACKING, Slip::NullsLeftOut),
+        of("spectral-furnace-tracking-albedo-missing", "spectral tracking multiplies by r p(cos θ), without the albedo, where it scatters", SPECTRAL_FURNACE_TRACKING, Slip::AlbedoMissing),
     ]
 }
 
@@ -54,11 +61,19 @@ pub(super) enum Slip {
 }
 
 /// The steps of a walk with one slip.
-pub(super) struct Wrong(pub(super) Slip);
+pub(super) struct Wrong {
+    pub(super) slip: Slip,
+    pub(super) walker: Walker,
+}
+
+/// The right walk.
+pub(super) struct Right(pub(super) Walker);
+
+impl Steps for Right {}
 
 impl Wrong {
     pub(super) fn weighing(&self) -> Weighing {
-        match self.0 {
+        match self.slip {
             Slip::Dropped => Weighing { missing: 1, ..WEIGHING },
             Slip::ExitMissing => Weighing { last_piece: LastPiece::Nowhere, ..WEIGHING },
             _ => WEIGHING,
@@ -68,7 +83,7 @@ impl Wrong {
 
 impl Steps for Wrong {
     fn factor(&self, event: Event, ratio: f64, albedo: f64, density: f64) -> f64 {
-        match (self.0, event) {
+        match (self.slip, event) {
             (Slip::NullsLeftOut, Event::Transmitted) => 1.0,
             (Slip::AlbedoMissing, Event::Scattered) => ratio * density,
             (Slip::AbsorbedWhole, Event::Absorbed) => ratio,
@@ -79,10 +94,14 @@ impl Steps for Wrong {
     }
 
     fn majorant_of(&self, channel: usize, hero: usize) -> usize {
-        if self.0 == Slip::OtherMajorant { hero } else { channel }
+        if self.slip == Slip::OtherMajorant { hero } else { channel }
     }
 
     fn phase_of(&self, channel: usize, hero: usize) -> usize {
-        if self.0 == Slip::PhaseOfHero { hero } else { channel }
+        if self.slip == Slip::PhaseOfHero { hero } else { channel }
+    }
+
+    fn flown(&self, depth: f64, cosine: f64) -> f64 {
+        if self.slip == Slip::Upright { depth.abs() } else { depth / cosine }
     }
 }

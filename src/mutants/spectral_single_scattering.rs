@@ -4,25 +4,36 @@
 //! X_λ = q_λ/Σ_h w_h q_h · p_λ(cos θ) Φ/(4π r²) T̂_λ
 //! ```
 
-use super::target::{SPECTRAL_SINGLE_EXACT, SPECTRAL_SINGLE_RATIO};
+use super::target::{
+    SPECTRAL_SINGLE_EXACT, SPECTRAL_SINGLE_HERO, SPECTRAL_SINGLE_RATIO, SPECTRAL_SINGLE_TRACKING,
+};
 use super::{About, Mutant, Target, with};
 use crate::estimators::spectral_single_scattering::Shadow;
-use crate::estimators::spectral_single_scattering::spectral_mis::SpectralMis;
-use crate::estimators::spectral_single_scattering::walk::{Steps, balanced};
+use crate::estimators::spectral_single_scattering::walk::{Steps, draw};
 use crate::problems::SpectralSingleScattering;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
+use crate::theory::spectral::Chance;
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
     let of = |name, bug, target: Target, slip: Slip| {
         let about = About { name, bug, target, check: "mean" };
-        let shadow = if target == SPECTRAL_SINGLE_EXACT { Shadow::Exact } else { Shadow::Ratio };
-        let right = SpectralMis { heroes: Heroes::Uniform, shadow };
+        let (walker, shadow) = if target == SPECTRAL_SINGLE_EXACT {
+            (Walker::Balanced(Heroes::Uniform), Shadow::Exact)
+        } else if target == SPECTRAL_SINGLE_TRACKING {
+            (Walker::Together(Some(Chance::Average)), Shadow::Exact)
+        } else if target == SPECTRAL_SINGLE_HERO {
+            (Walker::Hero(Heroes::Given(vec![0.3, 0.3, 0.4])), Shadow::Ratio)
+        } else {
+            (Walker::Balanced(Heroes::Uniform), Shadow::Ratio)
+        };
+        let right = Right { walker: walker.clone(), shadow };
         Mutant::new(
             about,
-            with(Wrong { slip, shadow }, |wrong, setup, medium, rng| balanced(wrong, (&Heroes::Uniform, wrong.shadow), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| balanced(right, (&right.heroes, right.shadow), setup, medium, rng)),
+            with(Wrong { slip, shadow, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.shadow), setup, medium, rng)),
+            with(right, |right, setup, medium, rng| draw(right, (&right.walker, right.shadow), setup, medium, rng)),
         )
     };
     vec![
@@ -32,8 +43,19 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         of("spectral-single-shadow-of-hero", "every channel has the transmittance of the hero's shadow ray", SPECTRAL_SINGLE_EXACT, Slip::ShadowOfHero),
         of("spectral-single-tracked-by-hero", "on tracked shadow rays every channel has the weight of the hero", SPECTRAL_SINGLE_RATIO, Slip::ShadowOfHero),
         of("spectral-single-shadow-not-dense", "the collisions of a shadow ray are left out of the densities of other heroes", SPECTRAL_SINGLE_RATIO, Slip::ShadowNotDense),
+        of("spectral-single-hero-shadow-not-dense", "a hero leaves the collisions of its shadow ray out of the other channels' weights", SPECTRAL_SINGLE_HERO, Slip::ShadowNotDense),
+        of("spectral-single-tracking-nulls-left-out", "spectral tracking divides by the chance of a null collision and multiplies by nothing", SPECTRAL_SINGLE_TRACKING, Slip::NullsLeftOut),
+        of("spectral-single-tracking-albedo-missing", "spectral tracking multiplies by r, not by r a, where it scatters", SPECTRAL_SINGLE_TRACKING, Slip::AlbedoMissing),
     ]
 }
+
+/// The right walk.
+struct Right {
+    walker: Walker,
+    shadow: Shadow,
+}
+
+impl Steps for Right {}
 
 /// What goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +71,7 @@ enum Slip {
 struct Wrong {
     slip: Slip,
     shadow: Shadow,
+    walker: Walker,
 }
 
 impl Steps for Wrong {

@@ -203,6 +203,18 @@ pub const SPECTRAL_SINGLE_EXACT: Target =
 /// Tracked shadow rays.
 pub const SPECTRAL_SINGLE_RATIO: Target =
     on("spectral-single-scattering/magnet", 3, "spectral-mis (ratio shadow)");
+/// The walk of a hero without multiple importance sampling, tracked shadow rays.
+pub const SPECTRAL_SINGLE_HERO: Target =
+    on("spectral-single-scattering/without-mis", 1, "hero (ratio shadow, hero 0.3 0.3 0.4)");
+/// All channels together.
+pub const SPECTRAL_SINGLE_TRACKING: Target =
+    on("spectral-single-scattering/without-mis", 2, "spectral-tracking (exact shadow, average)");
+/// All channels together in a slab.
+pub const CHROMATIC_SLAB_TRACKING: Target =
+    on("chromatic-slab/like-colours", 3, "spectral-tracking (average)");
+/// All channels together in a furnace.
+pub const SPECTRAL_FURNACE_TRACKING: Target =
+    on("spectral-furnace/like-colours", 4, "spectral-tracking (maximum)");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a slab, light from aslant.
 pub const CHROMATIC_SLAB: Target = on("chromatic-slab/three-colours", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a furnace.

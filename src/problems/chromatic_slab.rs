@@ -29,6 +29,7 @@ use super::spectral_rod::{Colours, Values};
 use super::{Problem, spectral_furnace};
 use crate::catalogue::Settings;
 use crate::media::{Body, Medium};
+use crate::phase::Phase;
 
 /// A slab in which every channel has a medium of its own.
 pub struct ChromaticSlab {
@@ -37,6 +38,13 @@ pub struct ChromaticSlab {
     pub colours: Colours,
     /// Light, the same in all channels, and the phase function of each.
     pub incidences: Vec<Incidence>,
+}
+
+impl ChromaticSlab {
+    /// The phase functions of all channels.
+    pub fn phases(&self) -> Vec<Phase> {
+        self.incidences.iter().map(|incidence| incidence.phase).collect()
+    }
 }
 
 impl Problem for ChromaticSlab {

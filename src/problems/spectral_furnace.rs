@@ -49,6 +49,8 @@ pub struct Channel {
 pub struct SpectralFurnace {
     /// The medium of each channel.
     pub channels: Vec<Channel>,
+    /// Their albedos.
+    pub albedos: Vec<f64>,
     /// Where all of them are.
     pub bounds: Bounds,
     /// Where the ray enters the bounds, or begins within them.
@@ -101,7 +103,7 @@ pub fn read_channels(body: Option<&Body>, settings: &Settings) -> Option<Vec<Cha
 impl SpectralFurnace {
     /// What a draw scores.
     #[inline(always)]
-    pub fn values(&self, at: [f64; MOST_CHANNELS]) -> Values {
+    pub fn scored(&self, at: [f64; MOST_CHANNELS]) -> Values {
         Values { at, count: self.channels.len() }
     }
 }
@@ -129,7 +131,9 @@ impl Problem for SpectralFurnace {
             return None;
         }
         let media = bodies.iter().map(Body::medium).collect();
-        Some(Self { channels, bounds, entry: ray.at(inside.from), direction: ray.direction, media })
+        let albedos = channels.iter().map(|channel| channel.albedo).collect();
+        let (entry, direction) = (ray.at(inside.from), ray.direction);
+        Some(Self { channels, albedos, bounds, entry, direction, media })
     }
 
     fn medium(&self) -> &Medium {

@@ -36,6 +36,8 @@ pub type Values = super::Values<MOST_CHANNELS>;
 pub struct SpectralSingleScattering {
     /// Each channel by itself.
     pub channels: Vec<Arc<SingleScattering>>,
+    /// Their albedos.
+    pub albedos: Vec<f64>,
     media: Vec<Medium>,
 }
 
@@ -72,7 +74,8 @@ impl Problem for SpectralSingleScattering {
         }
         let channels = channels.ok()?;
         let media = channels.iter().map(|channel| channel.medium().clone()).collect();
-        Some(Self { channels, media })
+        let albedos = scatterers.iter().map(|channel| channel.albedo).collect();
+        Some(Self { channels, albedos, media })
     }
 
     fn medium(&self) -> &Medium {

@@ -3,6 +3,9 @@
 use super::{Refusal, SpectralChannel};
 use crate::catalogue::rounded;
 
+/// A share of collisions below this is none.
+const TOUCHES: f64 = 1e-9;
+
 /// A constant σ̂ > 0 in each channel, and so few collisions that walks end.
 ///
 /// # Errors
@@ -54,4 +57,71 @@ pub fn require_majorants(channels: &[SpectralChannel]) -> Result<(), Refusal> {
         }
     }
     Ok(())
+}
+
+/// No hero lacks what happens in another channel: its σ̂ touches its σ_t nowhere where that of another channel does not,
+/// and, where walks scatter, its σ_t is 0 nowhere where that of another is not.
+///
+/// # Errors
+///
+/// The channel and the place, and whether the draws are biased or their variance is infinite.
+pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), Refusal> {
+    let real = |own: &SpectralChannel, t: f64| own.mesh.medium().extinction(t) / own.majorant;
+    let null = |own: &SpectralChannel, t: f64| 1.0 - real(own, t);
+    for (number, hero) in channels.iter().enumerate() {
+        let majorant = rounded(hero.majorant);
+        let room = Room {
+            share: &null,
+            needs: "σ̂ > σ_t of the hero wherever another channel has null collisions",
+            stretch: format!("σ̂ = σ_t = {majorant}"),
+            touch: format!("σ̂ = {majorant} touches σ_t"),
+        };
+        room.require(channels, number)?;
+        if scatters {
+            let room = Room {
+                share: &real,
+                needs: "σ_t > 0 of the hero wherever another channel scatters",
+                stretch: "σ_t = 0".into(),
+                touch: "σ_t comes down to 0".into(),
+            };
+            room.require(channels, number)?;
+        }
+    }
+    Ok(())
+}
+
+/// What a hero must have wherever another channel has it.
+struct Room<'a> {
+    /// Its share of collisions at a distance.
+    share: &'a dyn Fn(&SpectralChannel, f64) -> f64,
+    needs: &'static str,
+    /// What is said where it is missing on a stretch, and at a distance.
+    stretch: String,
+    touch: String,
+}
+
+impl Room<'_> {
+    fn require(&self, channels: &[SpectralChannel], number: usize) -> Result<(), Refusal> {
+        let (hero, Self { share, needs, stretch, touch }) = (&channels[number], self);
+        let is_open = |t: f64| channels.iter().any(|other| share(other, t) > TOUCHES);
+        let cuts: Vec<f64> =
+            channels.iter().flat_map(|c| c.mesh.panels().map(|panel| panel.span.from)).collect();
+        let cut = hero.mesh.refined(&cuts, &|_, _| Vec::new());
+        // Missing at every node of a panel: on a stretch.
+        let missing = cut.panels().find(|panel| {
+            panel.t.iter().all(|&t| share(hero, t) <= TOUCHES) && is_open(panel.span.middle())
+        });
+        let number = number + 1;
+        if let Some(panel) = missing {
+            let found =
+                format!("{stretch} in channel {number} on a stretch, which biases the others,");
+            return Err(Refusal::Inequality { needs, found, at: panel.span.from });
+        }
+        let least = cut.largest(|t, _| -share(hero, t));
+        if let Some((at, _)) = least.filter(|&(at, least)| -least <= TOUCHES && is_open(at)) {
+            let found = format!("{touch} in channel {number}: E[X²] is infinite");
+            return Err(Refusal::Inequality { needs: "a finite variance", found, at });
+        }
+        Ok(())
+    }
 }

@@ -3,6 +3,7 @@
 pub mod channels;
 pub mod domain;
 pub mod heroes;
+pub mod walker;
 
 use std::sync::Arc;
 

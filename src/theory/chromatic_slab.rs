@@ -4,6 +4,7 @@
 //! R_λ and T_λ    those of the slab of the channel λ, by adding and doubling
 //! independent    E[X_λ^k] = w_λ^{1−k} R_λ, or T_λ;  E[X_λ X_μ] = 0: a walk leaves once, and is of one channel
 //! balanced       0 ≤ X_λ ≤ 1/w_λ, so that E[X_λ²] ≤ R_λ/w_λ, or T_λ/w_λ
+//! relative to the density of one walker    E[X_λ²] bounded as in [`bound`]
 //! ```
 //!
 //! Lookups are those of the heroes' walks, mixed by their probabilities.
@@ -15,10 +16,13 @@ use super::prediction::Covariance;
 use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::slab::{self, Pieces, Walk};
+use super::spectral::bound::{self, Flight, Square};
+use super::spectral::rates::{Rates, Walk as Walker};
 use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction};
 use crate::media::Piecewise;
-use crate::numeric::Known;
+use crate::numeric::{Known, exponential_integrals};
 use crate::problems::ChromaticSlab;
+use crate::problems::slab::Light;
 use crate::problems::spectral_rod::End;
 
 /// The largest error of an exact answer, relative to it, that is worth drawing against.
@@ -90,6 +94,56 @@ impl<'a> Spectrum<'a> {
             Channel::bounded(truth, (truth.value + truth.error) / heroes[channel])
         });
         Prediction { channels, lookups: self.lookups(heroes), ..Prediction::default() }
+    }
+
+    /// Of all channels relative to the density of one walker, given bounds on `E[X²]`; lookups are known of heroes.
+    pub fn relative(&self, heroes: Option<&[f64]>, squares: &[f64]) -> Prediction {
+        let channels = self.channels(|truth, channel| Channel::bounded(truth, squares[channel]));
+        let lookups = heroes.and_then(|heroes| self.lookups(heroes));
+        Prediction { channels, lookups, ..Prediction::default() }
+    }
+
+    /// A bound on `E[X²]` of a channel where draws are relative to the density of a walker, Φ given.
+    ///
+    /// # Errors
+    ///
+    /// What the second moment is multiplied by between two scatterings where that is too much.
+    pub fn square(&self, walk: Walker, channel: usize, phi: f64) -> Result<f64, f64> {
+        let problem = self.problem;
+        let majorants =
+            self.media.iter().map(|(_, sampling)| sampling.single_value().unwrap_or_default());
+        let rates =
+            Rates { majorants: majorants.collect(), albedos: problem.colours.albedos.clone() };
+        let at = |t: f64| {
+            let here: Vec<f64> =
+                self.media.iter().map(|(mesh, _)| mesh.medium().extinction(t)).collect();
+            bound::square(&rates, walk, channel, &here, phi)
+        };
+        let ends =
+            self.media.iter().flat_map(|(mesh, _)| mesh.panels().map(|panel| panel.span.from));
+        let mesh = self.media[0].0.refined(&ends.collect::<Vec<f64>>(), &|_, _| Vec::new());
+        let nothing = bound::NOTHING * rates.majorants[0];
+        // Where nothing happens nothing is lost or gained.
+        let is_empty = |s: &Square| s.scattered == 0.0 && s.lost.abs() <= nothing;
+        let of = |f: &dyn Fn(Square) -> f64| {
+            let found = mesh.largest(|t, _| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
+            found.map_or(0.0, |(_, value)| value)
+        };
+        let gained = of(&|s| -s.lost);
+        let [largest, share] = [of(&|s| s.lost), of(&|s| s.scattered / s.lost)];
+        if gained > 0.0 || !share.is_finite() {
+            return Err(f64::INFINITY);
+        }
+        let deep = largest * mesh.support().length();
+        let flight = |leaves: f64| Flight { leaves, collides: 1.0 - leaves };
+        let first = match problem.incidences[0].light {
+            Light::Collimated(cosine) => flight((-deep / cosine).exp()),
+            Light::Diffuse => flight(0.0),
+        };
+        // The mean of e^{−x/|μ|} over all directions is least in the middle.
+        let is_isotropic = bound::are_isotropic(&problem.phases());
+        let then = flight(if is_isotropic { exponential_integrals(0.5 * deep)[1] } else { 0.0 });
+        bound::largest(first, then, [share, 0.0]).ok_or(share * then.collides)
     }
 
     /// Everything that is seen, by what is said of a truth and the channel it is of.

@@ -4,6 +4,7 @@
 //! E[X_λ] = 1 in every medium
 //! independent    E[X_λ^k] = w_λ^{1−k},  E[X_λ X_μ] = 0
 //! balanced       0 ≤ X_λ ≤ 1/w_λ, so that Var X_λ ≤ 1/w_λ − 1
+//! relative to the density of one walker    E[X_λ²] bounded as in [`super::spectral::bound`]
 //! ```
 //!
 //! The bound is that of any variable between 0 and b of mean m, `m (b − m)`: R. Bhatia, C. Davis, *A better bound on the
@@ -54,6 +55,16 @@ pub fn balanced(heroes: &[f64]) -> Prediction {
         }
         let unknown = channel(count, index, None, Tails::LIGHT);
         Channel { most_variance: Some(most), ..unknown }
+    });
+    Prediction { channels: channels.collect(), ..Prediction::default() }
+}
+
+/// Of all channels relative to the density of one walker, given bounds on `E[X²]`.
+pub fn relative(squares: &[f64]) -> Prediction {
+    let count = squares.len();
+    let channels = squares.iter().enumerate().map(|(index, square)| {
+        let unknown = channel(count, index, None, Tails::LIGHT);
+        Channel { most_variance: Some((square - 1.0).max(ROUNDING)), ..unknown }
     });
     Prediction { channels: channels.collect(), ..Prediction::default() }
 }

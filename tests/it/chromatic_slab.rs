@@ -3,9 +3,12 @@
 
 use trueflight::harness::record::{Row, Verdict};
 
-use crate::common::{mistakes, none, predicted, rows};
+use crate::common::{case, mistakes, none, predicted, rows};
+use crate::packets::{compare, fusing_levels};
 
 const THREE_COLOURS: &str = include_str!("../../cases/chromatic-slab/three-colours.toml");
+
+const LIKE: &str = include_str!("../../cases/chromatic-slab/like-colours.toml");
 
 fn of<'a>(rows: &'a [Row], estimator: &str) -> Vec<&'a Row> {
     rows.iter().filter(|row| row.estimator == estimator).collect()
@@ -61,6 +64,79 @@ fn channels_that_differ_in_albedo_alone_are_a_slab_of_coloured_scatterers() {
         near(drawn.predicted_lookups, known.predicted_lookups, 1e-6);
         near(drawn.variance, known.predicted_variance, 0.03);
     }
+}
+
+/// Where channels differ in their albedo alone, theory knows the variance of a hero and of spectral tracking in a slab of
+/// coloured scatterers: the bound is above it, and the draws have it.
+#[test]
+fn bounds_of_walks_relative_to_one_walker_are_above_their_variances() {
+    let rest = "span = [0, 0.8]\nalbedos = [0.8, 0.7, 0.6]\nincidence.diffuse = {}\nsampling.constant.value = 1.5
+        estimators = [{ hero = {} }, { spectral-tracking = {} },
+            { spectral-tracking = { probabilities = \"maximum\" } }]";
+    let medium = "{ constant.extinction = 1.2 }";
+    let chromatic = format!(
+        "title = \"t\"\ndraws = 800_000\n[problem.chromatic-slab]\nmedium = [{medium}, {medium}, {medium}]
+        phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\n{rest}"
+    );
+    let coloured = predicted(&format!(
+        "title = \"t\"\n[problem.spectral-slab]\nmedium.constant.extinction = 1.2\nphase.isotropic = {{}}\n{rest}"
+    ));
+    let drawn = rows(&chromatic, 800_000);
+    assert_eq!(drawn.len(), 3 * 6);
+    for (drawn, known) in drawn.iter().zip(&coloured) {
+        assert_eq!(drawn.verdict, Some(Verdict::Pass), "{}: {}", drawn.estimator, drawn.reason);
+        near(drawn.truth, known.truth, 1e-12);
+        // Null collisions are told apart from real ones here: the maximum then is another law.
+        if !drawn.estimator.contains("maximum") {
+            near(drawn.variance, known.predicted_variance, 0.03);
+        }
+    }
+}
+
+#[test]
+fn walks_without_a_bound_are_refused() {
+    let refused = [
+        (
+            LIKE,
+            "knots = [0, 1], values = [0.95, 1.05]",
+            "knots = [0, 1], values = [0.1, 1.05]",
+            "multiply E[X²] by up to",
+        ),
+        (
+            LIKE,
+            "knots = [0, 1], values = [0.95, 1.05]",
+            "knots = [0, 1], values = [0, 1.05]",
+            "E[X²] is infinite",
+        ),
+        (LIKE, "[0.7, 0.75, 0.8]", "[0.7, 0, 0.8]", "may gain without limit"),
+        (
+            THREE_COLOURS,
+            "{ spectral-mis = {} }",
+            "{ spectral-tracking = { sampling.constant.value = 2 } }",
+            "one phase function for all channels",
+        ),
+        (
+            LIKE,
+            "{ spectral-tracking = {} }",
+            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
+            "one σ̂ for all channels",
+        ),
+    ];
+    for (text, from, to, words) in refused {
+        let rows = predicted(&text.replacen(from, to, 1));
+        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
+        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
+    }
+}
+
+/// Packets are walks one by one, of every walker.
+#[test]
+fn walks_side_by_side_are_walks_one_by_one() {
+    let diffuse = LIKE.replace("incidence.collimated = { cosine = 0.8 }", "incidence.diffuse = {}");
+    let forward = LIKE.replace("isotropic = {}", "henyey-greenstein = { g = 0.4 }");
+    let cases = [("like", LIKE), ("diffuse", &diffuse), ("forward", &forward)];
+    let compared = compare(&cases.map(|(name, text)| case(name, text)));
+    assert!(fusing_levels().is_empty() || compared >= 21, "only {compared} compared");
 }
 
 fn draws_agree(draws: u64) {

@@ -6,6 +6,7 @@ use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../../cases/spectral-furnace/magnet.toml");
+const LIKE: &str = include_str!("../../cases/spectral-furnace/like-colours.toml");
 const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
 
 #[test]
@@ -45,6 +46,49 @@ fn one_channel_a_draw_costs_what_its_chance_says() {
     }
 }
 
+/// Walks without multiple importance sampling find 1, too, with a second moment below its bound.
+#[test]
+fn walks_relative_to_one_walker_find_the_walls() {
+    let rows = rows(LIKE, 400_000);
+    assert_eq!(rows.len(), 7 * 3);
+    for row in &rows {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+    }
+    let spread = |estimator: &str| {
+        let of = rows.iter().filter(|row| row.estimator == estimator);
+        of.map(|row| row.variance.expect("drawn")).fold(0.0, f64::max)
+    };
+    // Alike as the colours are, weights spread; the balance heuristic bounds them.
+    assert!(spread("spectral-mis") < spread("hero"));
+    assert!(spread("hero") < 0.2 && spread("spectral-tracking (maximum)") < 0.2);
+}
+
+#[test]
+fn walks_without_a_bound_are_refused() {
+    let refused = [
+        (LIKE, "extinction = 0.9", "extinction = 0.1", "multiply E[X²] by up to"),
+        (LIKE, "[0.7, 0.75, 0.8]", "[0.7, 0, 0.8]", "may gain without limit"),
+        (
+            LIKE,
+            "constant = { extinction = 1,",
+            "noise = { extinction = 1, octaves = 2, seed = 1,",
+            "σ_t varies",
+        ),
+        (LIKE, "{ g = 0.3 } }, ", "{ g = 0.2 } }, ", "one phase function for all channels"),
+        (
+            LIKE,
+            "{ spectral-tracking = {} }",
+            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
+            "one σ̂ for all channels",
+        ),
+    ];
+    for (text, from, to, words) in refused {
+        let rows = predicted(&text.replacen(from, to, 1));
+        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
+        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
+    }
+}
+
 /// Of one channel every draw is 1.
 #[test]
 fn one_channel_alone_is_certain() {
@@ -55,7 +99,7 @@ fn one_channel_alone_is_certain() {
         albedos = [0.5]
         phases = [{ isotropic = {} }]
         sampling.constant.value = 1.5
-        estimators = [{ independent = {} }, { spectral-mis = {} }]";
+        estimators = [{ independent = {} }, { spectral-mis = {} }, { hero = {} }, { spectral-tracking = {} }]";
     for row in rows(text, 20_000) {
         assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
     }
@@ -112,7 +156,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
     ];
     const PHASES: [&str; 3] =
         ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = -0.7 }"];
-    let mut cases = vec![case("ball", BALL), case("noise", NOISE)];
+    let mut cases = vec![case("ball", BALL), case("noise", NOISE), case("like", LIKE)];
     for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
         // Grids have boxes.
         let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
@@ -128,7 +172,8 @@ fn walks_side_by_side_are_walks_one_by_one() {
                 estimators = [{{ independent = {{}} }}, {{ spectral-mis = {{}} }},
                     {{ independent = {{ hero = [0.2, 0.8] }} }},
                     {{ spectral-mis = {{ hero = [0.7, 0.3],
-                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }}]",
+                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }},
+                    {{ spectral-tracking = {{ probabilities = \"history\" }} }}]",
                 PHASES[here], PHASES[there]
             );
             cases.push(case(&format!("{first} and {other}, body {body}"), &text));

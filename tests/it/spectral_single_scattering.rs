@@ -7,6 +7,8 @@ use crate::packets::{compare, fusing_levels};
 
 const BALL: &str = include_str!("../../cases/spectral-single-scattering/magnet.toml");
 
+const WITHOUT: &str = include_str!("../../cases/spectral-single-scattering/without-mis.toml");
+
 /// The second channel of [`BALL`] by itself.
 const SECOND: &str = "title = \"green\"
     [problem.single-scattering]
@@ -60,6 +62,46 @@ fn colour_noise_is_gone_for_the_same_lookups() {
     }
 }
 
+/// Walks without multiple importance sampling agree with all their moments, and spectral tracking that remembers scores
+/// what the balance heuristic scores.
+#[test]
+fn walks_relative_to_one_walker_agree_with_theory() {
+    let rows = rows(WITHOUT, 800_000);
+    assert_eq!(rows.len(), 7 * 3);
+    for row in &rows {
+        assert_eq!(row.verdict, Some(Verdict::Pass), "{}: {}", row.estimator, row.reason);
+        let is_bounded = row.estimator.contains("mis") || row.estimator.contains("history");
+        assert_eq!(row.predicted_variance.is_none(), is_bounded, "{}", row.estimator);
+    }
+    let lookups = |estimator: &str| second(&rows, estimator).predicted_lookups.expect("known");
+    assert!(lookups("spectral-tracking (exact shadow, maximum)") < lookups("hero (exact shadow)"));
+}
+
+/// Where one channel walks alone all of them are delta tracking.
+#[test]
+fn one_channel_is_delta_tracking() {
+    let alone = predicted(SECOND);
+    let text = "title = \"green\"
+        [problem.spectral-single-scattering]
+        volume = [{ constant = { extinction = 0.8, bounds.sphere = { centre = [0, 0, 0], radius = 1 } } }]
+        ray = { origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }
+        light = { position = [0.9, -0.3, 0.4], power = 10 }
+        albedos = [0.5]
+        phases = [{ isotropic = {} }]
+        sampling.constant.value = 1
+        estimators = [{ hero = {} }, { hero = { shadow = \"ratio\" } }, { spectral-tracking = {} },
+            { spectral-tracking = { probabilities = \"maximum\", shadow = \"ratio\" } }]";
+    for (row, number) in predicted(text).iter().zip([0, 1, 0, 1]) {
+        let own = &alone[number];
+        assert_eq!(row.truth, own.truth);
+        let lookups = [row.predicted_lookups, own.predicted_lookups].map(|x| x.expect("known"));
+        let variance = [row.predicted_variance, own.predicted_variance].map(|x| x.expect("known"));
+        for [found, expected] in [lookups, variance] {
+            assert!((found / expected - 1.0).abs() < 1e-10, "{}: {found}", row.estimator);
+        }
+    }
+}
+
 /// What is nearly never found is no reason to fail: behind a wall that one hero in 1e8 walks through there is light,
 /// of which pilots see nothing.
 #[test]
@@ -100,6 +142,31 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
         let said = mistakes(&BALL.replacen(from, to, 1)).expect("a mistake").render(false);
         assert!(said.contains(words), "{words}:\n{said}");
     }
+    let gaussian = "gaussian = { peak = 1.5, centre = [0, 0, 0.2], width = 0.9,";
+    let layers = "piecewise-constant = { breaks = [-1, 0, 1], values = [0, 1.5],";
+    let out_of_reach = [
+        (
+            "{ hero = {} }",
+            "{ hero = { sampling = [{ constant.value = 2 }, { constant.value = 0.9 }, { constant.value = 2 }] } }",
+            "σ̂ = σ_t = 0.900000 in channel 2 on a stretch, which biases the others",
+        ),
+        (gaussian, layers, "σ_t = 0 in channel 1 on a stretch, which biases the others"),
+        (
+            "knots = [-1, 1], values = [0.6, 1.3]",
+            "knots = [-1, 0, 1], values = [1.3, 0, 1.3]",
+            "E[X²] is infinite",
+        ),
+        (
+            "{ spectral-tracking = {} }",
+            "{ spectral-tracking = { sampling = [{ constant.value = 2 }, { constant.value = 2.1 }, { constant.value = 2 }] } }",
+            "σ̂ = 2.000000 and 2.100000",
+        ),
+    ];
+    for (from, to, words) in out_of_reach {
+        let rows = predicted(&WITHOUT.replacen(from, to, 1));
+        let reasons: Vec<&str> = rows.iter().map(|row| row.reason.as_str()).collect();
+        assert!(reasons.iter().any(|reason| reason.contains(words)), "{words}: {reasons:?}");
+    }
     let low = predicted(&BALL.replacen("constant.value = 1 }", "constant.value = 0.7 }", 1));
     let row = low.iter().find(|row| row.estimator == "spectral-mis (exact shadow)").expect("a row");
     let words = "σ̂ = 0.700000 and σ_t = 0.800000 in channel 2";
@@ -118,7 +185,7 @@ fn walks_side_by_side_are_walks_one_by_one() {
         "piecewise-linear = { knots = [-1, 0, 1], values = [0.8, 0.1, 1.9],",
         "grid = { random = { size = [3, 4, 3], seed = 5 }, extinction = 1.5,",
     ];
-    let mut cases = vec![case("ball", BALL)];
+    let mut cases = vec![case("ball", BALL), case("without", WITHOUT)];
     for (body, bounds) in [BALL_OF, BOX_OF].into_iter().enumerate() {
         // Grids have boxes.
         let fields = if body == 0 { &FIELDS[..4] } else { &FIELDS };
@@ -137,11 +204,17 @@ fn walks_side_by_side_are_walks_one_by_one() {
                     {{ independent = {{ shadow = \"ratio\", hero = [0.2, 0.8] }} }},
                     {{ spectral-mis = {{ shadow = \"ratio\" }} }},
                     {{ spectral-mis = {{ shadow = \"ratio\", hero = [0.7, 0.3],
-                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }}]"
+                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }},
+                    {{ hero = {{ hero = [0.6, 0.4], sampling.constant.value = 2.9 }} }},
+                    {{ hero = {{ shadow = \"ratio\",
+                        sampling = [{{ constant.value = 2.5 }}, {{ constant.value = 2.2 }}] }} }},
+                    {{ spectral-tracking = {{}} }},
+                    {{ spectral-tracking = {{ probabilities = \"maximum\", shadow = \"ratio\" }} }},
+                    {{ spectral-tracking = {{ probabilities = \"history\", shadow = \"ratio\" }} }}]"
             );
             cases.push(case(&format!("{first} and {other}, body {body}"), &text));
         }
     }
     let compared = compare(&cases);
-    assert!(fusing_levels().is_empty() || compared >= 90, "only {compared} compared");
+    assert!(fusing_levels().is_empty() || compared >= 180, "only {compared} compared");
 }

@@ -1,16 +1,26 @@
 //! Walks through a slab in which every channel has a medium of its own, all of them by one draw.
 
+pub mod hero;
 pub mod independent;
 pub mod packet;
-pub mod page;
 pub mod spectral_mis;
+pub mod spectral_tracking;
 pub mod walk;
 
+use fearless_simd::Level;
+
+use super::chromatic::{Chromatic, Left, Steps};
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
+use crate::kernels::packet::Request;
+use crate::media::Lookups;
+use crate::media::body::MOST_CHANNELS;
 use crate::problems::ChromaticSlab;
+use crate::problems::spectral_rod::{End, Values};
+use crate::rng::Stream;
 use crate::setup::channels;
-use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
+use crate::theory::Prediction;
 use crate::theory::chromatic_slab::Spectrum;
 
 /// For theory.
@@ -19,11 +29,8 @@ fn spectrum(setup: &Setup<ChromaticSlab>) -> Spectrum<'_> {
     Spectrum::new(&setup.problem, media.collect(), setup.laws)
 }
 
-/// One hero probability and a constant σ̂ ≥ σ_t for each channel, and answers that theory resolves.
-fn realisable(setup: &Setup<ChromaticSlab>, heroes: &Heroes) -> Result<(), Refusal> {
-    heroes.require(setup.channels.len())?;
-    channels::require_constants(&setup.channels)?;
-    channels::require_majorants(&setup.channels)?;
+/// Answers that theory resolves.
+fn realisable(setup: &Setup<ChromaticSlab>) -> Result<(), Refusal> {
     let Some(channel) = spectrum(setup).blurred() else { return Ok(()) };
     let needs = "reflectances and transmittances that adding and doubling resolve (|g| ≤ 0.93, a moderate τ)";
     let depth = rounded(setup.channels[channel].mesh.optical_depth().value);
@@ -32,8 +39,70 @@ fn realisable(setup: &Setup<ChromaticSlab>, heroes: &Heroes) -> Result<(), Refus
     Err(Refusal::mismatch(needs, found))
 }
 
+impl Chromatic for ChromaticSlab {
+    type End = End;
+
+    #[inline(always)]
+    fn walk(
+        steps: &impl Steps,
+        setup: &Setup<Self>,
+        walker: (&Walker, usize),
+        medium: &Lookups,
+        rng: &mut Stream,
+    ) -> Left<End> {
+        walk::walk(steps, setup, walker, medium, rng)
+    }
+
+    #[inline(always)]
+    fn values(&self, end: Option<End>, scores: &[f64; MOST_CHANNELS]) -> Values {
+        self.colours.values(end, scores)
+    }
+
+    fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
+        walker.require(&setup.channels)?;
+        channels::require_majorants(&setup.channels)?;
+        walker.require_phases(&setup.problem.phases())?;
+        realisable(setup)
+    }
+
+    fn squares(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+        if let Walker::Hero(_) = walker {
+            channels::require_room(&setup.channels, true)?;
+        }
+        let spectrum = spectrum(setup);
+        walker.squares(&setup.problem.phases(), |walk, channel, phi| {
+            spectrum.square(walk, channel, phi)
+        })
+    }
+
+    fn predict_independent(setup: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        spectrum(setup).independent(heroes)
+    }
+
+    fn predict_balanced(setup: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        spectrum(setup).balanced(heroes)
+    }
+
+    fn predict_relative(setup: &Setup<Self>, walker: &Walker, squares: &[f64]) -> Prediction {
+        let heroes = walker.heroes().map(|heroes| heroes.of(setup.channels.len()));
+        spectrum(setup).relative(heroes.as_deref(), squares)
+    }
+
+    fn packets<'a, const ALL: bool>(
+        level: Level,
+        walker: &Walker,
+        setup: &Setup<Self>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<ALL>(level, walker, setup, medium, request)
+    }
+}
+
 estimators! {
     ChromaticSlab:
     independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
     spectral_mis::SpectralMis,
 }

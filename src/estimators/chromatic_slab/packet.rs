@@ -22,8 +22,7 @@ use crate::numeric::pack::{self, Task};
 use crate::problems::ChromaticSlab;
 use crate::problems::slab::Light;
 use crate::problems::spectral_rod::{End, MOST};
-use crate::setup::heroes::Heroes;
-use crate::theory::ParticleRule;
+use crate::setup::walker::Walker;
 
 /// What a walk leaves beside its weights: its hero, its length, its lookups, and where it left.
 const REST: usize = 4;
@@ -33,16 +32,17 @@ const TRANSMITTED: f64 = 1.0;
 /// Nowhere.
 const ABSORBED: f64 = 2.0;
 
-/// The draws of a page on the hardware of a level, weighted over all heroes or not; a request is handed back where the
-/// hardware is too narrow.
-pub fn walks<'a, const BALANCED: bool>(
+/// The draws of a page on the hardware of a level, which score all channels or the hero's alone; a request is handed back
+/// where the hardware is too narrow.
+pub fn walks<'a, const ALL: bool>(
     level: Level,
-    heroes: &Heroes,
+    walker: &Walker,
     setup: &Setup<ChromaticSlab>,
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let (problem, media) = (&*setup.problem, Media::new(setup, heroes));
+    let (problem, media) =
+        (&*setup.problem, Media::new(setup, &walker.probabilities(setup.channels.len())));
     let mut paths = [0.0; MOST_CHANNELS];
     for (channel, own) in setup.channels.iter().enumerate() {
         paths[channel] = 1.0 / own.majorant;
@@ -51,11 +51,12 @@ pub fn walks<'a, const BALANCED: bool>(
     let page = Page {
         setup,
         media,
-        law: Law::new(heroes, media.count),
+        walker,
+        law: walker.heroes().map(|heroes| Law::new(heroes, media.count)),
         paths,
         scatterers: Scatterers::new(albedos.map(|(albedo, own)| (*albedo, own.phase))),
     };
-    let task = Walks::<BALANCED> { page: &page, medium, request };
+    let task = Walks::<ALL> { page: &page, medium, request };
     pack::on_wide(level, task).err().map(|task| task.request)
 }
 
@@ -63,19 +64,21 @@ pub fn walks<'a, const BALANCED: bool>(
 struct Page<'a> {
     setup: &'a Setup<ChromaticSlab>,
     media: Media,
-    law: Law,
+    walker: &'a Walker,
+    /// The law of the hero, if one is chosen.
+    law: Option<Law>,
     /// 1/σ̂ of each channel.
     paths: [f64; MOST_CHANNELS],
     scatterers: Scatterers,
 }
 
-struct Walks<'a, 'r, const BALANCED: bool> {
+struct Walks<'a, 'r, const ALL: bool> {
     page: &'a Page<'a>,
     medium: &'a Lookups<'a>,
     request: Request<'r>,
 }
 
-impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
+impl<const ALL: bool> Task for Walks<'_, '_, ALL> {
     type Output = ();
 
     #[inline(always)]
@@ -84,8 +87,8 @@ impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
         let Request { streams, count, buffer } = request;
         let (support, channels) = (page.setup.mesh.support(), page.media.count);
         let (zero, all) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, true));
-        let left = RefCell::new(Left::new(REST + if BALANCED { channels } else { 0 }, count));
-        let fresh = InSlab::<S, BALANCED> {
+        let left = RefCell::new(Left::new(REST + if ALL { channels } else { 0 }, count));
+        let fresh = InSlab::<S, ALL> {
             page,
             left: &left,
             keep: Keep::new(simd),
@@ -118,14 +121,14 @@ impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
             |places, found| bank::of_channels(simd, medium, channels, places, found),
             Request { streams, count, buffer: &mut *buffer },
         );
-        page.score::<S, BALANCED>(simd, &left.borrow(), Made::new(buffer, count));
+        page.score::<S, ALL>(simd, &left.borrow(), Made::new(buffer, count));
     }
 }
 
 impl Page<'_> {
     /// Makes draws of what walks have left.
     #[inline(always)]
-    fn score<S: Simd, const BALANCED: bool>(&self, simd: S, left: &Left, mut made: Made) {
+    fn score<S: Simd, const ALL: bool>(&self, simd: S, left: &Left, mut made: Made) {
         let seen = &self.setup.problem.colours.seen;
         let zero = f64x8::splat(simd, 0.0);
         let (mut found, mut values) = ([zero; MOST_CHANNELS], [zero; MOST]);
@@ -134,13 +137,15 @@ impl Page<'_> {
             let (hero, length) = (left.row(simd, 0, first), left.row(simd, 1, first));
             let (lookups, end) = (left.row(simd, 2, first), left.row(simd, 3, first));
             let mut defects = zero;
-            if BALANCED {
+            if ALL {
                 for (channel, found) in found.iter_mut().enumerate() {
                     *found = left.row(simd, REST + channel, first);
                 }
                 self.media.common(hero, [length, lookups], found);
-                let defect = balance(&self.media, found);
-                defects = Lane::select(end.below(zero.each(ABSORBED)), defect, zero);
+                if matches!(self.walker, Walker::Balanced(_)) {
+                    let defect = balance(&self.media, found);
+                    defects = Lane::select(end.below(zero.each(ABSORBED)), defect, zero);
+                }
             } else {
                 alone(&self.media, hero, found);
             }
@@ -157,7 +162,7 @@ impl Page<'_> {
 
 /// Eight walks.
 #[derive(Clone, Copy)]
-struct InSlab<'a, S: Simd, const BALANCED: bool> {
+struct InSlab<'a, S: Simd, const ALL: bool> {
     page: &'a Page<'a>,
     left: &'a RefCell<Left>,
     keep: Keep<S>,
@@ -180,13 +185,16 @@ struct InSlab<'a, S: Simd, const BALANCED: bool> {
     densities: Densities<S>,
 }
 
-impl<S: Simd, const BALANCED: bool> InSlab<'_, S, BALANCED> {
+impl<S: Simd, const ALL: bool> InSlab<'_, S, ALL> {
     /// Some walks begin.
     #[inline(always)]
     fn begin(&mut self, which: mask64x8<S>, numbers: &mut Numbers<S>) {
-        let (Page { setup, media, law, paths, scatterers }, keep) = (self.page, self.keep);
+        let (Page { setup, media, law, paths, scatterers, .. }, keep) = (self.page, self.keep);
         let (zero, count) = (self.from.each(0.0), media.count);
-        let hero = law.choose(numbers.uniform_where(which));
+        let hero = match law {
+            Some(law) => law.choose(numbers.uniform_where(which)),
+            None => zero,
+        };
         keep.put(&mut self.hero, which, hero);
         keep.put(&mut self.path, which, number_of_hero(hero, &paths[..count]));
         keep.put(&mut self.majorant, which, number_of_hero(hero, &media.majorants[..count]));
@@ -199,13 +207,13 @@ impl<S: Simd, const BALANCED: bool> InSlab<'_, S, BALANCED> {
         keep.put(&mut self.way, which, self.from);
         keep.put(&mut self.length, which, zero);
         keep.put(&mut self.lookups, which, zero);
-        if BALANCED {
+        if ALL {
             self.densities.begin(count, which);
         }
     }
 }
 
-impl<S: Simd, const BALANCED: bool> Particles<S> for InSlab<'_, S, BALANCED> {
+impl<S: Simd, const ALL: bool> Particles<S> for InSlab<'_, S, ALL> {
     type Found = [f64x8<S>; MOST_CHANNELS];
 
     #[inline(always)]
@@ -229,10 +237,12 @@ impl<S: Simd, const BALANCED: bool> Particles<S> for InSlab<'_, S, BALANCED> {
         self.length += deep / cosine;
         self.lookups += Lane::select(inside, one, zero);
         let own = self.densities.look(&page.media, self.hero, found);
-        let odds = ParticleRule::Analog.odds(own, self.albedo);
+        let by = (&page.scatterers, page.walker);
+        let chances = self.densities.chances(by, [own, self.albedo]);
+        let [scatters, passes, _] = chances;
         let number = numbers.uniform_where(inside);
-        let scattered = inside & number.below(odds.scatter);
-        let null = inside & !scattered & number.below(odds.scatter + odds.transmit);
+        let scattered = inside & number.below(scatters);
+        let null = inside & !scattered & number.below(scatters + passes);
         let mut deflection = one;
         if scattered.any_true() {
             deflection = page.scatterers.cosine(self.hero, numbers.uniform_where(scattered));
@@ -240,9 +250,9 @@ impl<S: Simd, const BALANCED: bool> Particles<S> for InSlab<'_, S, BALANCED> {
             let azimuth = Lane::cos(turns * std::f64::consts::TAU);
             keep.put(&mut self.cosine, scattered, turned(cosine, deflection, azimuth));
         }
-        if BALANCED {
+        if ALL {
             let events = Events { scattered, null, collided: inside };
-            self.densities.weigh(&page.scatterers, self.hero, events, deflection);
+            self.densities.weigh(by, self.hero, (events, chances), deflection);
         }
         self.goes_on = scattered | null;
         (!self.goes_on).to_bitmask()
@@ -255,7 +265,7 @@ impl<S: Simd, const BALANCED: bool> Particles<S> for InSlab<'_, S, BALANCED> {
         let face = Lane::select(zero.below(self.cosine), transmitted, reflected);
         let end = Lane::select(self.inside, zero.each(ABSORBED), face);
         let rest = [self.hero, self.length, self.lookups, end];
-        let weights = if BALANCED { &self.densities.weights[..self.page.media.count] } else { &[] };
+        let weights = if ALL { &self.densities.weights[..self.page.media.count] } else { &[] };
         self.left.borrow_mut().collect([&rest, weights], (ended, slots))
     }
 

@@ -6,12 +6,13 @@
 //!   f_λ ← f_λ (1 − r_λ),   f_λ r_λ (1 − a_λ),   f_λ r_λ a_λ p_λ(cos θ)
 //! ```
 //!
-//! f is the density of the walk in the channel λ and is kept relative to the hero's, see [`Path`]. The choice of the hero
+//! f is the density of the walk in the channel λ and is kept relative to the hero's, see [`Path`]. In spectral tracking all
+//! channels walk together through one σ̂ with one phase function: chances `P_e` decide, and f is relative to them. The choice of the hero
 //! takes one random number, diffuse light one, a flight one, a collision one, a scattering one for θ and one for the azimuth.
 
 use crate::estimators::Setup;
+use crate::estimators::chromatic::{Left, Steps};
 use crate::estimators::slab::walk::turned;
-use crate::estimators::spectral_furnace::walk::Steps as Collide;
 use crate::kernels::hero::Path;
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
@@ -20,37 +21,18 @@ use crate::problems::ChromaticSlab;
 use crate::problems::slab::Light;
 use crate::problems::spectral_rod::End;
 use crate::rng::Stream;
-use crate::theory::ParticleRule;
+use crate::setup::walker::Walker;
 use crate::theory::particle::Event;
-
-/// The steps of a walk that a known bug may replace.
-pub trait Steps: Collide {
-    /// The length of a flight that goes so deep.
-    #[inline(always)]
-    fn flown(&self, depth: f64, cosine: f64) -> f64 {
-        depth / cosine
-    }
-}
-
-/// What became of a hero.
-pub struct Left {
-    /// Where it left; `None` where it was absorbed.
-    pub end: Option<End>,
-    /// Its path.
-    pub path: Path,
-    /// Its tentative collisions.
-    pub lookups: u32,
-}
 
 /// Walks.
 #[inline(always)]
 pub fn walk(
     steps: &impl Steps,
     setup: &Setup<ChromaticSlab>,
+    (walker, hero): (&Walker, usize),
     medium: &Lookups,
-    hero: usize,
     rng: &mut Stream,
-) -> Left {
+) -> Left<End> {
     let (problem, support) = (&*setup.problem, setup.mesh.support());
     let (own, phase) = (&setup.channels[hero], &problem.incidences[hero].phase);
     let (albedos, count) = (&problem.colours.albedos, setup.channels.len());
@@ -83,15 +65,17 @@ pub fn walk(
             let majorant = setup.channels[steps.majorant_of(channel, hero)].majorant;
             *ratio = medium.channel(channel).extinction(cursor.t) / majorant;
         }
-        let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
-        let event = odds.decide(rng.uniform());
+        let chances = walker.chances(hero, &ratios[..count], albedos, &path.weights[..count]);
+        let event = chances.decide(rng.uniform());
         let mut deflection = 1.0;
         if event == Event::Scattered {
             deflection = phase.cosine(rng.uniform());
             let azimuth = Lane::cos(std::f64::consts::TAU * rng.uniform());
             cosine = turned(cosine, deflection, azimuth);
         }
-        path.collide(count, |channel| {
+        let density = if event == Event::Scattered { phase.value(deflection) } else { 1.0 };
+        let of_all = walker.together().map(|_| chances.of(event) * density);
+        path.collide(count, of_all, |channel| {
             let phase = &problem.incidences[steps.phase_of(channel, hero)].phase;
             steps.factor(event, ratios[channel], albedos[channel], phase.value(deflection))
         });

@@ -15,5 +15,4 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 6.
 
-/// One channel a draw.
-pub type Independent = super::page::OneHero<false>;
+pub use crate::estimators::chromatic::independent::Independent;

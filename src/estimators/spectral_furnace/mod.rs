@@ -1,32 +1,46 @@
 //! Walks into a furnace in several channels, all of them by one draw.
 
+pub mod hero;
 pub mod independent;
 pub mod packet;
-pub mod page;
 pub mod spectral_mis;
+pub mod spectral_tracking;
 pub mod walk;
 
+use fearless_simd::Level;
+
+use super::chromatic::{Chromatic, Left, Steps};
 use crate::catalogue::rounded;
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::geometry::Bounds;
+use crate::kernels::packet::Request;
+use crate::media::Lookups;
+use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralFurnace;
-use crate::setup::channels;
-use crate::setup::heroes::Heroes;
+use crate::problems::spectral_furnace::Values;
+use crate::rng::Stream;
+use crate::setup::walker::Walker;
+use crate::theory::spectral::bound::{self, Flight};
+use crate::theory::spectral::rates::Rates;
+use crate::theory::{Prediction, spectral_furnace as theory};
 
 /// More collisions than this straight through the volume are a mistake in the case.
 const MOST_COLLISIONS: f64 = 1e4;
 /// Bounds on σ_t are raised by a share like this, because lookups are rounded.
 const SLACK: f64 = 1e-9;
 
-/// One hero probability and a constant σ̂ ≥ σ_t for each channel, everywhere in the volume.
-fn realisable(setup: &Setup<SpectralFurnace>, heroes: &Heroes) -> Result<(), Refusal> {
-    heroes.require(setup.channels.len())?;
-    channels::require_constants(&setup.channels)?;
-    let across = match setup.problem.bounds {
+/// The length of the longest straight line in the volume.
+fn across(bounds: &Bounds) -> f64 {
+    match bounds {
         Bounds::Everywhere => f64::INFINITY,
         Bounds::Sphere { radius, .. } => 2.0 * radius,
         Bounds::Box(within) => (within.high - within.low).norm(),
-    };
+    }
+}
+
+/// A constant σ̂ ≥ σ_t for each channel, everywhere in the volume.
+fn realisable(setup: &Setup<SpectralFurnace>) -> Result<(), Refusal> {
+    let across = across(&setup.problem.bounds);
     let within = setup.problem.bounds.enclosing_box();
     let channels = setup.channels.iter().zip(&setup.problem.channels);
     for (number, (channel, medium)) in (1..).zip(channels) {
@@ -45,8 +59,84 @@ fn realisable(setup: &Setup<SpectralFurnace>, heroes: &Heroes) -> Result<(), Ref
     Ok(())
 }
 
+impl Chromatic for SpectralFurnace {
+    type End = ();
+
+    #[inline(always)]
+    fn walk(
+        steps: &impl Steps,
+        setup: &Setup<Self>,
+        walker: (&Walker, usize),
+        _: &Lookups,
+        rng: &mut Stream,
+    ) -> Left<()> {
+        walk::walk(steps, setup, walker, rng)
+    }
+
+    #[inline(always)]
+    fn values(&self, _: Option<()>, scores: &[f64; MOST_CHANNELS]) -> Values {
+        self.scored(*scores)
+    }
+
+    fn require(setup: &Setup<Self>, walker: &Walker) -> Result<(), Refusal> {
+        walker.require(&setup.channels)?;
+        let phases: Vec<_> = setup.problem.channels.iter().map(|channel| channel.phase).collect();
+        walker.require_phases(&phases)?;
+        realisable(setup)
+    }
+
+    fn squares(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+        let problem = &setup.problem;
+        let values = problem.channels.iter().map(|channel| channel.volume.single_value());
+        let Some(extinctions) = values.collect::<Option<Vec<f64>>>() else {
+            let needs = "one σ_t in each channel: of fields, theory does not bound the variance";
+            return Err(Refusal::mismatch(needs, "σ_t varies"));
+        };
+        let majorants = setup.channels.iter().map(|channel| channel.majorant).collect();
+        let rates = Rates { majorants, albedos: problem.albedos.clone() };
+        let phases: Vec<_> = problem.channels.iter().map(|channel| channel.phase).collect();
+        let across = across(&problem.bounds);
+        walker.squares(&phases, |walk, channel, phi| {
+            let square = bound::square(&rates, walk, channel, &extinctions, phi);
+            let shorter = bound::are_isotropic(&phases) && square.lost > 0.0;
+            // Lines from a place in a ball are at most as long as a radius on average, and e^{−x} is convex.
+            let then = match problem.bounds {
+                Bounds::Sphere { radius, .. } if shorter => radius,
+                _ => across,
+            };
+            let [first, then] = [across, then].map(|length| Flight::of(square.lost, length));
+            bound::largest(first, then, [square.scattered, square.absorbed])
+                .ok_or(square.scattered * then.collides)
+        })
+    }
+
+    fn predict_independent(_: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        theory::independent(heroes)
+    }
+
+    fn predict_balanced(_: &Setup<Self>, heroes: &[f64]) -> Prediction {
+        theory::balanced(heroes)
+    }
+
+    fn predict_relative(_: &Setup<Self>, _: &Walker, squares: &[f64]) -> Prediction {
+        theory::relative(squares)
+    }
+
+    fn packets<'a, const ALL: bool>(
+        level: Level,
+        walker: &Walker,
+        setup: &Setup<Self>,
+        _: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        packet::walks::<ALL>(level, walker, setup, request)
+    }
+}
+
 estimators! {
     SpectralFurnace:
     independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
     spectral_mis::SpectralMis,
 }

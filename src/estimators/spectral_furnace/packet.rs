@@ -29,8 +29,7 @@ use crate::numeric::twin::PAIR;
 use crate::numeric::{Lane, Twin};
 use crate::problems::SpectralFurnace;
 use crate::rng::LANES;
-use crate::setup::heroes::Heroes;
-use crate::theory::ParticleRule;
+use crate::setup::walker::Walker;
 
 /// What a walk leaves beside its weights: its hero, its length, its lookups.
 const REST: usize = 3;
@@ -38,34 +37,38 @@ const REST: usize = 3;
 /// So near to the boundary of a ball, in radii, doubles may not tell on which side a grazing flight ends.
 const DOUBTFUL: f64 = 1e-6;
 
-/// The draws of a page on the hardware of a level, weighted over all heroes or not; a request is handed back where the
-/// hardware is too narrow.
-pub fn walks<'a, const BALANCED: bool>(
+/// The draws of a page on the hardware of a level, which score all channels or the hero's alone; a request is handed back
+/// where the hardware is too narrow.
+pub fn walks<'a, const ALL: bool>(
     level: Level,
-    heroes: &Heroes,
+    walker: &Walker,
     setup: &Setup<SpectralFurnace>,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let world = World::<BALANCED>::new(level, heroes, setup);
+    let world = World::<ALL>::new(level, walker, setup);
     pack::on_wide(level, Walks { world: &world, request }).err().map(|task| task.request)
 }
 
 /// What all walks share.
-struct World<'a, const BALANCED: bool> {
+struct World<'a, const ALL: bool> {
     problem: &'a SpectralFurnace,
-    law: Law,
+    walker: &'a Walker,
+    /// The law of the hero, if one is chosen.
+    law: Option<Law>,
     media: Media,
     scatterers: Scatterers,
     extinctions: Vec<Batches<'a>>,
 }
 
-impl<'a, const BALANCED: bool> World<'a, BALANCED> {
-    fn new(level: Level, heroes: &Heroes, setup: &'a Setup<SpectralFurnace>) -> Self {
-        let (problem, media) = (&*setup.problem, Media::new(setup, heroes));
+impl<'a, const ALL: bool> World<'a, ALL> {
+    fn new(level: Level, walker: &'a Walker, setup: &'a Setup<SpectralFurnace>) -> Self {
+        let (problem, media) =
+            (&*setup.problem, Media::new(setup, &walker.probabilities(setup.channels.len())));
         let channels = problem.channels.iter();
         Self {
             problem,
-            law: Law::new(heroes, media.count),
+            walker,
+            law: walker.heroes().map(|heroes| Law::new(heroes, media.count)),
             media,
             scatterers: Scatterers::new(channels.clone().map(|own| (own.albedo, own.phase))),
             extinctions: channels.map(|channel| channel.volume.batches(level, false)).collect(),
@@ -74,16 +77,16 @@ impl<'a, const BALANCED: bool> World<'a, BALANCED> {
 
     /// How many numbers a walk leaves.
     fn left(&self) -> usize {
-        if BALANCED { self.media.count + REST } else { REST }
+        if ALL { self.media.count + REST } else { REST }
     }
 }
 
-struct Walks<'a, 'r, const BALANCED: bool> {
-    world: &'a World<'a, BALANCED>,
+struct Walks<'a, 'r, const ALL: bool> {
+    world: &'a World<'a, ALL>,
     request: Request<'r>,
 }
 
-impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
+impl<const ALL: bool> Task for Walks<'_, '_, ALL> {
     type Output = ();
 
     #[inline(always)]
@@ -143,9 +146,9 @@ struct Pack<S: Simd> {
 
 impl<S: Simd> Pack<S> {
     #[inline(always)]
-    fn begin<const BALANCED: bool>(
+    fn begin<const ALL: bool>(
         simd: S,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         numbers: Numbers<S>,
         slots: Slots,
     ) -> Self {
@@ -174,10 +177,13 @@ impl<S: Simd> Pack<S> {
 
     /// Those that have ended begin the next walk.
     #[inline(always)]
-    fn begin_anew<const BALANCED: bool>(&mut self, world: &World<BALANCED>, which: mask64x8<S>) {
+    fn begin_anew<const ALL: bool>(&mut self, world: &World<ALL>, which: mask64x8<S>) {
         let (World { problem, law, media, scatterers, .. }, keep) = (world, self.keep);
         let zero = self.length.each(0.0);
-        let hero = law.choose(self.numbers.uniform_where(which));
+        let hero = match law {
+            Some(law) => law.choose(self.numbers.uniform_where(which)),
+            None => zero,
+        };
         let majorant = number_of_hero(hero, &media.majorants[..media.count]);
         let albedo = number_of_hero(hero, &scatterers.albedos[..media.count]);
         keep.put(&mut self.hero, which, hero);
@@ -190,7 +196,7 @@ impl<S: Simd> Pack<S> {
         }
         keep.put(&mut self.length, which, zero);
         keep.put(&mut self.collisions, which, zero);
-        if BALANCED {
+        if ALL {
             self.densities.begin(media.count, which);
         }
     }
@@ -211,37 +217,35 @@ impl<S: Simd> Pack<S> {
 
     /// What becomes of each, given σ_t of all channels; answers whose walks end.
     #[inline(always)]
-    fn collide<const BALANCED: bool>(
+    fn collide<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         found: &[f64x8<S>; MOST_CHANNELS],
     ) -> mask64x8<S> {
         let (inside, one) = (self.inside, self.length.each(1.0));
         let collisions = self.collisions + 1.0;
         self.keep.put(&mut self.collisions, inside, collisions);
         let own = self.densities.look(&world.media, self.hero, found);
-        let odds = ParticleRule::Analog.odds(own, self.albedo);
+        let by = (&world.scatterers, world.walker);
+        let chances = self.densities.chances(by, [own, self.albedo]);
+        let [scatters, passes, _] = chances;
         let number = self.numbers.uniform_where(inside);
-        let is_scattered = inside & number.below(odds.scatter);
-        let is_null = inside & !is_scattered & number.below(odds.scatter + odds.transmit);
+        let is_scattered = inside & number.below(scatters);
+        let is_null = inside & !is_scattered & number.below(scatters + passes);
         let mut cosine = one;
         if is_scattered.any_true() {
             cosine = self.scatter(world, is_scattered);
         }
-        if BALANCED {
+        if ALL {
             let events = Events { scattered: is_scattered, null: is_null, collided: inside };
-            self.densities.weigh(&world.scatterers, self.hero, events, cosine);
+            self.densities.weigh(by, self.hero, (events, chances), cosine);
         }
         !(is_scattered | is_null)
     }
 
     /// Some turn; answers by which cosine.
     #[inline(always)]
-    fn scatter<const BALANCED: bool>(
-        &mut self,
-        world: &World<BALANCED>,
-        which: mask64x8<S>,
-    ) -> f64x8<S> {
+    fn scatter<const ALL: bool>(&mut self, world: &World<ALL>, which: mask64x8<S>) -> f64x8<S> {
         let (scatterers, hero, direction) = (&world.scatterers, self.hero, self.direction);
         let number = self.numbers.uniform_where(which);
         let turns = self.numbers.uniform_where(which);
@@ -261,14 +265,14 @@ impl<S: Simd> Pack<S> {
 
     /// Walks that have ended leave what draws are made of; answers whose last ones these are.
     #[inline(always)]
-    fn leave<const BALANCED: bool>(
+    fn leave<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         ended: mask64x8<S>,
         left: &mut Left,
     ) -> u64 {
         let rest = [self.hero, self.length, self.collisions];
-        let weights = if BALANCED { &self.densities.weights[..world.media.count] } else { &[] };
+        let weights = if ALL { &self.densities.weights[..world.media.count] } else { &[] };
         let ends = (ended.to_bitmask(), &mut self.slots);
         left.collect([&rest, weights], ends)
     }
@@ -297,12 +301,7 @@ fn end_beyond<S: Simd>(
 
 /// Makes draws of what walks have left.
 #[inline(always)]
-fn score<S: Simd, const BALANCED: bool>(
-    simd: S,
-    world: &World<BALANCED>,
-    left: &Left,
-    mut made: Made,
-) {
+fn score<S: Simd, const ALL: bool>(simd: S, world: &World<ALL>, left: &Left, mut made: Made) {
     let (media, zero) = (&world.media, f64x8::splat(simd, 0.0));
     let mut found = [zero; MOST_CHANNELS];
     let found = &mut found[..media.count];
@@ -310,12 +309,14 @@ fn score<S: Simd, const BALANCED: bool>(
         let (hero, length) = (left.row(simd, 0, first), left.row(simd, 1, first));
         let lookups = left.row(simd, 2, first);
         let mut defects = zero;
-        if BALANCED {
+        if ALL {
             for (channel, found) in found.iter_mut().enumerate() {
                 *found = left.row(simd, REST + channel, first);
             }
             media.common(hero, [length, lookups], found);
-            defects = balance(media, found);
+            if matches!(world.walker, Walker::Balanced(_)) {
+                defects = balance(media, found);
+            }
         } else {
             alone(media, hero, found);
         }

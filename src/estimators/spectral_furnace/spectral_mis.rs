@@ -15,5 +15,8 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), section 5.1, Algorithm 1.
 
+use crate::estimators::chromatic::all_channels::AllChannels;
+use crate::setup::walker::BALANCED;
+
 /// The balance heuristic over heroes.
-pub type SpectralMis = super::page::OneHero<true>;
+pub type SpectralMis = AllChannels<BALANCED>;

@@ -7,55 +7,29 @@
 //! ```
 //!
 //! The furnace shines wherever a walk ends, so that f is the density of the walk itself. f is kept relative to the hero's,
-//! see [`Path`]. A flight takes one random number, a collision one, a scattering one for θ and one for the azimuth, the
+//! see [`Path`]. In spectral tracking all channels walk together through one σ̂ with one phase function: chances `P_e` decide,
+//! and f is relative to them. A flight takes one random number, a collision one, a scattering one for θ and one for the azimuth, the
 //! choice of the hero one.
 
 use crate::estimators::Setup;
+use crate::estimators::chromatic::{Left, Steps};
 use crate::geometry::{Point, Ray, frame};
 use crate::kernels::hero::Path;
 use crate::media::body::MOST_CHANNELS;
 use crate::problems::SpectralFurnace;
 use crate::rng::Stream;
-use crate::theory::ParticleRule;
+use crate::setup::walker::Walker;
 use crate::theory::particle::Event;
 
-/// The steps of a walk that a known bug may replace.
-pub trait Steps {
-    /// What an event multiplies f by in a channel: the ratio `σ_t/σ̂`, the albedo, and the density of the new
-    /// direction are those of this channel.
-    #[inline(always)]
-    fn factor(&self, event: Event, ratio: f64, albedo: f64, density: f64) -> f64 {
-        match event {
-            Event::Transmitted => 1.0 - ratio,
-            Event::Scattered => ratio * albedo * density,
-            Event::Absorbed => ratio * (1.0 - albedo),
-        }
-    }
-
-    /// The channel whose σ̂ counts in a channel's ratio.
-    #[inline(always)]
-    fn majorant_of(&self, channel: usize, hero: usize) -> usize {
-        let _ = hero;
-        channel
-    }
-
-    /// The channel whose phase function counts in a channel.
-    #[inline(always)]
-    fn phase_of(&self, channel: usize, hero: usize) -> usize {
-        let _ = hero;
-        channel
-    }
-}
-
-/// Walks; answers the path with its weights, and the lookups.
+/// Walks; the furnace shines wherever a walk ends.
 #[inline(always)]
 pub fn walk(
     steps: &impl Steps,
     setup: &Setup<SpectralFurnace>,
-    hero: usize,
+    (walker, hero): (&Walker, usize),
     rng: &mut Stream,
-) -> (Path, u32) {
-    let problem = &*setup.problem;
+) -> Left<()> {
+    let (problem, count) = (&*setup.problem, setup.channels.len());
     let (own, majorant) = (&problem.channels[hero], setup.channels[hero].majorant);
     let mut path = Path::begin(hero);
     let (mut place, mut direction, mut lookups) = (problem.entry, problem.direction, 0);
@@ -65,32 +39,29 @@ pub fn walk(
         let end = problem.bounds.clip(&ray).to;
         if flight >= end {
             path.go_on(end.max(0.0));
-            return (path, lookups);
+            return Left { end: Some(()), path, lookups };
         }
         path.go_on(flight);
-        path.collisions += 1;
         lookups += 1;
         place = ray.at(flight);
         let ratios = ratios(steps, setup, hero, place);
-        let odds = ParticleRule::Analog.odds(ratios[hero], own.albedo);
-        let event = odds.decide(rng.uniform());
+        let weights = &path.weights[..count];
+        let chances = walker.chances(hero, &ratios[..count], &problem.albedos, weights);
+        let event = chances.decide(rng.uniform());
         let mut cosine = 1.0;
         if event == Event::Scattered {
             cosine = own.phase.cosine(rng.uniform());
             direction = frame::turned(direction, cosine, rng.uniform());
         }
-        for (channel, medium) in problem.channels.iter().enumerate() {
+        let density = if event == Event::Scattered { own.phase.value(cosine) } else { 1.0 };
+        let of_all = walker.together().map(|_| chances.of(event) * density);
+        path.collide(count, of_all, |channel| {
             let phase = &problem.channels[steps.phase_of(channel, hero)].phase;
-            let factor = steps.factor(event, ratios[channel], medium.albedo, phase.value(cosine));
-            path.weights[channel] *= factor;
-        }
-        // Relative to the hero's, which only a bug can make 0.
-        let scale = path.weights[hero];
-        if scale > 0.0 {
-            path.weights.iter_mut().for_each(|weight| *weight /= scale);
-        }
+            let albedo = problem.albedos[channel];
+            steps.factor(event, ratios[channel], albedo, phase.value(cosine))
+        });
         if event == Event::Absorbed {
-            return (path, lookups);
+            return Left { end: Some(()), path, lookups };
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Walks through a rod of coloured scatterers, all channels by one draw.
 
+pub mod hero;
 pub mod independent;
 pub mod packet;
 pub mod spectral_mis;
@@ -95,6 +96,7 @@ use scored;
 estimators! {
     SpectralRod:
     independent::Independent,
+    hero::Hero,
     spectral_tracking::SpectralTracking,
     spectral_mis::SpectralMis,
 }

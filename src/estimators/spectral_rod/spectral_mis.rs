@@ -43,13 +43,7 @@ impl walk::Scores for SpectralMis {
     #[inline(always)]
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
         let count = albedos.len();
-        let mut weights = [1.0; MOST_CHANNELS];
-        for _ in 0..order {
-            // Relative to the hero's, which was scattered so often.
-            for (weight, albedo) in weights.iter_mut().zip(albedos) {
-                *weight *= albedo / albedos[hero];
-            }
-        }
+        let mut weights = walk::relative(albedos, hero, order);
         let mut density = 0.0;
         for (channel, weight) in weights[..count].iter().enumerate() {
             density += self.heroes.probability(count, channel) * weight;

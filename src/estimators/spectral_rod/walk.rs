@@ -69,6 +69,18 @@ pub trait Scores {
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];
 }
 
+/// `(a_λ/a_h)^r`: the density of each channel's walk after r scatterings, relative to the hero's.
+#[inline(always)]
+pub fn relative(albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
+    let mut weights = [1.0; MOST_CHANNELS];
+    for _ in 0..order {
+        for (weight, albedo) in weights.iter_mut().zip(albedos) {
+            *weight *= albedo / albedos[hero];
+        }
+    }
+    weights
+}
+
 /// Makes one draw.
 #[inline(always)]
 pub fn draw<P: Coloured>(

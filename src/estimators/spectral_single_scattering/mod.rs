@@ -1,9 +1,11 @@
 //! Estimators of single scattering of a point light in several channels, all of them by one draw.
 
+pub mod hero;
 pub mod independent;
 pub mod packet;
 pub mod page;
 pub mod spectral_mis;
+pub mod spectral_tracking;
 pub mod walk;
 
 use crate::catalogue::{Settings, rounded};
@@ -11,9 +13,12 @@ use crate::estimators::single_scattering::delta_tracking::{Absorption, DeltaTrac
 use crate::estimators::{Refusal, Setup, estimators};
 use crate::media::Control;
 use crate::problems::SpectralSingleScattering;
-use crate::setup::channels;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
+use crate::theory::Prediction;
 use crate::theory::single::{Points, Tracking};
+use crate::theory::spectral::rates::Walk;
+use crate::theory::spectral_single_scattering::{self as theory, relative::Relative};
 
 /// How shadow rays are tracked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,22 +35,14 @@ impl Shadow {
         Some(if word == "ratio" { Self::Ratio } else { Self::Exact })
     }
 
-    fn label(self, heroes: &Heroes) -> String {
+    fn label(self, further: &str) -> String {
         let words = if self == Self::Ratio { "ratio shadow" } else { "exact shadow" };
-        let heroes = heroes.label();
-        if heroes.is_empty() { words.into() } else { format!("{words}, {heroes}") }
+        if further.is_empty() { words.into() } else { format!("{words}, {further}") }
     }
 }
 
-/// One hero probability and a constant σ̂ ≥ σ_t for each channel, on the ray and on shadow rays that are tracked.
-fn realisable(
-    setup: &Setup<SpectralSingleScattering>,
-    heroes: &Heroes,
-    shadow: Shadow,
-) -> Result<(), Refusal> {
-    heroes.require(setup.channels.len())?;
-    channels::require_constants(&setup.channels)?;
-    channels::require_majorants(&setup.channels)?;
+/// σ̂ ≥ σ_t on every shadow ray that is tracked.
+fn realisable(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Result<(), Refusal> {
     if shadow == Shadow::Exact {
         return Ok(());
     }
@@ -75,8 +72,29 @@ fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points>
     points.collect()
 }
 
+/// What theory says of draws that score all channels.
+fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Shadow) -> Prediction {
+    let (alone, count) = (alone(setup, shadow), setup.channels.len());
+    let walks = match walker {
+        Walker::Balanced(heroes) => return theory::balanced(&alone, &heroes.of(count)),
+        // It scores what equal heroes score by the balance heuristic, and flies as they do.
+        Walker::Together(None) => return theory::balanced(&alone, &Heroes::Uniform.of(count)),
+        Walker::Together(Some(chance)) => vec![(1.0, Walk::Together(*chance))],
+        Walker::Hero(heroes) => {
+            heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Walk::Hero(h))).collect()
+        }
+    };
+    let of_heroes = walker.heroes().and_then(|heroes| theory::lookups(&alone, &heroes.of(count)));
+    let media = setup.channels.iter().map(|channel| (&*channel.mesh, channel.majorant)).collect();
+    let tracks = shadow == Shadow::Ratio;
+    Relative::new(&setup.problem.channels, media, &setup.sampling, walks, tracks)
+        .predict(&alone, of_heroes)
+}
+
 estimators! {
     SpectralSingleScattering:
     independent::Independent,
+    hero::Hero,
+    spectral_tracking::SpectralTracking,
     spectral_mis::SpectralMis,
 }

@@ -5,9 +5,10 @@
 //!   null, 1 − r_h       q_λ ← q_λ (1 − r_λ)
 //!   absorbed            X = 0
 //!   scattered, a_h r_h  q_λ ← q_λ r_λ a_λ, and
-//! X_λ = q_λ/Σ_h w_h q_h · p_λ(cos θ) Φ/(4π r²) T̂_λ
+//! X_λ = q_λ/q p_λ(cos θ) Φ/(4π r²) T̂_λ,   q = q_h, or Σ_h w_h q_h by multiple importance sampling
 //! ```
 //!
+//! In spectral tracking all channels walk together through one σ̂: chances `P_e` decide, and q is their product.
 //! T̂ is exact, or `Π (1 − r_λ)` over the collisions of a shadow ray through the hero's σ̂, whose rates and transmittances
 //! through σ̂ then are factors of q, too. q is kept relative to the hero's, see [`Path`]. The first flight and decision take
 //! two random numbers each time, a flight of a shadow ray one, the choice of the hero one.
@@ -23,8 +24,7 @@ use crate::numeric::Lane;
 use crate::problems::SpectralSingleScattering;
 use crate::problems::spectral_single_scattering::Values;
 use crate::rng::Stream;
-use crate::setup::heroes::Heroes;
-use crate::theory::ParticleRule;
+use crate::setup::walker::Walker;
 use crate::theory::particle::Event;
 
 /// The steps of a walk that a known bug may replace.
@@ -61,31 +61,35 @@ pub trait Steps {
     }
 }
 
-/// Makes one draw, weighted over all heroes.
+/// Makes one draw that scores all channels.
 #[inline(always)]
-pub fn balanced(
+pub fn draw(
     steps: &impl Steps,
-    (heroes, shadow): (&Heroes, Shadow),
+    (walker, shadow): (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
     medium: &Lookups,
     rng: &mut Stream,
 ) -> Draw<Values> {
     let (problem, count) = (&setup.problem, setup.channels.len());
-    let hero = heroes.choose(count, rng.uniform());
-    let (s, mut path, walked) = scattering(steps, setup, hero, medium, rng);
+    let hero = walker.choose(count, || rng.uniform());
+    let (s, mut path, walked) = scattering(steps, setup, (walker, hero), medium, rng);
     let Some(s) = s else { return Draw::free(problem.values([0.0; MOST_CHANNELS]), walked) };
     let (through, cast) = cast(steps, shadow, (setup, 0..count), &mut path, s, rng);
     let length = path.length;
     let (mut scores, mut density) = ([0.0; MOST_CHANNELS], 0.0);
     for (channel, lit) in problem.channels.iter().enumerate() {
         let common = path.common(setup, channel, length);
-        if channel + steps.missing() < count {
+        if let Walker::Balanced(heroes) = walker
+            && channel + steps.missing() < count
+        {
             density += heroes.probability(count, channel) * common;
         }
         scores[channel] = common * through[channel] * lit.source(s) / lit.albedo();
     }
-    for score in &mut scores[..count] {
-        *score /= density;
+    if matches!(walker, Walker::Balanced(_)) {
+        for score in &mut scores[..count] {
+            *score /= density;
+        }
     }
     Draw::free(problem.values(scores), walked + cast)
 }
@@ -95,11 +99,12 @@ pub fn balanced(
 pub fn scattering(
     steps: &impl Steps,
     setup: &Setup<SpectralSingleScattering>,
-    hero: usize,
+    (walker, hero): (&Walker, usize),
     medium: &Lookups,
     rng: &mut Stream,
 ) -> (Option<f64>, Path, u32) {
     let (own, channels) = (&setup.channels[hero], &setup.problem.channels);
+    let (albedos, count) = (&setup.problem.albedos, channels.len());
     let mut cursor = own.sampling.begin();
     let (mut path, mut lookups) = (Path::begin(hero), 0);
     loop {
@@ -115,15 +120,15 @@ pub fn scattering(
             let majorant = setup.channels[channel].majorant;
             *ratio = medium.channel(channel).extinction(cursor.t) / majorant;
         }
-        let odds = ParticleRule::Analog.odds(ratios[hero], channels[hero].albedo());
-        let event = odds.decide(number);
-        for (channel, lit) in channels.iter().enumerate() {
+        let chances = walker.chances(hero, &ratios[..count], albedos, &path.weights[..count]);
+        let event = chances.decide(number);
+        for (channel, albedo) in albedos.iter().enumerate() {
             path.weights[channel] *= match event {
                 Event::Transmitted => steps.passed(ratios[channel]),
-                _ => steps.scattered(ratios[channel], lit.albedo()),
+                _ => steps.scattered(ratios[channel], *albedo),
             };
         }
-        let scale = path.weights[hero];
+        let scale = walker.together().map_or(path.weights[hero], |_| chances.of(event));
         path.weights.iter_mut().for_each(|weight| *weight /= scale);
         match event {
             Event::Transmitted => {}

@@ -1,5 +1,6 @@
 //! Walks through a slab of coloured scatterers, all channels by one draw.
 
+pub mod hero;
 pub mod independent;
 pub mod spectral_mis;
 pub mod spectral_tracking;
@@ -63,6 +64,7 @@ impl Coloured for SpectralSlab {
 estimators! {
     SpectralSlab:
     independent::Independent,
+    hero::Hero,
     spectral_tracking::SpectralTracking,
     spectral_mis::SpectralMis,
 }

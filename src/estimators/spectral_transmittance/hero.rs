@@ -20,7 +20,7 @@
 use fearless_simd::Level;
 
 use super::walk;
-use crate::catalogue::{Settings, rounded};
+use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::spectral::{self as packet, Rule};
@@ -33,9 +33,6 @@ use crate::setup::channels;
 use crate::setup::heroes::Heroes;
 use crate::theory::Prediction;
 use crate::theory::spectral::Tracker;
-
-/// A null extinction below this share of σ̂ is none.
-const TOUCHES: f64 = 1e-9;
 
 /// One hero, without multiple importance sampling.
 #[derive(Debug, Clone)]
@@ -62,7 +59,7 @@ impl Estimator<SpectralTransmittance> for Hero {
         channels::require_constants(&setup.channels)?;
         if self.delta {
             channels::require_majorants(&setup.channels)?;
-            require_room(setup)?;
+            channels::require_room(&setup.channels, false)?;
         }
         Ok(())
     }
@@ -104,47 +101,4 @@ impl Estimator<SpectralTransmittance> for Hero {
         let rule = Rule { tracker, is_common: false, heroes: &self.heroes };
         packet::walks(level, setup, rule, medium, request)
     }
-}
-
-/// No hero's σ̂ touches its σ_t where that of another channel does not.
-///
-/// # Errors
-///
-/// The channel and the place, and whether the draws are biased or their variance is infinite.
-fn require_room(setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
-    let channels = &setup.channels;
-    for (number, hero) in (1..).zip(channels) {
-        let null = |own: &crate::setup::SpectralChannel, t: f64| {
-            1.0 - own.mesh.medium().extinction(t) / own.majorant
-        };
-        let is_open = |t: f64| channels.iter().any(|other| null(other, t) > TOUCHES);
-        let cuts: Vec<f64> =
-            channels.iter().flat_map(|c| c.mesh.panels().map(|panel| panel.span.from)).collect();
-        let cut = hero.mesh.refined(&cuts, &|_, _| Vec::new());
-        // Touched at every node of a panel: on a stretch.
-        let stretch = cut.panels().find(|panel| {
-            panel.t.iter().all(|&t| null(hero, t) <= TOUCHES) && is_open(panel.span.middle())
-        });
-        let majorant = rounded(hero.majorant);
-        if let Some(panel) = stretch {
-            return Err(Refusal::Inequality {
-                needs: "σ̂ > σ_t of the hero wherever another channel has null collisions",
-                found: format!(
-                    "σ̂ = σ_t = {majorant} in channel {number} on a stretch, which biases the others,"
-                ),
-                at: panel.span.from,
-            });
-        }
-        let touched = cut
-            .largest(|_, sigma| sigma)
-            .filter(|&(at, sigma)| sigma >= hero.majorant * (1.0 - TOUCHES) && is_open(at));
-        if let Some((at, _)) = touched {
-            return Err(Refusal::Inequality {
-                needs: "a finite variance",
-                found: format!("σ̂ = {majorant} touches σ_t in channel {number}: E[X²] is infinite"),
-                at,
-            });
-        }
-    }
-    Ok(())
 }

@@ -11,6 +11,9 @@ use super::kept::Keep;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
 use crate::phase::Phase;
+use crate::setup::walker::Walker;
+use crate::theory::ParticleRule;
+use crate::theory::spectral::chance;
 
 /// What happens in each channel where a walk collides.
 pub struct Scatterers {
@@ -93,13 +96,31 @@ impl<S: Simd> Densities<S> {
         own
     }
 
-    /// What events make of them; those that are scattered turn by a cosine.
+    /// The chances to be scattered, to go straight on and to be absorbed, where all channels walk together, or of heroes,
+    /// given their own ratios and albedos.
+    #[inline(always)]
+    pub fn chances(
+        &self,
+        (scatterers, walker): (&Scatterers, &Walker),
+        [own, albedo]: [f64x8<S>; 2],
+    ) -> [f64x8<S>; 3] {
+        let count = scatterers.phases.len();
+        if let Some(chance) = walker.together() {
+            let (ratios, weights) = (&self.ratios[..count], &self.weights[..count]);
+            return chance::of_events(chance, ratios, &scatterers.albedos[..count], weights);
+        }
+        let odds = ParticleRule::Analog.odds(own, albedo);
+        [odds.scatter, odds.transmit, own]
+    }
+
+    /// What events make of them; those that are scattered turn by a cosine. They stay relative to those of heroes or,
+    /// where all channels walk together, to the chances of what happened.
     #[inline(always)]
     pub fn weigh(
         &mut self,
-        scatterers: &Scatterers,
+        (scatterers, walker): (&Scatterers, &Walker),
         hero: f64x8<S>,
-        events: Events<S>,
+        (events, [scatters, passes, ends]): (Events<S>, [f64x8<S>; 3]),
         cosine: f64x8<S>,
     ) {
         let (count, one, mut own) = (scatterers.phases.len(), hero.each(1.0), hero);
@@ -112,6 +133,11 @@ impl<S: Simd> Densities<S> {
             let next = self.weights[channel] * Lane::select(events.null, one - ratio, real);
             self.next[channel] = next;
             own = or_of_hero(hero, channel, own, next);
+        }
+        if walker.together().is_some() {
+            let scattered = scatters * scatterers.phases[0].value(cosine);
+            own =
+                Lane::select(events.scattered, scattered, Lane::select(events.null, passes, ends));
         }
         let scale = Lane::select(one.each(0.0).below(own), own, one);
         for channel in 0..count {

@@ -86,14 +86,14 @@ pub struct Media {
 
 impl Media {
     /// Those of a setup.
-    pub fn new<P>(setup: &Setup<P>, heroes: &Heroes) -> Self {
+    pub fn new<P>(setup: &Setup<P>, probabilities: &[f64]) -> Self {
         let (none, count) = ([0.0; MOST_CHANNELS], setup.channels.len());
         let is_common = setup.channels.iter().all(|c| c.majorant == setup.channels[0].majorant);
         let mut media = Self { count, is_common, majorants: none, logarithms: none, chances: none };
         for (channel, own) in setup.channels.iter().enumerate() {
             media.majorants[channel] = own.majorant;
             media.logarithms[channel] = own.ln_majorant;
-            media.chances[channel] = heroes.probability(count, channel);
+            media.chances[channel] = probabilities[channel];
         }
         media
     }

@@ -205,7 +205,8 @@ impl<'a> Scene<'a> {
         self.over(parts, cuts, &|place| f(&self.node(place)))
     }
 
-    fn over<const N: usize>(
+    /// The same of a function of places, with panels that end at cuts, too.
+    pub fn over<const N: usize>(
         &self,
         parts: [f64; N],
         cuts: Vec<f64>,

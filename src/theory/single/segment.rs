@@ -178,20 +178,31 @@ fn along<const N: usize>(
     rule: &GaussLegendre,
     f: impl Fn(f64, f64) -> [f64; N],
 ) -> ([f64; N], [f64; N]) {
-    let support = medium.support();
-    let ends = support.cut(medium.breaks());
+    along_all(std::slice::from_ref(medium), rule, |t, sigma| f(t, sigma[0]))
+}
+
+/// The same of several media with one support.
+pub fn along_all<const N: usize>(
+    media: &[Medium],
+    rule: &GaussLegendre,
+    f: impl Fn(f64, &[f64]) -> [f64; N],
+) -> ([f64; N], [f64; N]) {
+    let support = media[0].support();
+    let ends = support.cut(media.iter().flat_map(Medium::breaks).collect());
     let at = |parts: u32| {
         let mut sum = [0.0; N];
         let mut nodes = Vec::with_capacity(rule.nodes.len());
+        let mut here = vec![0.0; media.len()];
         for Span { from, to } in Span::between(&ends) {
             let step = (to - from) / f64::from(parts);
             for part in 0..parts {
                 let from = from + f64::from(part) * step;
                 nodes.clear();
                 nodes.extend(rule.nodes.iter().map(|x| from + x * step));
-                let sigma = medium.extinctions(&nodes);
-                for ((&t, &sigma), &weight) in nodes.iter().zip(&sigma).zip(&rule.weights) {
-                    for (sum, x) in sum.iter_mut().zip(&f(t, sigma)) {
+                let sigma: Vec<_> = media.iter().map(|medium| medium.extinctions(&nodes)).collect();
+                for (i, (&t, &weight)) in nodes.iter().zip(&rule.weights).enumerate() {
+                    here.iter_mut().zip(&sigma).for_each(|(here, sigma)| *here = sigma[i]);
+                    for (sum, x) in sum.iter_mut().zip(&f(t, &here)) {
                         *sum += weight * step * x;
                     }
                 }

@@ -21,9 +21,14 @@
 //! J. Novák, *Spectral and Decomposition Tracking for Rendering Heterogeneous Volumes*, ACM Transactions on
 //! Graphics 36 (2017), section 5. The moments follow from Campbell's theorem.
 
+pub mod bound;
 pub mod cells;
+pub mod chance;
 pub mod lookups;
 mod predict;
+pub mod rates;
+
+pub use self::chance::Chance;
 
 use super::Mesh;
 use crate::numeric::Known;
@@ -31,29 +36,6 @@ use crate::numeric::sum::Sum;
 
 /// Numbers of null collisions that are rarer than this do not count.
 const RARE: f64 = 1e-19;
-/// How the next collision of spectral tracking is chosen to be null.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chance {
-    /// `P_n` = mean over the channels of `n/μ̄`.
-    Average,
-    /// `P_n = max n/(max n + max σ)`.
-    Maximum,
-}
-
-impl Chance {
-    /// `P_n`, given `n/μ̄` of each channel.
-    #[inline(always)]
-    pub fn of_null(self, shares: &[f64]) -> f64 {
-        match self {
-            Self::Average => shares.iter().sum::<f64>() / shares.len() as f64,
-            Self::Maximum => {
-                let largest = shares.iter().fold(0.0f64, |most, &share| most.max(share));
-                let least = shares.iter().fold(1.0f64, |least, &share| least.min(share));
-                largest / (largest + (1.0 - least))
-            }
-        }
-    }
-}
 
 /// How all channels are scored by one draw.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,6 +5,7 @@
 //! ```text
 //! E[Π X_λ^{k_λ}; transmitted]
 //! independent        w_h^{1−K} T(a_h), all of k on the channel h, else 0
+//! hero               Σ_h w_h T(Π a_λ^{k_λ} / a_h^{K−1})
 //! spectral tracking  T(Π a_λ^{k_λ} / P_s^{K−1}),  P_s the chance to be scattered
 //! spectral MIS       Σ_r T_r D_r Π (a_λ^r/D_r)^{k_λ},  D_r = Σ_h w_h a_h^r
 //! ```
@@ -61,6 +62,8 @@ pub trait Body: Send + Sync {
 pub enum Tracker {
     /// One channel by its own walk, the others 0.
     Independent,
+    /// The walk of a hero, divided by its density.
+    Hero,
     /// One chance to be scattered for all channels.
     Tracking {
         /// `P_s`.
@@ -91,7 +94,7 @@ impl<'a> Spectrum<'a> {
         Self { body, colours, hero, tracker, orders }
     }
 
-    /// The chance that a scattering multiplies the k-th power of a channel's weight by, in spectral tracking.
+    /// What a scattering, of this chance, multiplies the k-th power of a channel's weight by on average.
     fn albedo_of_power(&self, k: &[i32], scatter: f64) -> f64 {
         let total: i32 = k.iter().sum();
         let product: f64 = self.colours.albedos.iter().zip(k).map(|(a, &k)| a.powi(k)).product();
@@ -100,11 +103,25 @@ impl<'a> Spectrum<'a> {
 
     /// The channel whose second moment is infinite, and from where on it is.
     pub fn diverges(&self) -> Option<(usize, String)> {
-        let Tracker::Tracking { scatter } = self.tracker else { return None };
+        let walkers = self.walkers();
         (0..self.colours.albedos.len()).find_map(|channel| {
-            let albedo = self.albedo_of_power(&self.only(channel, 2), scatter);
-            self.body.beyond(albedo).map(|why| (channel, why))
+            let square = self.only(channel, 2);
+            let albedos =
+                walkers.iter().map(|&(_, scatter)| self.albedo_of_power(&square, scatter));
+            albedos.filter_map(|albedo| self.body.beyond(albedo)).next().map(|why| (channel, why))
         })
+    }
+
+    /// Whose walks score all channels without multiple importance sampling: probabilities, and chances to be scattered.
+    fn walkers(&self) -> Vec<(f64, f64)> {
+        match self.tracker {
+            Tracker::Hero => {
+                let heroes = self.hero.iter().copied().zip(self.colours.albedos.iter().copied());
+                heroes.filter(|&(weight, _)| weight > 0.0).collect()
+            }
+            Tracker::Tracking { scatter } => vec![(1.0, scatter)],
+            _ => Vec::new(),
+        }
     }
 
     fn only(&self, channel: usize, power: i32) -> Vec<i32> {
@@ -128,10 +145,15 @@ impl<'a> Spectrum<'a> {
                     })
                 }))
             }
-            Tracker::Tracking { scatter } => {
+            Tracker::Hero | Tracker::Tracking { .. } => {
                 let infinite = Known::new(f64::INFINITY, f64::INFINITY);
-                let albedo = self.albedo_of_power(k, scatter);
-                Some(self.body.power(albedo).map_or(infinite, |found| found[side]))
+                let each = self.walkers().into_iter().map(|(weight, scatter)| {
+                    let albedo = self.albedo_of_power(k, scatter);
+                    let found = self.body.power(albedo).map_or(infinite, |found| found[side]);
+                    [weight * found.value, weight * found.error]
+                });
+                let [value, error] = each.fold([0.0; 2], |[a, b], [c, d]| [a + c, b + d]);
+                Some(Known::new(value, error))
             }
             Tracker::Mis => {
                 let orders = self.orders.as_ref()?;

@@ -66,7 +66,7 @@ struct Page<'a> {
 impl<'a> Page<'a> {
     /// Of walks of one channel each.
     fn of_channels(heroes: &Heroes, setup: &'a Setup<SpectralLitRod>) -> Self {
-        let media = Media::new(setup, heroes);
+        let media = Media::new(setup, &heroes.of(setup.channels.len()));
         let mut paths = [0.0; MOST_CHANNELS];
         for (channel, own) in setup.channels.iter().enumerate() {
             paths[channel] = 1.0 / own.majorant;

@@ -29,7 +29,7 @@ use crate::numeric::twin::PAIR;
 use crate::numeric::{Span, Twin};
 use crate::problems::SpectralSingleScattering;
 use crate::rng::LANES;
-use crate::setup::heroes::Heroes;
+use crate::setup::walker::Walker;
 
 /// What a walk leaves beside its weights and the transmittances of its shadow ray: its hero, its length, its lookups, and
 /// where it was scattered.
@@ -37,27 +37,27 @@ const REST: usize = 4;
 /// What stands in the place of the hero of a walk that was not scattered.
 const LOST: f64 = -1.0;
 
-/// The draws of a page on the hardware of a level, weighted over all heroes or not; a request is handed back where the
+/// The draws of a page on the hardware of a level, which score all channels or the hero's alone; a request is handed back where the
 /// hardware is too narrow.
-pub fn walks<'a, const BALANCED: bool>(
+pub fn walks<'a, const ALL: bool>(
     level: Level,
-    (heroes, shadow): (&Heroes, Shadow),
+    (walker, shadow): (&Walker, Shadow),
     setup: &Setup<SpectralSingleScattering>,
     medium: &Lookups,
     request: Request<'a>,
 ) -> Option<Request<'a>> {
-    let (problem, media) = (&*setup.problem, Media::new(setup, heroes));
+    let (problem, media) =
+        (&*setup.problem, Media::new(setup, &walker.probabilities(setup.channels.len())));
     let mut albedos = [0.0; MOST_CHANNELS];
-    for (own, channel) in albedos.iter_mut().zip(&problem.channels) {
-        *own = channel.albedo();
-    }
+    albedos[..media.count].copy_from_slice(&problem.albedos);
     let tracks = shadow == Shadow::Ratio;
     let channels = problem.channels.iter().filter(|_| tracks);
-    let world = World::<BALANCED> {
+    let world = World::<ALL> {
         problem,
         medium,
         support: setup.mesh.support(),
-        law: Law::new(heroes, media.count),
+        walker,
+        law: walker.heroes().map(|heroes| Law::new(heroes, media.count)),
         media,
         albedos,
         tracks,
@@ -67,11 +67,13 @@ pub fn walks<'a, const BALANCED: bool>(
 }
 
 /// What all walks share.
-struct World<'a, const BALANCED: bool> {
+struct World<'a, const ALL: bool> {
     problem: &'a SpectralSingleScattering,
     medium: &'a Lookups<'a>,
     support: Span,
-    law: Law,
+    walker: &'a Walker,
+    /// The law of the hero, if one is chosen.
+    law: Option<Law>,
     media: Media,
     albedos: [f64; MOST_CHANNELS],
     /// Whether shadow rays are tracked.
@@ -79,20 +81,20 @@ struct World<'a, const BALANCED: bool> {
     in_space: Vec<Batches<'a>>,
 }
 
-impl<const BALANCED: bool> World<'_, BALANCED> {
+impl<const ALL: bool> World<'_, ALL> {
     /// How many numbers a walk leaves.
     fn left(&self) -> usize {
         let count = self.media.count;
-        REST + if BALANCED { count } else { 0 } + if self.tracks { count } else { 0 }
+        REST + if ALL { count } else { 0 } + if self.tracks { count } else { 0 }
     }
 }
 
-struct Walks<'a, 'r, const BALANCED: bool> {
-    world: &'a World<'a, BALANCED>,
+struct Walks<'a, 'r, const ALL: bool> {
+    world: &'a World<'a, ALL>,
     request: Request<'r>,
 }
 
-impl<const BALANCED: bool> Task for Walks<'_, '_, BALANCED> {
+impl<const ALL: bool> Task for Walks<'_, '_, ALL> {
     type Output = ();
 
     #[inline(always)]

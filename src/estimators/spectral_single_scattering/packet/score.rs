@@ -12,16 +12,13 @@ use crate::media::body::MOST_CHANNELS;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
 use crate::problems::SpectralSingleScattering;
+use crate::setup::walker::Walker;
 
 /// Makes draws of what walks have left.
 #[inline(always)]
-pub fn all<S: Simd, const BALANCED: bool>(
-    simd: S,
-    world: &World<BALANCED>,
-    left: &Left,
-    mut made: Made,
-) {
+pub fn all<S: Simd, const ALL: bool>(simd: S, world: &World<ALL>, left: &Left, mut made: Made) {
     let (media, zero) = (&world.media, f64x8::splat(simd, 0.0));
+    let is_balanced = matches!(world.walker, Walker::Balanced(_));
     let mut found = [zero; MOST_CHANNELS];
     let found = &mut found[..media.count];
     for first in made.packs() {
@@ -31,14 +28,14 @@ pub fn all<S: Simd, const BALANCED: bool>(
         let mut through = [zero; MOST_CHANNELS];
         let through = &mut through[..media.count];
         if world.tracks {
-            let before = REST + if BALANCED { media.count } else { 0 };
+            let before = REST + if ALL { media.count } else { 0 };
             for (channel, through) in through.iter_mut().enumerate() {
                 *through = left.row(simd, before + channel, first);
             }
         } else {
-            exact::<S, BALANCED>(world.problem, (s, hero), is_lit, through);
+            exact::<S, ALL>(world.problem, (s, hero), is_lit, through);
         }
-        if BALANCED {
+        if ALL {
             for (channel, found) in found.iter_mut().enumerate() {
                 *found = left.row(simd, REST + channel, first);
             }
@@ -49,6 +46,7 @@ pub fn all<S: Simd, const BALANCED: bool>(
                 density += common * media.chances[channel];
                 *found = common * through[channel] * lit.source(s) / zero.each(lit.albedo());
             }
+            let density = if is_balanced { density } else { zero.each(1.0) };
             for found in found.iter_mut() {
                 *found = Lane::select(is_lit, *found / density, zero);
             }
@@ -71,10 +69,10 @@ fn is_number<S: Simd>(hero: f64x8<S>, channel: usize) -> mask64x8<S> {
     hero.at_most(number) & number.at_most(hero)
 }
 
-/// Transmittances in closed form of shadow rays from distances along the ray, of the heroes alone or, `BALANCED`, of all
+/// Transmittances in closed form of shadow rays from distances along the ray, of the heroes alone or, `ALL`, of all
 /// channels, for those that a mask names.
 #[inline(always)]
-fn exact<S: Simd, const BALANCED: bool>(
+fn exact<S: Simd, const ALL: bool>(
     problem: &SpectralSingleScattering,
     (s, hero): (f64x8<S>, f64x8<S>),
     is_lit: mask64x8<S>,
@@ -87,7 +85,7 @@ fn exact<S: Simd, const BALANCED: bool>(
     let [from_row, to_row, _] = rows([from, to, to]);
     for (channel, through) in through.iter_mut().enumerate() {
         let lit = &problem.channels[channel];
-        let which = if BALANCED { is_blocked } else { is_blocked & is_number(hero, channel) };
+        let which = if ALL { is_blocked } else { is_blocked & is_number(hero, channel) };
         let depth = match lit.volume().single_value() {
             Some(value) => (to - from) * value,
             None => s.replaced(

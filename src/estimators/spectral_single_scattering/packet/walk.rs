@@ -12,6 +12,7 @@ use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
 use crate::numeric::twin::PAIR;
 use crate::theory::ParticleRule;
+use crate::theory::spectral::chance;
 
 /// So many lanes cast their shadow rays together: to find where they lead costs more than a step. While fewer wait for it,
 /// others are on their way.
@@ -49,9 +50,9 @@ pub struct Pack<S: Simd> {
 impl<S: Simd> Pack<S> {
     /// All begin.
     #[inline(always)]
-    pub fn begin<const BALANCED: bool>(
+    pub fn begin<const ALL: bool>(
         simd: S,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         numbers: Numbers<S>,
         slots: Slots,
     ) -> Self {
@@ -83,14 +84,13 @@ impl<S: Simd> Pack<S> {
 
     /// Those that have ended begin the next walk.
     #[inline(always)]
-    pub fn begin_anew<const BALANCED: bool>(
-        &mut self,
-        world: &World<BALANCED>,
-        which: mask64x8<S>,
-    ) {
+    pub fn begin_anew<const ALL: bool>(&mut self, world: &World<ALL>, which: mask64x8<S>) {
         let count = world.media.count;
         let (zero, one) = (self.length.each(0.0), self.length.each(1.0));
-        let hero = world.law.choose(self.numbers.uniform_where(which));
+        let hero = match &world.law {
+            Some(law) => law.choose(self.numbers.uniform_where(which)),
+            None => zero,
+        };
         let path = one / number_of_hero(hero, &world.media.majorants[..count]);
         let albedo = number_of_hero(hero, &world.albedos[..count]);
         let keep = self.keep;
@@ -101,7 +101,7 @@ impl<S: Simd> Pack<S> {
         keep.put(&mut self.length, which, zero);
         keep.put(&mut self.collisions, which, zero);
         self.walks |= which;
-        if BALANCED {
+        if ALL {
             for weight in &mut self.weights[..count] {
                 keep.put(weight, which, one);
             }
@@ -115,9 +115,9 @@ impl<S: Simd> Pack<S> {
 
     /// All fly on; answers where they are on the ray, and writes where they are on their shadow rays.
     #[inline(always)]
-    pub fn fly<const BALANCED: bool>(
+    pub fn fly<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         points: &mut [[f64; PAIR]; 3],
         number: usize,
     ) -> f64x8<S> {
@@ -141,9 +141,9 @@ impl<S: Simd> Pack<S> {
 
     /// What becomes of each, given σ_t of all channels on the ray and on shadow rays; answers whose walks end.
     #[inline(always)]
-    pub fn collide<const BALANCED: bool>(
+    pub fn collide<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         on_ray: &[f64x8<S>; MOST_CHANNELS],
         on_shadow: &[f64x8<S>; MOST_CHANNELS],
     ) -> mask64x8<S> {
@@ -157,12 +157,12 @@ impl<S: Simd> Pack<S> {
             self.ratios[channel] = ratio;
             own = or_of_hero(self.hero, channel, own, ratio);
         }
-        let odds = ParticleRule::Analog.odds(own, self.albedo);
+        let [scatters, passes] = self.chances(world, own);
         let met = walks & inside;
-        let is_scattered = met & self.number.below(odds.scatter);
-        let is_null = met & !is_scattered & self.number.below(odds.scatter + odds.transmit);
-        if BALANCED {
-            self.weigh(world, [is_scattered, is_null]);
+        let is_scattered = met & self.number.below(scatters);
+        let is_null = met & !is_scattered & self.number.below(scatters + passes);
+        if ALL {
+            self.weigh(world, [is_scattered, is_null], [scatters, passes]);
         }
         let mut ends = walks & !is_scattered & !is_null;
         // What is not scattered is nowhere.
@@ -196,12 +196,27 @@ impl<S: Simd> Pack<S> {
         ends
     }
 
-    /// What the events make of the densities, relative to the heroes'.
+    /// The chances to be scattered and to go straight on, given the heroes' ratios.
     #[inline(always)]
-    fn weigh<const BALANCED: bool>(
+    fn chances<const ALL: bool>(&self, world: &World<ALL>, own: f64x8<S>) -> [f64x8<S>; 2] {
+        let count = world.media.count;
+        if ALL && let Some(chance) = world.walker.together() {
+            let (ratios, weights) = (&self.ratios[..count], &self.weights[..count]);
+            let [scatters, passes, _] =
+                chance::of_events(chance, ratios, &world.albedos[..count], weights);
+            return [scatters, passes];
+        }
+        let odds = ParticleRule::Analog.odds(own, self.albedo);
+        [odds.scatter, odds.transmit]
+    }
+
+    /// What the events, of these chances, make of the densities, relative to the walker's.
+    #[inline(always)]
+    fn weigh<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         [is_scattered, is_null]: [mask64x8<S>; 2],
+        [scatters, passes]: [f64x8<S>; 2],
     ) {
         let (count, mut own) = (world.media.count, self.length);
         for channel in 0..count {
@@ -211,6 +226,9 @@ impl<S: Simd> Pack<S> {
             self.next[channel] = next;
             own = or_of_hero(self.hero, channel, own, next);
         }
+        if world.walker.together().is_some() {
+            own = Lane::select(is_null, passes, scatters);
+        }
         for channel in 0..count {
             let next = self.next[channel] / own;
             self.keep.put(&mut self.weights[channel], is_scattered | is_null, next);
@@ -219,15 +237,15 @@ impl<S: Simd> Pack<S> {
 
     /// Walks that have ended leave what draws are made of; answers whose last ones these are.
     #[inline(always)]
-    pub fn leave<const BALANCED: bool>(
+    pub fn leave<const ALL: bool>(
         &mut self,
-        world: &World<BALANCED>,
+        world: &World<ALL>,
         ended: mask64x8<S>,
         left: &mut Left,
     ) -> u64 {
         let rest = [self.hero, self.length, self.collisions, self.way];
         let count = world.media.count;
-        let weights = if BALANCED { &self.weights[..count] } else { &[] };
+        let weights = if ALL { &self.weights[..count] } else { &[] };
         let through = if world.tracks { &self.shadows.through[..count] } else { &[] };
         let ends = (ended.to_bitmask(), &mut self.slots);
         left.collect([&rest, weights, through], ends)

@@ -3,16 +3,19 @@
 //! ```text
 //! independent    E[X_λ^k] = w_λ^{1−k} E[x_λ^k],  E[X_λ X_μ] = 0,  x a draw of the channel by itself
 //! balanced       E[X_λ²] ≤ E[x_λ²]/w_λ
+//! relative to the density of one walker    all moments, see [`relative`]
 //! ```
 //!
 //! Lookups are those of the hero's walk, and its law is the mixture over heroes.
+
+pub mod relative;
 
 use super::prediction::Covariance;
 use super::single::Points;
 use super::{Channel, CountLaw, Prediction};
 
 /// The lookups of the walk of a hero, mixed over heroes.
-fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
+pub fn lookups(alone: &[Points], heroes: &[f64]) -> Option<[f64; 5]> {
     let mut mixed = [0.0; 5];
     for (points, chance) in alone.iter().zip(heroes) {
         for (sum, number) in mixed.iter_mut().zip(points.lookups?) {
@@ -39,9 +42,18 @@ pub fn independent(alone: &[Points], heroes: &[f64]) -> Prediction {
         Covariance::of_raw([next - 1, next], of(1), of(2), [0.0; 4])
     };
     let covariances = (1..powers.len()).map(covariance).collect();
-    let lookups = predictions.first().and_then(|found| found.lookups.clone());
-    let channels = predictions.into_iter().flat_map(|found| found.channels);
+    let (channels, lookups) = joined(predictions.into_iter());
     Prediction { channels: named(channels), lookups, covariances, ..Prediction::default() }
+}
+
+/// The channels of several predictions, and the lookups, which are those of the first.
+fn joined(each: impl Iterator<Item = Prediction>) -> (Vec<Channel>, Option<CountLaw>) {
+    let (mut channels, mut lookups) = (Vec::new(), None);
+    for found in each {
+        lookups = lookups.or(found.lookups);
+        channels.extend(found.channels);
+    }
+    (channels, lookups)
 }
 
 /// What theory says of all channels by the balance heuristic: means, the lookups, and a bound on the variance.
@@ -58,12 +70,11 @@ pub fn balanced(alone: &[Points], heroes: &[f64]) -> Prediction {
     let channel = |(points, chance): (&Points, &f64)| {
         Channel::bounded(points.truth, points.powers[2] * (1.0 + points.error) / chance)
     };
-    let channels = named(alone.iter().zip(heroes).map(channel));
+    let channels = named(alone.iter().zip(heroes).map(channel).collect());
     Prediction { channels, lookups: of_first, ..Prediction::default() }
 }
 
-fn named(channels: impl Iterator<Item = Channel>) -> Vec<Channel> {
-    let mut channels: Vec<Channel> = channels.collect();
+fn named(mut channels: Vec<Channel>) -> Vec<Channel> {
     if channels.len() > 1 {
         for (number, channel) in (1..).zip(&mut channels) {
             channel.name = format!("channel {number}");

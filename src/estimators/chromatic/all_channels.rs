@@ -1,0 +1,75 @@
+//! All channels by one draw: the page of a hero, of spectral tracking and of the balance heuristic, in all bodies.
+
+use fearless_simd::Level;
+
+use super::{Chromatic, Steps, WEIGHING, draw};
+use crate::catalogue::Settings;
+use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use crate::kernels::packet::Request;
+use crate::media::Lookups;
+use crate::rng::Stream;
+use crate::setup::heroes::Heroes;
+use crate::setup::walker::{BALANCED, Walker};
+use crate::theory::Prediction;
+
+/// A walk that scores all channels, of a kind of walker.
+#[derive(Debug, Clone)]
+pub struct AllChannels<const KIND: u8> {
+    /// Whose walk it is.
+    pub walker: Walker,
+}
+
+impl<const KIND: u8> Steps for AllChannels<KIND> {}
+
+impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const HAS_INVARIANT: bool = KIND == BALANCED;
+    const IN_PACKETS: bool = true;
+
+    fn read(settings: &Settings) -> Option<Self> {
+        Some(Self { walker: Walker::read(KIND, settings)? })
+    }
+
+    fn label(&self, _: bool) -> String {
+        self.walker.label()
+    }
+
+    fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
+        P::require(setup, &self.walker)?;
+        match &self.walker {
+            Walker::Hero(_) | Walker::Together(Some(_)) => {
+                P::squares(setup, &self.walker).map(|_| ())
+            }
+            Walker::Balanced(_) | Walker::Together(None) => Ok(()),
+        }
+    }
+
+    fn predict(&self, setup: &Setup<P>) -> Prediction {
+        let count = setup.channels.len();
+        match &self.walker {
+            Walker::Balanced(heroes) => P::predict_balanced(setup, &heroes.of(count)),
+            // It scores what equal heroes score by the balance heuristic, and flies as they do.
+            Walker::Together(None) => P::predict_balanced(setup, &Heroes::Uniform.of(count)),
+            Walker::Hero(_) | Walker::Together(Some(_)) => {
+                let squares = P::squares(setup, &self.walker);
+                let squares = squares.unwrap_or_else(|_| vec![f64::INFINITY; count]);
+                P::predict_relative(setup, &self.walker, &squares)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
+        draw(self, (&self.walker, WEIGHING), setup, medium, rng)
+    }
+
+    fn draw_packets<'a>(
+        &self,
+        level: Level,
+        setup: &Setup<P>,
+        medium: &Lookups,
+        request: Request<'a>,
+    ) -> Option<Request<'a>> {
+        P::packets::<true>(level, &self.walker, setup, medium, request)
+    }
+}

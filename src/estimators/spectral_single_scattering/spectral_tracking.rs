@@ -1,0 +1,24 @@
+//! Spectral tracking: all channels walk together through one σ̂, by chances that depend on all of them.
+//!
+//! ```text
+//! at a collision an event e has the chance P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   where it scatters
+//! X_λ = w_λ p_λ(cos θ) Φ/(4π r²) T̂_λ
+//! average  P_e = mean_λ μ_e,λ/μ̄      maximum  P_e ∝ max_λ μ_e,λ      history  P_e ∝ Σ_λ w_λ μ_e,λ
+//! ```
+//!
+//! | setting | meaning | default |
+//! |---|---|---|
+//! | `probabilities` | `"average"`, `"maximum"` or `"history"` | `"average"` |
+//! | `shadow` | `"exact"`, or `"ratio"`: ratio tracking through the same σ̂ | `"exact"` |
+//! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each, on shadow rays too where they are tracked | required here or in the case |
+//!
+//! Unbiased there. All moments are known of fixed chances; of those that depend on the weights, which score what
+//! `spectral-mis` scores with one σ̂ and equal probabilities, a mean and a bound.
+//!
+//! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering
+//! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
+
+use crate::setup::walker::TOGETHER;
+
+/// Spectral tracking.
+pub type SpectralTracking = super::page::AllChannels<TOGETHER>;

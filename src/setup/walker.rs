@@ -1,0 +1,232 @@
+//! Whose walk scores all channels, and what its densities are divided by.
+
+use super::Refusal;
+use super::channels::{require_common, require_room};
+use super::heroes::Heroes;
+use super::{SpectralChannel, channels};
+use crate::catalogue::{Settings, rounded};
+use crate::phase::Phase;
+use crate::theory::ParticleRule;
+use crate::theory::particle::Event;
+use crate::theory::spectral::bound::phi;
+use crate::theory::spectral::chance::{self, Chance};
+use crate::theory::spectral::rates::Walk;
+
+/// Whose walk scores all channels.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Walker {
+    /// That of a hero, divided by its density alone.
+    Hero(Heroes),
+    /// That of a hero, divided by the mean density of all heroes: multiple importance sampling.
+    Balanced(Heroes),
+    /// One of all channels, divided by the chances of what happened to it: spectral tracking. Without a fixed chance
+    /// these depend on the weights so far.
+    Together(Option<Chance>),
+}
+
+/// The chances of what a tentative collision is.
+#[derive(Debug, Clone, Copy)]
+pub struct Chances {
+    scattered: f64,
+    null: f64,
+    absorbed: f64,
+}
+
+impl Chances {
+    /// What a uniform number decides.
+    #[inline(always)]
+    pub fn decide(self, number: f64) -> Event {
+        if number < self.scattered {
+            Event::Scattered
+        } else if number < self.scattered + self.null {
+            Event::Transmitted
+        } else {
+            Event::Absorbed
+        }
+    }
+
+    /// The chance of an event.
+    #[inline(always)]
+    pub fn of(self, event: Event) -> f64 {
+        match event {
+            Event::Scattered => self.scattered,
+            Event::Transmitted => self.null,
+            Event::Absorbed => self.absorbed,
+        }
+    }
+}
+
+/// [`Walker::Hero`], as the kind of a page.
+pub const HERO: u8 = 0;
+/// [`Walker::Balanced`].
+pub const BALANCED: u8 = 1;
+/// [`Walker::Together`].
+pub const TOGETHER: u8 = 2;
+
+impl Walker {
+    /// Reads what a page of a kind takes: `hero`, or `probabilities`.
+    pub fn read(kind: u8, settings: &Settings) -> Option<Self> {
+        if kind != TOGETHER {
+            let heroes = Heroes::read(settings)?;
+            return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Balanced(heroes) });
+        }
+        let words = ["average", "maximum", "history"];
+        Some(Self::Together(match settings.word_or("probabilities", &words, "average")? {
+            "average" => Some(Chance::Average),
+            "maximum" => Some(Chance::Maximum),
+            _ => None,
+        }))
+    }
+
+    /// Its settings in words.
+    pub fn label(&self) -> String {
+        match self {
+            Self::Hero(heroes) | Self::Balanced(heroes) => heroes.label(),
+            Self::Together(Some(Chance::Average)) => "average".into(),
+            Self::Together(Some(Chance::Maximum)) => "maximum".into(),
+            Self::Together(None) => "history".into(),
+        }
+    }
+
+    /// The law of the hero; `None` where one walk is that of all channels, with the number 0.
+    #[inline(always)]
+    pub fn heroes(&self) -> Option<&Heroes> {
+        match self {
+            Self::Hero(heroes) | Self::Balanced(heroes) => Some(heroes),
+            Self::Together(_) => None,
+        }
+    }
+
+    /// The probabilities of heroes; of walks of all channels together that of the first is 1.
+    pub fn probabilities(&self, count: usize) -> Vec<f64> {
+        match self.heroes() {
+            Some(heroes) => heroes.of(count),
+            None => (0..count).map(|channel| if channel == 0 { 1.0 } else { 0.0 }).collect(),
+        }
+    }
+
+    /// Who walks: a hero that a uniform number chooses, or number 0 without one.
+    #[inline(always)]
+    pub fn choose(&self, count: usize, number: impl FnOnce() -> f64) -> usize {
+        self.heroes().map_or(0, |heroes| heroes.choose(count, number()))
+    }
+
+    /// The chances of what a collision is, given `σ_t/σ̂`, the albedo and the weight of each channel.
+    #[inline(always)]
+    pub fn chances(
+        &self,
+        hero: usize,
+        ratios: &[f64],
+        albedos: &[f64],
+        weights: &[f64],
+    ) -> Chances {
+        let [scattered, null, absorbed] = match self {
+            Self::Together(chance) => chance::of_events(*chance, ratios, albedos, weights),
+            _ => {
+                let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
+                [odds.scatter, odds.transmit, 1.0 - odds.scatter - odds.transmit]
+            }
+        };
+        Chances { scattered, null, absorbed }
+    }
+
+    /// How walks of all channels together choose what a collision is.
+    #[inline(always)]
+    #[allow(clippy::option_option)] // no such walk, and no fixed chance
+    pub fn together(&self) -> Option<Option<Chance>> {
+        match self {
+            Self::Together(chance) => Some(*chance),
+            _ => None,
+        }
+    }
+
+    /// A constant σ̂ in each channel, and what the walker needs of them: a probability for each, heroes with room for
+    /// what happens in other channels, or one σ̂ for all.
+    ///
+    /// # Errors
+    ///
+    /// What is violated, and where.
+    pub fn require(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
+        channels::require_constants(of)?;
+        match self {
+            Self::Hero(heroes) | Self::Balanced(heroes) => heroes.require(of.len()),
+            Self::Together(_) => require_common(of),
+        }
+    }
+
+    /// The same, and `σ̂ ≥ σ_t` on the ray.
+    ///
+    /// # Errors
+    ///
+    /// What is violated, and where.
+    pub fn require_on_ray(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
+        self.require(of)?;
+        channels::require_majorants(of)?;
+        match self {
+            Self::Hero(_) => require_room(of, true),
+            _ => Ok(()),
+        }
+    }
+
+    /// One phase function for all channels where they walk together: a walk has one direction.
+    ///
+    /// # Errors
+    ///
+    /// Two that differ.
+    pub fn require_phases(&self, phases: &[Phase]) -> Result<(), Refusal> {
+        let other = phases.iter().find(|phase| **phase != phases[0]);
+        match (self, other) {
+            (Self::Together(_), Some(other)) => {
+                let found = format!("{} and {}", phases[0].label(), other.label());
+                Err(Refusal::mismatch("one phase function for all channels", found))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Bounds on `E[X²]` of all channels, given one for a walk, a channel and its Φ, or what the second moment is
+    /// multiplied by between two scatterings where that is too much.
+    ///
+    /// # Errors
+    ///
+    /// The walk and the channel of which there is none.
+    pub fn squares(
+        &self,
+        phases: &[Phase],
+        of: impl Fn(Walk, usize, f64) -> Result<f64, f64>,
+    ) -> Result<Vec<f64>, Refusal> {
+        let walks: Vec<(f64, Walk)> = match self {
+            Self::Hero(heroes) | Self::Balanced(heroes) => {
+                let heroes = heroes.of(phases.len());
+                heroes.into_iter().enumerate().map(|(hero, w)| (w, Walk::Hero(hero))).collect()
+            }
+            Self::Together(chance) => {
+                chance.iter().map(|chance| (1.0, Walk::Together(*chance))).collect()
+            }
+        };
+        let of_channel = |channel: usize| {
+            let mut sum = 0.0;
+            for &(weight, walk) in &walks {
+                let (phi, who) = match walk {
+                    Walk::Hero(hero) => (
+                        phi(&phases[channel], &phases[hero]),
+                        format!("walks of hero {}", hero + 1),
+                    ),
+                    Walk::Together(_) => (1.0, "walks".into()),
+                };
+                let found = of(walk, channel, phi).map_err(|factor| {
+                    let times = if factor.is_finite() {
+                        format!("multiply E[X²] by up to {} between scatterings", rounded(factor))
+                    } else {
+                        "may gain without limit".into()
+                    };
+                    let found = format!("{who} {times} in channel {}", channel + 1);
+                    Refusal::mismatch("a second moment that theory bounds", found)
+                })?;
+                sum += weight * found;
+            }
+            Ok(sum)
+        };
+        (0..phases.len()).map(of_channel).collect()
+    }
+}

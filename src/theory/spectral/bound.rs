@@ -1,0 +1,139 @@
+//! A bound on the second moment of walks that scatter many times, where draws are relative to the density of one walker.
+//!
+//! With A, N and S of [`Rates`], `α = A − N` and `Φ = ∫ p_λ²/p_h dω`, the second moment of what a walk is still to score
+//! has a largest value M over all places and directions, with which, where flights within the body are at most ℓ long,
+//!
+//! ```text
+//! M ≤ max over flights of e + (A_b + S Φ M) f,   e = e^{−αℓ},  f = (1 − e)/α
+//! M ≤ max(1, (e + A_b f)/(1 − S Φ f)),  where S Φ f < 1
+//! ```
+//!
+//! where leaving scores 1, and absorption, of the rate A_b in the second moment, 1 too, or nothing. Where directions after a
+//! scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S and `A_b`, and `1 − e` for
+//! f. Where `S Φ f ≥ 1` the variance may be infinite, and may be not.
+//!
+//! Source: derived; the equation of the second moment is that of J. Spanier, E. M. Gelbard, *Monte Carlo Principles and
+//! Neutron Transport Problems* (1969).
+
+use super::rates::{Rates, Walk};
+use crate::numeric::quadrature::GaussLegendre;
+use crate::phase::Phase;
+use crate::phase::isotropic::Isotropic;
+
+/// Panels of the integral over directions.
+const PANELS: usize = 16;
+/// Second moments that change by less than this share of σ̂ do not change.
+pub const NOTHING: f64 = 1e-12;
+/// What is made sure of beyond rounding.
+const SLACK: f64 = 1e-9;
+
+/// The rates of the second moment of a channel.
+#[derive(Debug, Clone, Copy)]
+pub struct Square {
+    /// `α = A − N`.
+    pub lost: f64,
+    /// `S Φ`.
+    pub scattered: f64,
+    /// `A_b`.
+    pub absorbed: f64,
+}
+
+/// Those of a channel where all channels have these extinctions; `Φ` is given.
+pub fn square(rates: &Rates, walk: Walk, channel: usize, extinctions: &[f64], phi: f64) -> Square {
+    let mut k = vec![0; rates.majorants.len()];
+    k[channel] = 2;
+    let [null, scattered] = rates.gains(walk, &k, extinctions);
+    let lost = rates.loss(walk, &k) - null;
+    Square { lost, scattered: scattered * phi, absorbed: rates.absorbed(walk, &k, extinctions) }
+}
+
+/// How a flight ends: e, and f.
+#[derive(Debug, Clone, Copy)]
+pub struct Flight {
+    /// The second moment of what leaves.
+    pub leaves: f64,
+    /// What rates are multiplied by.
+    pub collides: f64,
+}
+
+impl Flight {
+    /// Of a length, where α is one number.
+    pub fn of(lost: f64, length: f64) -> Self {
+        if lost == 0.0 {
+            return Self { leaves: 1.0, collides: length };
+        }
+        let leaves = (-lost * length).exp();
+        Self { leaves, collides: (1.0 - leaves) / lost }
+    }
+
+    /// `e + (A_b + S M) f`.
+    fn scores(self, [scattered, absorbed]: [f64; 2], then: f64) -> f64 {
+        self.leaves + (absorbed + scattered * then) * self.collides
+    }
+}
+
+/// M of walks that begin with one flight and go on with others; `None` where none is known.
+pub fn largest(first: Flight, then: Flight, [scattered, absorbed]: [f64; 2]) -> Option<f64> {
+    let room = 1.0 - scattered * then.collides;
+    let of_rates = [scattered, absorbed];
+    let after = (then.leaves + absorbed * then.collides) / room;
+    let most = after.max(1.0);
+    let found = first.scores(of_rates, most).max(1.0) * (1.0 + SLACK);
+    (room > SLACK && found.is_finite()).then_some(found)
+}
+
+/// Whether directions after a scattering are isotropic in all channels.
+pub fn are_isotropic(phases: &[Phase]) -> bool {
+    phases.iter().all(|phase| *phase == Phase::Isotropic(Isotropic))
+}
+
+/// `Φ = ∫ p_λ²/p_h dω`.
+pub fn phi(own: &Phase, hero: &Phase) -> f64 {
+    if own == hero {
+        return 1.0;
+    }
+    let (rule, step) = (GaussLegendre::new(32), 2.0 / PANELS as f64);
+    let mut sum = 0.0;
+    for panel in 0..PANELS {
+        for (&x, &weight) in rule.nodes.iter().zip(&rule.weights) {
+            let cosine = -1.0 + (panel as f64 + x) * step;
+            sum += weight * step * own.value(cosine).powi(2) / hero.value(cosine);
+        }
+    }
+    std::f64::consts::TAU * sum
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One channel by itself scores 1, always.
+    #[test]
+    fn a_channel_by_itself_scores_one() {
+        let rates = Rates { majorants: vec![2.0], albedos: vec![0.7] };
+        let square = square(&rates, Walk::Hero(0), 0, &[1.5], 1.0);
+        assert!((square.lost - 1.5).abs() < 1e-15 && (square.scattered - 1.05).abs() < 1e-15);
+        let flight = Flight::of(square.lost, 3.0);
+        let found = largest(flight, flight, [square.scattered, square.absorbed]).expect("a bound");
+        assert!((found - 1.0).abs() < 1e-8, "{found}");
+    }
+
+    #[test]
+    fn a_scatterer_that_gains_too_much_has_no_bound() {
+        let rates = Rates { majorants: vec![1.0; 2], albedos: vec![1.0, 0.25] };
+        let square = square(&rates, Walk::Hero(1), 0, &[1.0, 1.0], 1.0);
+        // Each scattering multiplies the second moment by 4: a quarter of the flights may collide.
+        assert!((square.scattered - 4.0).abs() < 1e-12);
+        let at = |length: f64| {
+            let flight = Flight::of(square.lost, length);
+            largest(flight, flight, [square.scattered, square.absorbed])
+        };
+        assert!(at(0.28).is_some() && at(0.29).is_none());
+    }
+
+    #[test]
+    fn phase_functions_are_densities() {
+        let isotropic = Phase::Isotropic(Isotropic);
+        assert_eq!(phi(&isotropic, &isotropic), 1.0);
+    }
+}

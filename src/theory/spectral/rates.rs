@@ -1,0 +1,104 @@
+//! How powers of the weights of all channels grow along a walk that scores all of them.
+//!
+//! A walk of tentative collisions of rate μ̄ in which an event e (null, scattered) of the chance `P_e` multiplies the
+//! weight of the channel λ by `μ_e,λ/(μ̄ P_e)` has, with `K = Σ k_λ`,
+//!
+//! ```text
+//! E[Π X_λ^{k_λ}] of a stretch without scattering = exp(−A ℓ + ∫ N dt),   S the rate of scatterings
+//! hero h               A = Σ k_λ μ̄_λ − (K − 1) μ̄_h,  N = Π n_λ^{k_λ}/n_h^{K−1},  S = Π μ_s,λ^{k_λ}/μ_s,h^{K−1}
+//! spectral tracking    A = μ̄,  N = μ̄ Π (n_λ/μ̄)^{k_λ}/P_n^{K−1},  S = μ̄ Π (μ_s,λ/μ̄)^{k_λ}/P_s^{K−1}
+//! ratio tracking       A as above,  N = Π n_λ^{k_λ}/μ̄_h^{K−1}
+//! ```
+//!
+//! where lengths and rates of the hero's flights are in the weights, too. k = 0 counts walks.
+//!
+//! Source: derived by Campbell's theorem, as in [`super`].
+
+use super::chance::{self, Chance};
+use super::power;
+
+/// Who walks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Walk {
+    /// The hero of a number.
+    Hero(usize),
+    /// All channels together, by fixed chances.
+    Together(Chance),
+}
+
+/// The channels of a medium.
+#[derive(Debug, Clone)]
+pub struct Rates {
+    /// μ̄ of each.
+    pub majorants: Vec<f64>,
+    /// The albedo of each.
+    pub albedos: Vec<f64>,
+}
+
+impl Rates {
+    /// A, of the exponents k.
+    pub fn loss(&self, walk: Walk, k: &[i32]) -> f64 {
+        let hero = match walk {
+            Walk::Hero(hero) => hero,
+            Walk::Together(_) => 0,
+        };
+        let total: i32 = k.iter().sum();
+        let all: f64 = k.iter().zip(&self.majorants).map(|(&k, own)| f64::from(k) * own).sum();
+        all - f64::from(total - 1) * self.majorants[hero]
+    }
+
+    /// N and S, where the channels have these extinctions.
+    pub fn gains(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
+        let majorants = &self.majorants;
+        let null = |channel: usize| majorants[channel] - extinctions[channel];
+        let scattered = |channel: usize| extinctions[channel] * self.albedos[channel];
+        let [by_null, by_scattering] = match walk {
+            Walk::Hero(hero) => [null(hero), scattered(hero)],
+            Walk::Together(chance) => {
+                let [scattered, null, _] = self.chances(chance, extinctions);
+                [majorants[0] * null, majorants[0] * scattered]
+            }
+        };
+        [product(k, null, by_null), product(k, scattered, by_scattering)]
+    }
+
+    /// The same of absorption, as of a scattering.
+    pub fn absorbed(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> f64 {
+        let own = |channel: usize| extinctions[channel] * (1.0 - self.albedos[channel]);
+        let by = match walk {
+            Walk::Hero(hero) => own(hero),
+            Walk::Together(chance) => self.majorants[0] * self.chances(chance, extinctions)[2],
+        };
+        product(k, own, by)
+    }
+
+    /// `P_s`, `P_n` and `P_a` of walks of all channels together.
+    fn chances(&self, chance: Chance, extinctions: &[f64]) -> [f64; 3] {
+        let ratios: Vec<f64> =
+            extinctions.iter().zip(&self.majorants).map(|(sigma, own)| sigma / own).collect();
+        chance::of_events(Some(chance), &ratios, &self.albedos, &ratios)
+    }
+
+    /// N of ratio tracking through the walker's σ̂.
+    pub fn gain_of_ratio(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> f64 {
+        let hero = match walk {
+            Walk::Hero(hero) => hero,
+            Walk::Together(_) => 0,
+        };
+        product(k, |channel| self.majorants[channel] - extinctions[channel], self.majorants[hero])
+    }
+}
+
+/// `Π x_λ^{k_λ}/by^{K−1}`; 0 where nothing happens in a channel that is asked for.
+fn product(k: &[i32], of: impl Fn(usize) -> f64, by: f64) -> f64 {
+    let mut found = 1.0;
+    for (channel, &k) in k.iter().enumerate().filter(|(_, k)| **k > 0) {
+        found *= power(of(channel), f64::from(k));
+    }
+    let total: i32 = k.iter().sum();
+    match total {
+        0 => by,
+        _ if found == 0.0 => 0.0,
+        _ => found / by.powi(total - 1),
+    }
+}
