@@ -51,7 +51,7 @@ pub fn walks<'a, const ALL: bool>(
     let mut albedos = [0.0; MOST_CHANNELS];
     albedos[..media.count].copy_from_slice(&problem.albedos);
     let tracks = shadow == Shadow::Ratio;
-    let channels = problem.channels.iter().filter(|_| tracks);
+    let channels = problem.channels.iter();
     let world = World::<ALL> {
         problem,
         medium,

@@ -11,7 +11,6 @@ use crate::media::Volume;
 use crate::media::body::MOST_CHANNELS;
 use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
-use crate::problems::SpectralSingleScattering;
 use crate::setup::walker::Walker;
 
 /// Makes draws of what walks have left.
@@ -33,7 +32,7 @@ pub fn all<S: Simd, const ALL: bool>(simd: S, world: &World<ALL>, left: &Left, m
                 *through = left.row(simd, before + channel, first);
             }
         } else {
-            exact::<S, ALL>(world.problem, (s, hero), is_lit, through);
+            exact(world, (s, hero), is_lit, through);
         }
         if ALL {
             for (channel, found) in found.iter_mut().enumerate() {
@@ -73,21 +72,28 @@ fn is_number<S: Simd>(hero: f64x8<S>, channel: usize) -> mask64x8<S> {
 /// channels, for those that a mask names.
 #[inline(always)]
 fn exact<S: Simd, const ALL: bool>(
-    problem: &SpectralSingleScattering,
+    world: &World<ALL>,
     (s, hero): (f64x8<S>, f64x8<S>),
     is_lit: mask64x8<S>,
     through: &mut [f64x8<S>],
 ) {
+    let problem = world.problem;
     let ([from, to], lines) = inside(&problem.channels[0], is_lit, s);
     let is_blocked = is_lit & from.below(to);
     let [origin, direction] = lines;
+    let ([a, b, c], [x, y, z]) = (origin, direction);
+    let rays = [a, b, c, x, y, z, from, to];
     let lines = [rows(origin), rows(direction)];
     let [from_row, to_row, _] = rows([from, to, to]);
     for (channel, through) in through.iter_mut().enumerate() {
         let lit = &problem.channels[channel];
         let which = if ALL { is_blocked } else { is_blocked & is_number(hero, channel) };
-        let depth = match lit.volume().single_value() {
-            Some(value) => (to - from) * value,
+        let known = match lit.volume().single_value() {
+            Some(value) => Some((to - from) * value),
+            None => world.in_space[channel].depths(&rays),
+        };
+        let depth = match known {
+            Some(depth) => depth,
             None => s.replaced(
                 #[inline(always)]
                 |depths| {
