@@ -172,7 +172,11 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
     fn fly(&mut self, rays: &ShadowRays, number: usize, points: &mut [[f64; PAIR]; 3]) -> f64x8<S> {
         self.casts = self.shadows.on;
         let flies = self.page.flies() & !(self.casts | self.aiming);
-        let depth = -self.numbers.ln_uniform_where(flies | self.casts);
+        let moves = flies | self.casts;
+        let mut depth = self.from.each(0.0);
+        if moves.to_bitmask() != 0 {
+            depth = -self.numbers.ln_uniform_where(moves);
+        }
         // With nobody on a shadow ray, too: it costs less than a branch that no machine foresees.
         if rays.tracking != Tracking::Exact {
             (self.place, self.inside) = self.shadows.fly(rays, self.origin, depth);
