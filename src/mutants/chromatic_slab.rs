@@ -14,7 +14,7 @@ use crate::estimators::chromatic::{WEIGHING, draw};
 use crate::problems::ChromaticSlab;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
-use crate::theory::spectral::Chance;
+use crate::theory::spectral::{Chance, Chances};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
@@ -24,7 +24,7 @@ pub fn mutants() -> Vec<Mutant<ChromaticSlab>> {
         let walker = if target == CHROMATIC_SLAB {
             Walker::Balanced(Heroes::Uniform)
         } else {
-            Walker::Together(Some(Chance::Average))
+            Walker::Together(Chances::Fixed(Chance::Average))
         };
         let right = Right(walker.clone());
         Mutant::new(

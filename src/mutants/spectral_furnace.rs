@@ -14,7 +14,7 @@ use crate::problems::SpectralFurnace;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
 use crate::theory::particle::Event;
-use crate::theory::spectral::Chance;
+use crate::theory::spectral::{Chance, Chances};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
@@ -24,7 +24,7 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
         let walker = if target == SPECTRAL_FURNACE {
             Walker::Balanced(Heroes::Uniform)
         } else {
-            Walker::Together(Some(Chance::Maximum))
+            Walker::Together(Chances::Fixed(Chance::Maximum))
         };
         let right = Right(walker.clone());
         Mutant::new(

@@ -13,7 +13,7 @@ use crate::estimators::spectral_single_scattering::walk::{Steps, draw};
 use crate::problems::SpectralSingleScattering;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
-use crate::theory::spectral::Chance;
+use crate::theory::spectral::{Chance, Chances};
 
 /// The family.
 #[rustfmt::skip] // one mutant, one entry
@@ -23,7 +23,7 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         let (walker, shadow) = if target == SPECTRAL_SINGLE_EXACT {
             (Walker::Balanced(Heroes::Uniform), Shadow::Exact)
         } else if target == SPECTRAL_SINGLE_TRACKING {
-            (Walker::Together(Some(Chance::Average)), Shadow::Exact)
+            (Walker::Together(Chances::Fixed(Chance::Average)), Shadow::Exact)
         } else if target == SPECTRAL_SINGLE_HERO {
             (Walker::Hero(Heroes::Given(vec![0.3, 0.3, 0.4])), Shadow::Ratio)
         } else {

@@ -9,7 +9,7 @@ use crate::phase::Phase;
 use crate::theory::ParticleRule;
 use crate::theory::particle::Event;
 use crate::theory::spectral::bound::phi;
-use crate::theory::spectral::chance::{self, Chance};
+use crate::theory::spectral::chance::{Chance, Chances, shares};
 use crate::theory::spectral::rates::Walk;
 
 /// Whose walk scores all channels.
@@ -19,20 +19,19 @@ pub enum Walker {
     Hero(Heroes),
     /// That of a hero, divided by the mean density of all heroes: multiple importance sampling.
     Balanced(Heroes),
-    /// One of all channels, divided by the chances of what happened to it: spectral tracking. Without a fixed chance
-    /// these depend on the weights so far.
-    Together(Option<Chance>),
+    /// One of all channels, divided by the chances of what happened to it: spectral tracking.
+    Together(Chances),
 }
 
 /// The chances of what a tentative collision is.
 #[derive(Debug, Clone, Copy)]
-pub struct Chances {
+pub struct EventChances {
     scattered: f64,
     null: f64,
     absorbed: f64,
 }
 
-impl Chances {
+impl EventChances {
     /// What a uniform number decides.
     #[inline(always)]
     pub fn decide(self, number: f64) -> Event {
@@ -63,6 +62,16 @@ pub const BALANCED: u8 = 1;
 /// [`Walker::Together`].
 pub const TOGETHER: u8 = 2;
 
+/// Reads `probabilities`: how spectral tracking chooses what a collision is.
+pub fn read_chances(settings: &Settings) -> Option<Chances> {
+    let words = ["average", "maximum", "history"];
+    Some(match settings.word_or("probabilities", &words, "average")? {
+        "average" => Chances::Fixed(Chance::Average),
+        "maximum" => Chances::Fixed(Chance::Maximum),
+        _ => Chances::History,
+    })
+}
+
 impl Walker {
     /// Reads what a page of a kind takes: `hero`, or `probabilities`.
     pub fn read(kind: u8, settings: &Settings) -> Option<Self> {
@@ -70,21 +79,14 @@ impl Walker {
             let heroes = Heroes::read(settings)?;
             return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Balanced(heroes) });
         }
-        let words = ["average", "maximum", "history"];
-        Some(Self::Together(match settings.word_or("probabilities", &words, "average")? {
-            "average" => Some(Chance::Average),
-            "maximum" => Some(Chance::Maximum),
-            _ => None,
-        }))
+        Some(Self::Together(read_chances(settings)?))
     }
 
     /// Its settings in words.
     pub fn label(&self) -> String {
         match self {
             Self::Hero(heroes) | Self::Balanced(heroes) => heroes.label(),
-            Self::Together(Some(Chance::Average)) => "average".into(),
-            Self::Together(Some(Chance::Maximum)) => "maximum".into(),
-            Self::Together(None) => "history".into(),
+            Self::Together(chances) => chances.label().into(),
         }
     }
 
@@ -119,23 +121,27 @@ impl Walker {
         ratios: &[f64],
         albedos: &[f64],
         weights: &[f64],
-    ) -> Chances {
-        let [scattered, null, absorbed] = match self {
-            Self::Together(chance) => chance::of_events(*chance, ratios, albedos, weights),
+    ) -> EventChances {
+        let [null, scattered, absorbed] = match self {
+            Self::Together(chances) => chances.of_events(
+                ratios.len(),
+                #[inline(always)]
+                |channel| shares(ratios[channel], albedos[channel]),
+                weights,
+            ),
             _ => {
                 let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
-                [odds.scatter, odds.transmit, 1.0 - odds.scatter - odds.transmit]
+                [odds.transmit, odds.scatter, 1.0 - odds.scatter - odds.transmit]
             }
         };
-        Chances { scattered, null, absorbed }
+        EventChances { scattered, null, absorbed }
     }
 
     /// How walks of all channels together choose what a collision is.
     #[inline(always)]
-    #[allow(clippy::option_option)] // no such walk, and no fixed chance
-    pub fn together(&self) -> Option<Option<Chance>> {
+    pub fn together(&self) -> Option<Chances> {
         match self {
-            Self::Together(chance) => Some(*chance),
+            Self::Together(chances) => Some(*chances),
             _ => None,
         }
     }
@@ -200,9 +206,8 @@ impl Walker {
                 let heroes = heroes.of(phases.len());
                 heroes.into_iter().enumerate().map(|(hero, w)| (w, Walk::Hero(hero))).collect()
             }
-            Self::Together(chance) => {
-                chance.iter().map(|chance| (1.0, Walk::Together(*chance))).collect()
-            }
+            Self::Together(Chances::Fixed(chance)) => vec![(1.0, Walk::Together(*chance))],
+            Self::Together(Chances::History) => Vec::new(),
         };
         let of_channel = |channel: usize| {
             let mut sum = 0.0;

@@ -250,6 +250,12 @@ fn spectral() -> Vec<Case> {
         case("coloured-slab", include_str!("../../cases/spectral-slab/magnet.toml")),
         case("chromatic-slab", include_str!("../../cases/chromatic-slab/three-colours.toml")),
         case("one-scattering", include_str!("../../cases/spectral-single-scattering/magnet.toml")),
+        case("like-slab", include_str!("../../cases/chromatic-slab/like-colours.toml")),
+        case("like-furnace", include_str!("../../cases/spectral-furnace/like-colours.toml")),
+        case(
+            "without-mis",
+            include_str!("../../cases/spectral-single-scattering/without-mis.toml"),
+        ),
         case("coloured-furnace", include_str!("../../cases/spectral-furnace/magnet.toml")),
     ]
 }

@@ -11,6 +11,7 @@ use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::{BALANCED, Walker};
 use crate::theory::Prediction;
+use crate::theory::spectral::Chances;
 
 /// A walk that scores all channels, of a kind of walker.
 #[derive(Debug, Clone)]
@@ -37,10 +38,10 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
         P::require(setup, &self.walker)?;
         match &self.walker {
-            Walker::Hero(_) | Walker::Together(Some(_)) => {
+            Walker::Hero(_) | Walker::Together(Chances::Fixed(_)) => {
                 P::squares(setup, &self.walker).map(|_| ())
             }
-            Walker::Balanced(_) | Walker::Together(None) => Ok(()),
+            Walker::Balanced(_) | Walker::Together(Chances::History) => Ok(()),
         }
     }
 
@@ -49,8 +50,10 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
         match &self.walker {
             Walker::Balanced(heroes) => P::predict_balanced(setup, &heroes.of(count)),
             // It scores what equal heroes score by the balance heuristic, and flies as they do.
-            Walker::Together(None) => P::predict_balanced(setup, &Heroes::Uniform.of(count)),
-            Walker::Hero(_) | Walker::Together(Some(_)) => {
+            Walker::Together(Chances::History) => {
+                P::predict_balanced(setup, &Heroes::Uniform.of(count))
+            }
+            Walker::Hero(_) | Walker::Together(Chances::Fixed(_)) => {
                 let squares = P::squares(setup, &self.walker);
                 let squares = squares.unwrap_or_else(|_| vec![f64::INFINITY; count]);
                 P::predict_relative(setup, &self.walker, &squares)

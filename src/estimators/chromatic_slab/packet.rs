@@ -239,7 +239,7 @@ impl<S: Simd, const ALL: bool> Particles<S> for InSlab<'_, S, ALL> {
         let own = self.densities.look(&page.media, self.hero, found);
         let by = (&page.scatterers, page.walker);
         let chances = self.densities.chances(by, [own, self.albedo]);
-        let [scatters, passes, _] = chances;
+        let [passes, scatters, _] = chances;
         let number = numbers.uniform_where(inside);
         let scattered = inside & number.below(scatters);
         let null = inside & !scattered & number.below(scatters + passes);

@@ -228,7 +228,7 @@ impl<S: Simd> Pack<S> {
         let own = self.densities.look(&world.media, self.hero, found);
         let by = (&world.scatterers, world.walker);
         let chances = self.densities.chances(by, [own, self.albedo]);
-        let [scatters, passes, _] = chances;
+        let [passes, scatters, _] = chances;
         let number = self.numbers.uniform_where(inside);
         let is_scattered = inside & number.below(scatters);
         let is_null = inside & !is_scattered & number.below(scatters + passes);

@@ -30,8 +30,10 @@ use crate::problems::spectral_lit_rod::Values;
 use crate::rng::Stream;
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::read_chances;
 use crate::theory::Prediction;
-use crate::theory::spectral_lit_rod::{Chances, Tracker};
+use crate::theory::spectral::Chances;
+use crate::theory::spectral_lit_rod::Tracker;
 
 /// Spectral tracking.
 #[derive(Debug, Clone)]
@@ -44,21 +46,11 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
     const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
-        let words = ["average", "maximum", "history"];
-        let chances = match settings.word_or("probabilities", &words, "average")? {
-            "maximum" => Chances::Maximum,
-            "history" => Chances::History,
-            _ => Chances::Average,
-        };
-        Some(Self { chances })
+        Some(Self { chances: read_chances(settings)? })
     }
 
     fn label(&self, _: bool) -> String {
-        match self.chances {
-            Chances::Average => "average".into(),
-            Chances::Maximum => "maximum".into(),
-            Chances::History => "history".into(),
-        }
+        self.chances.label().into()
     }
 
     fn domain(&self, setup: &Setup<SpectralLitRod>) -> Result<(), Refusal> {
@@ -99,7 +91,8 @@ impl Estimator<SpectralLitRod> for SpectralTracking {
                 let scattered = real * setup.problem.albedo(channel, cursor.t);
                 *share = [1.0 - real, scattered, real - scattered];
             }
-            let chances = self.chances.of(&shares[..count], &weights[..count]);
+            let chances =
+                self.chances.of_events(count, |channel| shares[channel], &weights[..count]);
             let event = usize::from(number >= chances[0]);
             if number >= chances[0] + chances[1] {
                 return Draw::free(setup.problem.values([0.0; MOST_CHANNELS]), lookups);

@@ -17,6 +17,7 @@ use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
 use crate::theory::Prediction;
 use crate::theory::single::{Points, Tracking};
+use crate::theory::spectral::Chances;
 use crate::theory::spectral::rates::Walk;
 use crate::theory::spectral_single_scattering::{self as theory, relative::Relative};
 
@@ -78,8 +79,10 @@ fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Sha
     let walks = match walker {
         Walker::Balanced(heroes) => return theory::balanced(&alone, &heroes.of(count)),
         // It scores what equal heroes score by the balance heuristic, and flies as they do.
-        Walker::Together(None) => return theory::balanced(&alone, &Heroes::Uniform.of(count)),
-        Walker::Together(Some(chance)) => vec![(1.0, Walk::Together(*chance))],
+        Walker::Together(Chances::History) => {
+            return theory::balanced(&alone, &Heroes::Uniform.of(count));
+        }
+        Walker::Together(Chances::Fixed(chance)) => vec![(1.0, Walk::Together(*chance))],
         Walker::Hero(heroes) => {
             heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Walk::Hero(h))).collect()
         }

@@ -32,13 +32,25 @@ use crate::problems::spectral_transmittance::Values;
 use crate::rng::Stream;
 use crate::setup::channels;
 use crate::setup::heroes::Heroes;
+use crate::setup::walker::read_chances;
 use crate::theory::Prediction;
-use crate::theory::spectral::{Chance, Tracker};
+use crate::theory::spectral::{Chances, Tracker};
 
-/// Spectral tracking; without a fixed chance it depends on the weights so far.
+/// Spectral tracking.
 #[derive(Debug, Clone)]
 pub struct SpectralTracking {
-    chance: Option<Chance>,
+    chances: Chances,
+}
+
+impl SpectralTracking {
+    /// For theory, and for packets.
+    fn tracker(&self) -> Tracker {
+        match self.chances {
+            Chances::Fixed(chance) => Tracker::Tracking(chance),
+            // Weights that remember are those of the balance heuristic.
+            Chances::History => Tracker::Mis { delta: true },
+        }
+    }
 }
 
 impl Estimator<SpectralTransmittance> for SpectralTracking {
@@ -46,21 +58,11 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
     const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
-        let words = ["average", "maximum", "history"];
-        let chance = match settings.word_or("probabilities", &words, "average")? {
-            "average" => Some(Chance::Average),
-            "maximum" => Some(Chance::Maximum),
-            _ => None,
-        };
-        Some(Self { chance })
+        Some(Self { chances: read_chances(settings)? })
     }
 
     fn label(&self, _: bool) -> String {
-        match self.chance {
-            Some(Chance::Average) => "average".into(),
-            Some(Chance::Maximum) => "maximum".into(),
-            None => "history".into(),
-        }
+        self.chances.label().into()
     }
 
     fn domain(&self, setup: &Setup<SpectralTransmittance>) -> Result<(), Refusal> {
@@ -70,9 +72,7 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
     }
 
     fn predict(&self, setup: &Setup<SpectralTransmittance>) -> Prediction {
-        // Weights that remember are those of the balance heuristic.
-        let tracker = self.chance.map_or(Tracker::Mis { delta: true }, Tracker::Tracking);
-        walk::spectrum(setup, &Heroes::Uniform, tracker).predict(&setup.problem.luminance)
+        walk::spectrum(setup, &Heroes::Uniform, self.tracker()).predict(&setup.problem.luminance)
     }
 
     #[inline(always)]
@@ -98,7 +98,7 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
                 let extinction = medium.channel(channel).extinction(cursor.t);
                 *share = 1.0 - extinction / common.majorant;
             }
-            let null = if let Some(chance) = self.chance {
+            let null = if let Chances::Fixed(chance) = self.chances {
                 chance.of_null(shares)
             } else {
                 let (mut nulls, mut all) = (0.0, 0.0);
@@ -124,8 +124,7 @@ impl Estimator<SpectralTransmittance> for SpectralTracking {
         medium: &Lookups,
         request: Request<'a>,
     ) -> Option<Request<'a>> {
-        let tracker = self.chance.map_or(Tracker::Mis { delta: true }, Tracker::Tracking);
-        let rule = Rule { tracker, is_common: true, heroes: &Heroes::Uniform };
+        let rule = Rule { tracker: self.tracker(), is_common: true, heroes: &Heroes::Uniform };
         packet::walks(level, setup, rule, medium, request)
     }
 }

@@ -13,7 +13,7 @@ use crate::numeric::Lane;
 use crate::phase::Phase;
 use crate::setup::walker::Walker;
 use crate::theory::ParticleRule;
-use crate::theory::spectral::chance;
+use crate::theory::spectral::chance::shares;
 
 /// What happens in each channel where a walk collides.
 pub struct Scatterers {
@@ -96,7 +96,7 @@ impl<S: Simd> Densities<S> {
         own
     }
 
-    /// The chances to be scattered, to go straight on and to be absorbed, where all channels walk together, or of heroes,
+    /// The chances to go straight on, to be scattered and to be absorbed, where all channels walk together, or of heroes,
     /// given their own ratios and albedos.
     #[inline(always)]
     pub fn chances(
@@ -105,12 +105,16 @@ impl<S: Simd> Densities<S> {
         [own, albedo]: [f64x8<S>; 2],
     ) -> [f64x8<S>; 3] {
         let count = scatterers.phases.len();
-        if let Some(chance) = walker.together() {
-            let (ratios, weights) = (&self.ratios[..count], &self.weights[..count]);
-            return chance::of_events(chance, ratios, &scatterers.albedos[..count], weights);
+        if let Some(chances) = walker.together() {
+            return chances.of_events(
+                count,
+                #[inline(always)]
+                |channel| shares(self.ratios[channel], scatterers.albedos[channel]),
+                &self.weights,
+            );
         }
         let odds = ParticleRule::Analog.odds(own, albedo);
-        [odds.scatter, odds.transmit, own]
+        [odds.transmit, odds.scatter, own]
     }
 
     /// What events make of them; those that are scattered turn by a cosine. They stay relative to those of heroes or,
@@ -120,7 +124,7 @@ impl<S: Simd> Densities<S> {
         &mut self,
         (scatterers, walker): (&Scatterers, &Walker),
         hero: f64x8<S>,
-        (events, [scatters, passes, ends]): (Events<S>, [f64x8<S>; 3]),
+        (events, [passes, scatters, ends]): (Events<S>, [f64x8<S>; 3]),
         cosine: f64x8<S>,
     ) {
         let (count, one, mut own) = (scatterers.phases.len(), hero.each(1.0), hero);

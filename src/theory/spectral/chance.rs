@@ -33,39 +33,60 @@ impl Chance {
     }
 }
 
-/// The chances to be scattered, to go straight on and to be absorbed, given `σ_t/σ̂`, the albedo and the weight of each
-/// channel; without a fixed chance they depend on the weights.
-#[inline(always)]
-pub fn of_events<L: Lane>(
-    chance: Option<Chance>,
-    ratios: &[L],
-    albedos: &[f64],
-    weights: &[L],
-) -> [L; 3] {
-    let (zero, one) = (ratios[0].each(0.0), ratios[0].each(1.0));
-    let [mut scattered, mut null, mut absorbed] = [zero; 3];
-    for channel in 0..ratios.len() {
-        let (ratio, albedo) = (ratios[channel], one.each(albedos[channel]));
-        let [scatters, passes, ends] = [ratio * albedo, one - ratio, ratio * (one - albedo)];
-        match chance {
-            Some(Chance::Average) => {
-                scattered = scattered + scatters;
-                null = null + passes;
-                absorbed = absorbed + ends;
-            }
-            Some(Chance::Maximum) => {
-                scattered = scattered.or_more(scatters);
-                null = null.or_more(passes);
-                absorbed = absorbed.or_more(ends);
-            }
-            None => {
-                let weight = weights[channel];
-                scattered = scattered + weight * scatters;
-                null = null + weight * passes;
-                absorbed = absorbed + weight * ends;
-            }
+/// How spectral tracking chooses what a collision is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Chances {
+    /// Whatever happened before.
+    Fixed(Chance),
+    /// By the mean over the channels, weighted by what the path has brought each so far.
+    History,
+}
+
+impl Chances {
+    /// As case files and tables have it.
+    pub fn label(self) -> &'static str {
+        match self {
+            Self::Fixed(Chance::Average) => "average",
+            Self::Fixed(Chance::Maximum) => "maximum",
+            Self::History => "history",
         }
     }
-    let sum = scattered + null + absorbed;
-    [scattered / sum, null / sum, absorbed / sum]
+
+    /// The chances of events, given `μ_e/μ̄` and the weight of each of so many channels: to go straight on, to be scattered
+    /// and to be absorbed.
+    #[inline(always)]
+    pub fn of_events<L: Lane>(
+        self,
+        count: usize,
+        shares: impl Fn(usize) -> [L; 3],
+        weights: &[L],
+    ) -> [L; 3] {
+        let [mut null, mut scattered, mut absorbed] = [weights[0].each(0.0); 3];
+        for channel in 0..count {
+            let [n, s, a] = shares(channel);
+            match self {
+                Self::Fixed(Chance::Average) => {
+                    (null, scattered, absorbed) = (null + n, scattered + s, absorbed + a);
+                }
+                Self::Fixed(Chance::Maximum) => {
+                    (null, scattered) = (null.or_more(n), scattered.or_more(s));
+                    absorbed = absorbed.or_more(a);
+                }
+                Self::History => {
+                    let weight = weights[channel];
+                    (null, scattered) = (null + weight * n, scattered + weight * s);
+                    absorbed = absorbed + weight * a;
+                }
+            }
+        }
+        let sum = null + scattered + absorbed;
+        [null / sum, scattered / sum, absorbed / sum]
+    }
+}
+
+/// `μ_e/μ̄` of a channel, given `σ_t/σ̂` and the albedo: null, scattered, absorbed.
+#[inline(always)]
+pub fn shares<L: Lane>(ratio: L, albedo: f64) -> [L; 3] {
+    let (one, albedo) = (ratio.each(1.0), ratio.each(albedo));
+    [one - ratio, ratio * albedo, ratio * (one - albedo)]
 }

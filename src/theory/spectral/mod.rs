@@ -28,7 +28,7 @@ pub mod lookups;
 mod predict;
 pub mod rates;
 
-pub use self::chance::Chance;
+pub use self::chance::{Chance, Chances};
 
 use super::Mesh;
 use crate::numeric::Known;

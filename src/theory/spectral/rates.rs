@@ -14,7 +14,7 @@
 //!
 //! Source: derived by Campbell's theorem, as in [`super`].
 
-use super::chance::{self, Chance};
+use super::chance::{Chance, Chances, shares};
 use super::power;
 
 /// Who walks.
@@ -55,7 +55,7 @@ impl Rates {
         let [by_null, by_scattering] = match walk {
             Walk::Hero(hero) => [null(hero), scattered(hero)],
             Walk::Together(chance) => {
-                let [scattered, null, _] = self.chances(chance, extinctions);
+                let [null, scattered, _] = self.chances(chance, extinctions);
                 [majorants[0] * null, majorants[0] * scattered]
             }
         };
@@ -72,11 +72,10 @@ impl Rates {
         product(k, own, by)
     }
 
-    /// `P_s`, `P_n` and `P_a` of walks of all channels together.
+    /// `P_n`, `P_s` and `P_a` of walks of all channels together.
     fn chances(&self, chance: Chance, extinctions: &[f64]) -> [f64; 3] {
-        let ratios: Vec<f64> =
-            extinctions.iter().zip(&self.majorants).map(|(sigma, own)| sigma / own).collect();
-        chance::of_events(Some(chance), &ratios, &self.albedos, &ratios)
+        let of = |i: usize| shares(extinctions[i] / self.majorants[i], self.albedos[i]);
+        Chances::Fixed(chance).of_events(extinctions.len(), of, extinctions)
     }
 
     /// N of ratio tracking through the walker's σ̂.

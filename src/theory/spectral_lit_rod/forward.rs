@@ -19,6 +19,7 @@ use super::{Moments, PAIRS};
 use crate::media::Piecewise;
 use crate::problems::SpectralLitRod;
 use crate::theory::rod::moments::POWERS;
+use crate::theory::spectral::Chances;
 use crate::theory::spectral::cells::{balanced, join};
 use crate::theory::spectral::lookups::survived;
 use crate::theory::{CountLaw, Mesh};
@@ -27,38 +28,6 @@ use crate::theory::{CountLaw, Mesh};
 const ROUNDING: f64 = 1e-13;
 /// Rates that differ by less are one constant, relative to the largest σ̂.
 const CONSTANT: f64 = 1e-13;
-
-/// How spectral tracking chooses between null, scattering and absorbing collisions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chances {
-    /// `P_e` = mean over the channels of `μ_e/μ̄`.
-    Average,
-    /// `P_e = max μ_e/Σ max μ_e`.
-    Maximum,
-    /// `P_e` = mean over the channels of `μ_e/μ̄`, weighted by what the path has brought each so far.
-    History,
-}
-
-impl Chances {
-    /// The chances, given `μ_e/μ̄` and the weight of each channel.
-    #[inline(always)]
-    pub fn of(self, shares: &[[f64; 3]], weights: &[f64]) -> [f64; 3] {
-        let (mut chances, mut sum) = ([0.0f64; 3], 0.0);
-        for (share, weight) in shares.iter().zip(weights) {
-            for (chance, share) in chances.iter_mut().zip(share) {
-                match self {
-                    Self::Average => *chance += share,
-                    Self::Maximum => *chance = chance.max(*share),
-                    Self::History => *chance += weight * share,
-                }
-            }
-        }
-        for chance in chances {
-            sum += chance;
-        }
-        chances.map(|chance| chance / sum)
-    }
-}
 
 /// A rod in which light goes on forward, on a mesh for all its channels.
 pub struct Forward {
@@ -139,7 +108,7 @@ impl Forward {
         for panel in self.mesh.panels() {
             for _ in panel.t {
                 let shares = self.shares(nodes.len());
-                let chance = chances.of(&shares, &weights);
+                let chance = chances.of_events(shares.len(), |channel| shares[channel], &weights);
                 nodes.push((shares, chance));
             }
         }
@@ -231,7 +200,8 @@ impl Forward {
     pub fn lookups(&self, chances: Chances) -> Option<CountLaw> {
         let weights = vec![1.0; self.heroes.len()];
         let survival = |node: usize| {
-            let chances = chances.of(&self.shares(node), &weights);
+            let shares = self.shares(node);
+            let chances = chances.of_events(shares.len(), |channel| shares[channel], &weights);
             chances[0] + chances[1]
         };
         if chances == Chances::History {

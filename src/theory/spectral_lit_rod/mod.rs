@@ -16,12 +16,12 @@ pub mod bound;
 pub mod forward;
 pub mod orders;
 
-pub use self::forward::Chances;
 use self::forward::Forward;
 use self::orders::Orders;
 use super::lit_rod::{self, Combination, Densities, Found, Heuristic, Shadow, Techniques};
 use super::prediction::Covariance;
 use super::rod::{central, tails};
+use super::spectral::Chances;
 use super::{Channel, CountLaw, Mesh, Prediction, Tails};
 use crate::media::Piecewise;
 use crate::numeric::Known;

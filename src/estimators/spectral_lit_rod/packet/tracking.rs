@@ -16,7 +16,7 @@ use crate::numeric::Lane;
 use crate::numeric::pack::{self, Task};
 use crate::problems::SpectralLitRod;
 use crate::setup::heroes::Heroes;
-use crate::theory::spectral_lit_rod::Chances;
+use crate::theory::spectral::Chances;
 
 /// The draws by chances, on the hardware of a level; a request is handed back where the hardware is too narrow.
 pub fn walks<'a>(
@@ -92,33 +92,6 @@ struct Tracked<'a, S: Simd> {
     lookups: f64x8<S>,
 }
 
-impl<S: Simd> Tracked<'_, S> {
-    /// The chances of null collisions, scatterings and absorptions, as [`Chances::of`].
-    #[inline(always)]
-    fn chances(&self) -> [f64x8<S>; 3] {
-        let zero = self.way.each(0.0);
-        let [mut null, mut scattered, mut absorbed] = [zero; 3];
-        for channel in 0..self.page.media.count {
-            let ([n, s, a], weight) = (self.shares[channel], self.weights[channel]);
-            match self.chances {
-                Chances::Average => {
-                    (null, scattered, absorbed) = (null + n, scattered + s, absorbed + a);
-                }
-                Chances::Maximum => {
-                    (null, scattered) = (null.or_more(n), scattered.or_more(s));
-                    absorbed = absorbed.or_more(a);
-                }
-                Chances::History => {
-                    (null, scattered) = (null + weight * n, scattered + weight * s);
-                    absorbed += weight * a;
-                }
-            }
-        }
-        let sum = null + scattered + absorbed;
-        [null / sum, scattered / sum, absorbed / sum]
-    }
-}
-
 impl<S: Simd> Particles<S> for Tracked<'_, S> {
     type Found = [f64x8<S>; MOST_CHANNELS];
 
@@ -144,7 +117,12 @@ impl<S: Simd> Particles<S> for Tracked<'_, S> {
             let scattered = real * page.albedo(channel, t);
             self.shares[channel] = [one - real, scattered, real - scattered];
         }
-        let [null, scattered, _] = self.chances();
+        let [null, scattered, _] = self.chances.of_events(
+            count,
+            #[inline(always)]
+            |channel| self.shares[channel],
+            &self.weights,
+        );
         let is_real = null.at_most(number);
         let absorbed = inside & (null + scattered).at_most(number);
         let chance = Lane::select(is_real, scattered, null);

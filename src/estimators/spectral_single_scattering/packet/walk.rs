@@ -12,7 +12,7 @@ use crate::media::body::MOST_CHANNELS;
 use crate::numeric::Lane;
 use crate::numeric::twin::PAIR;
 use crate::theory::ParticleRule;
-use crate::theory::spectral::chance;
+use crate::theory::spectral::chance::shares;
 
 /// So many lanes cast their shadow rays together: to find where they lead costs more than a step. While fewer wait for it,
 /// others are on their way.
@@ -200,10 +200,13 @@ impl<S: Simd> Pack<S> {
     #[inline(always)]
     fn chances<const ALL: bool>(&self, world: &World<ALL>, own: f64x8<S>) -> [f64x8<S>; 2] {
         let count = world.media.count;
-        if ALL && let Some(chance) = world.walker.together() {
-            let (ratios, weights) = (&self.ratios[..count], &self.weights[..count]);
-            let [scatters, passes, _] =
-                chance::of_events(chance, ratios, &world.albedos[..count], weights);
+        if ALL && let Some(chances) = world.walker.together() {
+            let [passes, scatters, _] = chances.of_events(
+                count,
+                #[inline(always)]
+                |channel| shares(self.ratios[channel], world.albedos[channel]),
+                &self.weights,
+            );
             return [scatters, passes];
         }
         let odds = ParticleRule::Analog.odds(own, self.albedo);
