@@ -122,17 +122,16 @@ impl Walker {
         albedos: &[f64],
         weights: &[f64],
     ) -> EventChances {
-        let [null, scattered, absorbed] = match self {
-            Self::Together(chances) => chances.of_events(
+        let [null, scattered, absorbed] = if let Self::Together(chances) = self {
+            chances.of_events(
                 ratios.len(),
                 #[inline(always)]
                 |channel| shares(ratios[channel], albedos[channel]),
                 weights,
-            ),
-            _ => {
-                let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
-                [odds.transmit, odds.scatter, 1.0 - odds.scatter - odds.transmit]
-            }
+            )
+        } else {
+            let odds = ParticleRule::Analog.odds(ratios[hero], albedos[hero]);
+            [odds.transmit, odds.scatter, 1.0 - odds.scatter - odds.transmit]
         };
         EventChances { scattered, null, absorbed }
     }

@@ -8,7 +8,7 @@
 //! M ≤ max(1, (e + A_b f)/(1 − S Φ f)),  where S Φ f < 1
 //! ```
 //!
-//! where leaving scores 1, and absorption, of the rate A_b in the second moment, 1 too, or nothing. Where directions after a
+//! where leaving scores 1, and absorption, of the rate `A_b` in the second moment, 1 too, or nothing. Where directions after a
 //! scattering are isotropic, e is a mean over them. Where α varies, S/α and `A_b/α` stand for S and `A_b`, and `1 − e` for
 //! f. Where `S Φ f ≥ 1` the variance may be infinite, and may be not.
 //!

@@ -55,6 +55,10 @@ impl Chances {
     /// The chances of events, given `μ_e/μ̄` and the weight of each of so many channels: to go straight on, to be scattered
     /// and to be absorbed.
     #[inline(always)]
+    #[expect(
+        clippy::needless_range_loop,
+        reason = "loops of kernels count: iterators may not be inlined there"
+    )]
     pub fn of_events<L: Lane>(
         self,
         count: usize,

@@ -106,9 +106,9 @@ impl<'a> Spectrum<'a> {
         let walkers = self.walkers();
         (0..self.colours.albedos.len()).find_map(|channel| {
             let square = self.only(channel, 2);
-            let albedos =
+            let mut albedos =
                 walkers.iter().map(|&(_, scatter)| self.albedo_of_power(&square, scatter));
-            albedos.filter_map(|albedo| self.body.beyond(albedo)).next().map(|why| (channel, why))
+            albedos.find_map(|albedo| self.body.beyond(albedo)).map(|why| (channel, why))
         })
     }
 

@@ -254,7 +254,9 @@ impl<'a> Relative<'a> {
 fn powers(count: usize) -> Vec<Vec<i32>> {
     let of = |given: &[(usize, i32)]| {
         let mut k = vec![0; count];
-        given.iter().for_each(|&(channel, power)| k[channel] = power);
+        for &(channel, power) in given {
+            k[channel] = power;
+        }
         k
     };
     let mut all: Vec<Vec<i32>> = (0..count)
