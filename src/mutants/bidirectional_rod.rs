@@ -8,8 +8,8 @@ use super::target::{
     BIDIRECTIONAL_DIRECTIONAL, BIDIRECTIONAL_FULL, BIDIRECTIONAL_TECHNIQUE, BIDIRECTIONAL_TRACKED,
 };
 use super::{About, Mutant, with};
-use crate::estimators::bidirectional_rod::Page;
-use crate::estimators::bidirectional_rod::walk::{Path, Steps, draw};
+use crate::estimators::bidirectional_rod::walk::{self, Path, Steps};
+use crate::estimators::bidirectional_rod::{Page, draw};
 use crate::problems::BidirectionalRod;
 use crate::rng::Stream;
 use crate::theory::Heuristic;
@@ -19,7 +19,7 @@ use crate::theory::bidirectional_rod::{Combination, quotient};
 #[rustfmt::skip] // one mutant, one entry
 pub fn mutants() -> Vec<Mutant<BidirectionalRod>> {
     let of = |name, bug, target, check, page: Page, wrong| {
-        Mutant::new(About { name, bug, target, check }, with(Wrong { page, bug: wrong }, draw), with(page, draw))
+        Mutant::new(About { name, bug, target, check }, with(Wrong { page, bug: wrong }, walk::draw), with(page, draw))
     };
     let full = Page { combination: Combination::Full(Heuristic::Balance), is_tracked: false, is_shared: false };
     let tracked = Page { is_tracked: true, ..full };

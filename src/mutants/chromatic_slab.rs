@@ -7,10 +7,10 @@
 //!
 //! Absorbed walks score nothing: the slips of the furnace that only those show are none here.
 
-use super::spectral_furnace::{Right, Slip, Wrong};
+use super::spectral_furnace::{Slip, Wrong};
 use super::target::{CHROMATIC_SLAB, CHROMATIC_SLAB_TRACKING};
 use super::{About, Mutant, Target, with};
-use crate::estimators::chromatic::{WEIGHING, draw};
+use crate::estimators::chromatic::{draw, draw_all};
 use crate::problems::ChromaticSlab;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
@@ -26,11 +26,11 @@ pub fn mutants() -> Vec<Mutant<ChromaticSlab>> {
         } else {
             Walker::Together(Chances::Fixed(Chance::Average))
         };
-        let right = Right(walker.clone());
+        let right = walker.clone();
         Mutant::new(
             about,
             with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| draw(right, (&right.0, WEIGHING), setup, medium, rng)),
+            with(right, draw_all),
         )
     };
     vec![

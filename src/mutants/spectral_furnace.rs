@@ -8,7 +8,7 @@
 
 use super::target::{SPECTRAL_FURNACE, SPECTRAL_FURNACE_TRACKING};
 use super::{About, Mutant, Target, with};
-use crate::estimators::chromatic::{Steps, WEIGHING, draw};
+use crate::estimators::chromatic::{Steps, WEIGHING, draw, draw_all};
 use crate::kernels::hero::{LastPiece, Weighing};
 use crate::problems::SpectralFurnace;
 use crate::setup::heroes::Heroes;
@@ -26,11 +26,11 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
         } else {
             Walker::Together(Chances::Fixed(Chance::Maximum))
         };
-        let right = Right(walker.clone());
+        let right = walker.clone();
         Mutant::new(
             about,
             with(Wrong { slip, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.weighing()), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| draw(right, (&right.0, WEIGHING), setup, medium, rng)),
+            with(right, draw_all),
         )
     };
     vec![
@@ -65,11 +65,6 @@ pub(super) struct Wrong {
     pub(super) slip: Slip,
     pub(super) walker: Walker,
 }
-
-/// The right walk.
-pub(super) struct Right(pub(super) Walker);
-
-impl Steps for Right {}
 
 impl Wrong {
     pub(super) fn weighing(&self) -> Weighing {

@@ -9,7 +9,7 @@ use super::target::{
 };
 use super::{About, Mutant, Target, with};
 use crate::estimators::spectral_single_scattering::Shadow;
-use crate::estimators::spectral_single_scattering::walk::{Steps, draw};
+use crate::estimators::spectral_single_scattering::walk::{Steps, draw, draw_all};
 use crate::problems::SpectralSingleScattering;
 use crate::setup::heroes::Heroes;
 use crate::setup::walker::Walker;
@@ -29,11 +29,11 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         } else {
             (Walker::Balanced(Heroes::Uniform), Shadow::Ratio)
         };
-        let right = Right { walker: walker.clone(), shadow };
+        let right = walker.clone();
         Mutant::new(
             about,
             with(Wrong { slip, shadow, walker }, |wrong, setup, medium, rng| draw(wrong, (&wrong.walker, wrong.shadow), setup, medium, rng)),
-            with(right, |right, setup, medium, rng| draw(right, (&right.walker, right.shadow), setup, medium, rng)),
+            with(right, move |right, setup, medium, rng| draw_all((right, shadow), setup, medium, rng)),
         )
     };
     vec![
@@ -48,14 +48,6 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
         of("spectral-single-tracking-albedo-missing", "spectral tracking multiplies by r, not by r a, where it scatters", SPECTRAL_SINGLE_TRACKING, Slip::AlbedoMissing),
     ]
 }
-
-/// The right walk.
-struct Right {
-    walker: Walker,
-    shadow: Shadow,
-}
-
-impl Steps for Right {}
 
 /// What goes wrong.
 #[derive(Debug, Clone, Copy, PartialEq)]

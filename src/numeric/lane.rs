@@ -203,7 +203,13 @@ macro_rules! rounded {
                 if *FUSED {
                     elementary::$function(Fused(self)).0
                 } else {
-                    elementary::$function(Plain(self)).0
+                    // Few machines do this: one copy is enough.
+                    #[cold]
+                    #[inline(never)]
+                    fn plainly(x: f64) -> f64 {
+                        elementary::$function(Plain(x)).0
+                    }
+                    plainly(self)
                 }
             }
         )*

@@ -71,7 +71,11 @@ pub trait Task {
 /// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
 ///
 /// SSE4.2 is left out, for few machines have it and not AVX2: they run the code for SSE2.
+///
+/// Inlined, so that each task is compiled in the codegen unit of its own module: one unit of all tasks would keep one core
+/// busy, alone, for a minute at the end of a build.
 #[cfg(target_arch = "x86_64")]
+#[inline(always)]
 pub fn on<T: Task>(level: Level, task: T) -> T::Output {
     match (level.as_avx512(), level.as_avx2(), level.as_sse2()) {
         (Some(simd), ..) => vectorized(simd, task),
@@ -87,6 +91,7 @@ pub fn on<T: Task>(level: Level, task: T) -> T::Output {
 ///
 /// The task, on x86 without AVX2.
 #[cfg(target_arch = "x86_64")]
+#[inline(always)]
 pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
     match (level.as_avx512(), level.as_avx2()) {
         (Some(simd), _) => Ok(vectorized(simd, task)),
@@ -101,12 +106,14 @@ pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
 ///
 /// None on this architecture.
 #[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
 pub fn on_wide<T: Task>(level: Level, task: T) -> Result<T::Output, T> {
     Ok(on(level, task))
 }
 
 /// Runs a task on the hardware of a level: the one place where code for a machine is chosen.
 #[cfg(not(target_arch = "x86_64"))]
+#[inline(always)]
 pub fn on<T: Task>(level: Level, task: T) -> T::Output {
     fearless_simd::dispatch!(level, simd => vectorized(simd, task))
 }

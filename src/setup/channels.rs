@@ -117,8 +117,8 @@ impl Room<'_> {
                 format!("{stretch} in channel {number} on a stretch, which biases the others,");
             return Err(Refusal::Inequality { needs, found, at: panel.span.from });
         }
-        let least = cut.largest(|t, _| -share(hero, t));
-        if let Some((at, _)) = least.filter(|&(at, least)| -least <= TOUCHES && is_open(at)) {
+        let least = cut.peaks(|t| -share(hero, t));
+        if let Some((at, _)) = least.into_iter().find(|&(t, s)| -s <= TOUCHES && is_open(t)) {
             let found = format!("{touch} in channel {number}: E[X²] is infinite");
             return Err(Refusal::Inequality { needs: "a finite variance", found, at });
         }

@@ -126,8 +126,8 @@ impl<'a> Spectrum<'a> {
         // Where nothing happens nothing is lost or gained.
         let is_empty = |s: &Square| s.scattered == 0.0 && s.lost.abs() <= nothing;
         let of = |f: &dyn Fn(Square) -> f64| {
-            let found = mesh.largest(|t, _| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
-            found.map_or(0.0, |(_, value)| value)
+            let peaks = mesh.peaks(|t| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
+            peaks.into_iter().map(|(_, value)| value).fold(0.0, f64::max)
         };
         let gained = of(&|s| -s.lost);
         let [largest, share] = [of(&|s| s.lost), of(&|s| s.scattered / s.lost)];

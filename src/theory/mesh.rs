@@ -331,6 +331,30 @@ impl Mesh {
         candidates.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))
     }
 
+    /// Every local maximum of a function, and its values at both ends of each panel: distances and values.
+    pub fn peaks(&self, f: impl Fn(f64) -> f64) -> Vec<(f64, f64)> {
+        let mut peaks = Vec::new();
+        for Panel { span, t, .. } in self.panels() {
+            let edge = 1e-12 * span.length();
+            let mut places = vec![span.from + edge];
+            places.extend(t);
+            places.push(span.to - edge);
+            let values: Vec<f64> = places.iter().map(|&t| f(t)).collect();
+            let last = places.len() - 1;
+            peaks.extend([(places[0], values[0]), (places[last], values[last])]);
+            for here in 0..=last {
+                let (before, after) = (here.saturating_sub(1), (here + 1).min(last));
+                if values[here] >= values[before] && values[here] >= values[after] {
+                    let tolerance = 1e-9 * span.length();
+                    let [from, to] = [places[before], places[after]];
+                    let peak = roots::minimum(from, to, tolerance, |t| -f(t));
+                    peaks.extend([(places[here], values[here]), (peak, f(peak))]);
+                }
+            }
+        }
+        peaks
+    }
+
     /// τ over the support.
     pub fn optical_depth(&self) -> Known {
         self.depth.unwrap_or_else(|| self.medium.optical_depth(self.support()))

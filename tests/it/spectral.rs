@@ -125,6 +125,21 @@ fn a_hero_whose_majorant_touches_is_refused_with_the_place() {
     let biased =
         reason(&two(&same, "{ constant = { value = 1 } }", "hero = { collisions = \"delta\" }"));
     assert!(biased.contains("biases the others, at t = 0"), "{biased}");
+    // Where both channels touch, or nearly so, another place counts, whatever comes first.
+    for [hero, other] in
+        [["[1, 2, 1, 2, 1]", "[1, 1, 1, 2, 1]"], ["[1, 2, 1, 2, 1]", "[1, 2, 1, 1, 1]"]]
+    {
+        let field = |values: &str| {
+            format!("{{ piecewise-linear = {{ knots = [0, 0.5, 1, 1.5, 2], values = {values} }} }}")
+        };
+        let media = format!("{}, {}", field(hero), field(other));
+        let told =
+            reason(&two(&media, "{ constant.value = 2 }", "hero = { collisions = \"delta\" }"));
+        assert!(
+            told.contains("σ̂ = 2.000000 touches σ_t in channel 1: E[X²] is infinite"),
+            "{told}"
+        );
+    }
     // Multiple importance sampling mends both.
     for media in [RAMP, &same] {
         let fine = reason(&two(
@@ -252,6 +267,29 @@ fn beyond_the_critical_length_spectral_tracking_is_refused_and_multiple_importan
         fine.clone().count() == 3 && fine.clone().all(|row| row.reason.is_empty()),
         "{reasons:?}"
     );
+}
+
+/// In a rod that scatters forward only the second moment of a dark hero is e^{999}/2: no number, and no certainty.
+#[test]
+fn what_no_number_holds_is_not_taken_for_nothing() {
+    for (albedos, forward) in [("[1, 0.001]", 1.0), ("[1, 0.0026]", 1.0), ("[1, 0.001]", 0.999)] {
+        let rows = rows(
+            &format!(
+                "title = \"rod\"\n[problem.spectral-rod]\nmedium.constant.extinction = 1\nspan = [0, 1]\nforward = {forward}\n\
+                 albedos = {albedos}\nsampling.constant.value = 1.5\nestimators = [{{ hero = {{}} }}]\n"
+            ),
+            20_000,
+        );
+        for row in rows {
+            assert_ne!(row.verdict, Some(Verdict::Fail), "{}", row.reason);
+            let known = row.predicted_variance.unwrap_or(f64::INFINITY);
+            assert!(
+                !row.channel.ends_with("channel 1") || known > 1e100,
+                "{}: {known}",
+                row.channel
+            );
+        }
+    }
 }
 
 #[derive(Deserialize)]

@@ -89,6 +89,55 @@ fn walks_without_a_bound_are_refused() {
     }
 }
 
+/// Forward peaks, losses that cancel and majorants that touch σ_t by rounding have no false bound: no correct estimator fails.
+#[test]
+fn bounds_hold_at_the_edges() {
+    let ball = |extinctions: [f64; 2],
+                albedos: [f64; 2],
+                g: [f64; 2],
+                radius: f64,
+                sampling: &str| {
+        let volume = extinctions.map(|extinction| {
+            format!("{{ constant = {{ extinction = {extinction:?}, bounds.sphere = {{ centre = [0, 0, 0], radius = {radius:?} }} }} }}")
+        });
+        format!(
+            "title = \"edge\"\n[problem.spectral-furnace]\nvolume = [{}, {}]\n\
+             ray = {{ origin = [0.1, 0.05, -2], direction = [0, 0, 1], length = 4 }}\nalbedos = {albedos:?}\n\
+             phases = [{{ henyey-greenstein.g = {:?} }}, {{ henyey-greenstein.g = {:?} }}]\n{sampling}\nestimators = [{{ hero = {{}} }}]\n",
+            volume[0], volume[1], g[0], g[1]
+        )
+    };
+    let edges = [
+        ball([5.0, 5.0], [0.98, 0.98], [0.999, 0.998], 1.0, "sampling.constant.value = 5.5"),
+        ball([0.45, 0.675], [0.95, 0.1], [0.3, 0.3], 0.5, "sampling.constant.value = 0.9"),
+        ball(
+            [1.8, 1.5],
+            [0.5, 0.5],
+            [0.0, 0.0],
+            1.0,
+            "sampling.constant.value = 0.6\nsweep.sampling-scale.values = [3]",
+        ),
+        ball([1.000_000_000_5, 0.5], [0.5, 0.5], [0.0, 0.0], 1.0, "sampling.constant.value = 1"),
+        ball([1.0, 1.0], [1.0, 0.9], [0.0, 0.0], 1.0, "sampling.constant.value = 1.5"),
+    ];
+    for text in edges {
+        for row in rows(&text, 20_000) {
+            assert_eq!(
+                row.verdict,
+                Some(Verdict::Refused),
+                "{text}{}: {}",
+                row.channel,
+                row.reason
+            );
+            assert!(
+                row.reason.contains("multiply E[X²]") || row.reason.contains("without limit"),
+                "{}",
+                row.reason
+            );
+        }
+    }
+}
+
 /// Of one channel every draw is 1.
 #[test]
 fn one_channel_alone_is_certain() {

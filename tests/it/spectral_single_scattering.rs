@@ -173,6 +173,29 @@ fn mistakes_and_what_is_out_of_reach_are_told() {
     assert!(row.reason.contains(words), "{}", row.reason);
 }
 
+/// Where the hero's σ_t comes down to 0 at both ends of a box, and that of the other channel at one.
+#[test]
+fn heroes_without_scatterings_are_refused_wherever_that_is() {
+    for other in ["[1, 1, 0]", "[0, 1, 1]"] {
+        let volume = ["[0, 1, 0]", other].map(|values| {
+            format!(
+                "{{ piecewise-linear = {{ knots = [-1, 0, 1], values = {values}, \
+                 bounds.box = {{ low = [-1, -1, -1], high = [1, 1, 1] }} }} }}"
+            )
+        });
+        let rows = predicted(&format!(
+            "title = \"box\"\n[problem.spectral-single-scattering]\nvolume = [{}, {}]\n\
+             ray = {{ origin = [0.2, 0.1, -2], direction = [0, 0, 1], length = 4 }}\n\
+             light = {{ position = [0.9, -0.3, 0.4], power = 10 }}\nalbedos = [0.9, 0.7]\n\
+             phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\nsampling.constant.value = 2\n\
+             estimators = [{{ hero = {{}} }}]\n",
+            volume[0], volume[1]
+        ));
+        let words = "σ_t comes down to 0 in channel 1: E[X²] is infinite";
+        assert!(rows[0].reason.contains(words), "{other}: {}", rows[0].reason);
+    }
+}
+
 /// Pairs of fields in a ball or a box, of every cost, with both forms of shadow rays, some of which miss the medium.
 #[test]
 fn walks_side_by_side_are_walks_one_by_one() {

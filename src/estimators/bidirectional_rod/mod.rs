@@ -8,10 +8,13 @@ pub mod walk;
 
 use self::walk::Steps;
 use crate::catalogue::{Settings, rounded};
-use crate::estimators::{Refusal, Setup, estimators};
+use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::kernels::packet::bidirectional::Techniques;
+use crate::media::Lookups;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::BidirectionalRod;
-use crate::problems::bidirectional_rod::Sensor;
+use crate::problems::bidirectional_rod::{Sensor, Values};
+use crate::rng::Stream;
 use crate::theory::Heuristic;
 use crate::theory::Prediction;
 use crate::theory::bidirectional_rod::{self, Combination, Connection, Rules, Scene};
@@ -145,6 +148,20 @@ impl Page {
     }
 }
 
+/// Makes one draw: compiled once for all pages.
+#[inline(never)]
+pub fn draw(
+    page: &Page,
+    setup: &Setup<BidirectionalRod>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    in_fused_code(
+        #[inline(always)]
+        || walk::draw(page, setup, medium, rng),
+    )
+}
+
 /// Whether no path of so many scatterings arrives: of what it is worth nothing is left to share.
 fn is_dark(problem: &BidirectionalRod, order: usize) -> bool {
     let is_transmitted = problem.sensor == Sensor::Transmitted;
@@ -203,7 +220,7 @@ macro_rules! pages {
                 medium: &$crate::media::Lookups,
                 rng: &mut $crate::rng::Stream,
             ) -> $crate::estimators::Draw<$crate::problems::bidirectional_rod::Values> {
-                $crate::estimators::bidirectional_rod::walk::draw(&self.0, setup, medium, rng)
+                $crate::estimators::bidirectional_rod::draw(&self.0, setup, medium, rng)
             }
 
             fn draw_packets<'a>(

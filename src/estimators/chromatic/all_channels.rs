@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::{Chromatic, Steps, WEIGHING, draw};
+use super::{Chromatic, draw_all};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
@@ -19,8 +19,6 @@ pub struct AllChannels<const KIND: u8> {
     /// Whose walk it is.
     pub walker: Walker,
 }
-
-impl<const KIND: u8> Steps for AllChannels<KIND> {}
 
 impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
@@ -63,7 +61,7 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
 
     #[inline(always)]
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw(self, (&self.walker, WEIGHING), setup, medium, rng)
+        draw_all(&self.walker, setup, medium, rng)
     }
 
     fn draw_packets<'a>(

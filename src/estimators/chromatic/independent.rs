@@ -2,7 +2,7 @@
 
 use fearless_simd::Level;
 
-use super::{Chromatic, Steps, draw_alone};
+use super::{Chromatic, draw_alone};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
 use crate::kernels::packet::Request;
@@ -19,8 +19,6 @@ pub struct Independent {
     /// The walk of its hero.
     walker: Walker,
 }
-
-impl Steps for Independent {}
 
 impl<P: Chromatic> Estimator<P> for Independent {
     const INPUTS: Inputs = Inputs::SAMPLING;
@@ -45,7 +43,7 @@ impl<P: Chromatic> Estimator<P> for Independent {
 
     #[inline(always)]
     fn draw(&self, setup: &Setup<P>, medium: &Lookups, rng: &mut Stream) -> Draw<P::Value> {
-        draw_alone(self, (&self.walker, &self.heroes), setup, medium, rng)
+        draw_alone((&self.walker, &self.heroes), setup, medium, rng)
     }
 
     fn draw_packets<'a>(

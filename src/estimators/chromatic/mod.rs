@@ -12,6 +12,7 @@ use crate::kernels::hero::{Path, Weighing};
 use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::media::body::MOST_CHANNELS;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::Problem;
 use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
@@ -52,6 +53,11 @@ pub trait Steps {
         depth / cosine
     }
 }
+
+/// The right steps.
+pub struct Right;
+
+impl Steps for Right {}
 
 /// What became of a walk.
 pub struct Left<E> {
@@ -117,6 +123,20 @@ pub trait Chromatic: Problem {
 /// How the balance heuristic weights a walk: there are no shadow rays.
 pub const WEIGHING: Weighing = Weighing { has_next_event: false, ..Weighing::RIGHT };
 
+/// Makes one draw that scores all channels: compiled once for all walkers.
+#[inline(never)]
+pub fn draw_all<P: Chromatic>(
+    walker: &Walker,
+    setup: &Setup<P>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<P::Value> {
+    in_fused_code(
+        #[inline(always)]
+        || draw(&Right, (walker, WEIGHING), setup, medium, rng),
+    )
+}
+
 /// Makes one draw that scores all channels, by the steps of a walk.
 #[inline(always)]
 pub fn draw<P: Chromatic>(
@@ -144,7 +164,6 @@ pub fn draw<P: Chromatic>(
 /// Makes one draw that scores the channel of its hero.
 #[inline(always)]
 fn draw_alone<P: Chromatic>(
-    steps: &impl Steps,
     (walker, heroes): (&Walker, &Heroes),
     setup: &Setup<P>,
     medium: &Lookups,
@@ -152,7 +171,7 @@ fn draw_alone<P: Chromatic>(
 ) -> Draw<P::Value> {
     let count = setup.channels.len();
     let hero = heroes.choose(count, rng.uniform());
-    let Left { end, lookups, .. } = P::walk(steps, setup, (walker, hero), medium, rng);
+    let Left { end, lookups, .. } = P::walk(&Right, setup, (walker, hero), medium, rng);
     let mut scores = [0.0; MOST_CHANNELS];
     scores[hero] = 1.0 / heroes.probability(count, hero);
     Draw::free(setup.problem.values(end, &scores), lookups)

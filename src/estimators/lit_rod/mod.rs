@@ -13,6 +13,7 @@ use crate::catalogue::Settings;
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::kernels::packet::Request;
 use crate::media::Lookups;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::{LitRod, Problem};
 use crate::rng::Stream;
 use crate::theory::lit_rod::{self, Heuristic, Shadow, Techniques};
@@ -30,7 +31,7 @@ pub trait Lit: Problem<Value = [f64; 1]> {
     /// What theory says of its draws.
     fn predict(setup: &Setup<Self>, techniques: Techniques) -> Prediction;
 
-    /// One of them.
+    /// One of them: compiled once for all pages.
     fn draw(
         techniques: Techniques,
         setup: &Setup<Self>,
@@ -66,14 +67,17 @@ impl Lit for LitRod {
         lit_rod::predict(mesh, problem, sampling, techniques, setup.laws)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn draw(
         techniques: Techniques,
         setup: &Setup<Self>,
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
-        walk::draw(&techniques, setup, medium, rng)
+        in_fused_code(
+            #[inline(always)]
+            || walk::draw(&techniques, setup, medium, rng),
+        )
     }
 
     fn packets<'a>(

@@ -13,6 +13,7 @@ use super::lit_rod::{self, Lit};
 use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::kernels::packet::Request;
 use crate::media::Lookups;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::LitSlab;
 use crate::rng::Stream;
 use crate::theory::lit_rod::{Combination, Techniques};
@@ -41,7 +42,7 @@ impl Lit for LitSlab {
         lit_slab::predict(mesh, problem, sampling, techniques, setup.laws)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn draw(
         techniques: Techniques,
         setup: &Setup<Self>,
@@ -49,7 +50,10 @@ impl Lit for LitSlab {
         rng: &mut Stream,
     ) -> Draw<[f64; 1]> {
         let techniques = lit_slab::possible(techniques, setup.problem.light);
-        walk::draw((&techniques, &walk::Right), setup, medium, rng)
+        in_fused_code(
+            #[inline(always)]
+            || walk::draw((&techniques, &walk::Right), setup, medium, rng),
+        )
     }
 
     fn packets<'a>(

@@ -105,8 +105,10 @@ impl Chromatic for SpectralFurnace {
                 _ => across,
             };
             let [first, then] = [across, then].map(|length| Flight::of(square.lost, length));
-            bound::largest(first, then, [square.scattered, square.absorbed])
-                .ok_or(square.scattered * then.collides)
+            let found = bound::largest(first, then, [square.scattered, square.absorbed]);
+            // A hero may never be absorbed where another channel is.
+            let is_finite = square.absorbed.is_finite();
+            found.ok_or(if is_finite { square.scattered * then.collides } else { f64::INFINITY })
         })
     }
 

@@ -45,11 +45,6 @@ impl walk::Scores for Hero {
     }
 
     #[inline(always)]
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
-        albedos[hero]
-    }
-
-    #[inline(always)]
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
         walk::relative(albedos, hero, order)
     }

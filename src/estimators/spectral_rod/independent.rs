@@ -33,11 +33,6 @@ impl walk::Scores for Independent {
     }
 
     #[inline(always)]
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
-        albedos[hero]
-    }
-
-    #[inline(always)]
     fn weights(&self, albedos: &[f64], hero: usize, _: u32) -> [f64; MOST_CHANNELS] {
         let mut weights = [0.0; MOST_CHANNELS];
         weights[hero] = 1.0 / self.heroes.probability(albedos.len(), hero);

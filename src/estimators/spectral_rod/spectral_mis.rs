@@ -36,11 +36,6 @@ impl walk::Scores for SpectralMis {
     }
 
     #[inline(always)]
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
-        albedos[hero]
-    }
-
-    #[inline(always)]
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS] {
         let count = albedos.len();
         let mut weights = walk::relative(albedos, hero, order);

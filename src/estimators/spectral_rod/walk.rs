@@ -63,7 +63,10 @@ pub trait Scores {
     fn heroes(&self) -> Option<&Heroes>;
 
     /// A hero's chance to be scattered at a real collision.
-    fn chance(&self, albedos: &[f64], hero: usize) -> f64;
+    #[inline(always)]
+    fn chance(&self, albedos: &[f64], hero: usize) -> f64 {
+        albedos[hero]
+    }
 
     /// What its walk is worth in every channel where it leaves after so many scatterings.
     fn weights(&self, albedos: &[f64], hero: usize, order: u32) -> [f64; MOST_CHANNELS];

@@ -3,7 +3,7 @@
 
 use fearless_simd::Level;
 
-use super::walk::{self, Steps};
+use super::walk::draw_all;
 use super::{Shadow, packet, predict, realisable};
 use crate::catalogue::Settings;
 use crate::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
@@ -23,8 +23,6 @@ pub struct AllChannels<const KIND: u8> {
     /// How shadow rays are tracked.
     pub shadow: Shadow,
 }
-
-impl<const KIND: u8> Steps for AllChannels<KIND> {}
 
 impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
@@ -55,7 +53,7 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
         medium: &Lookups,
         rng: &mut Stream,
     ) -> Draw<Values> {
-        walk::draw(self, (&self.walker, self.shadow), setup, medium, rng)
+        draw_all((&self.walker, self.shadow), setup, medium, rng)
     }
 
     fn draw_packets<'a>(

@@ -21,6 +21,7 @@ use crate::kernels::hero::Path;
 use crate::media::body::MOST_CHANNELS;
 use crate::media::{Extinction, Lookups};
 use crate::numeric::Lane;
+use crate::numeric::pack::in_fused_code;
 use crate::problems::SpectralSingleScattering;
 use crate::problems::spectral_single_scattering::Values;
 use crate::rng::Stream;
@@ -61,7 +62,26 @@ pub trait Steps {
     }
 }
 
-/// Makes one draw that scores all channels.
+/// The right steps.
+struct Right;
+
+impl Steps for Right {}
+
+/// Makes one draw that scores all channels: compiled once for all walkers.
+#[inline(never)]
+pub fn draw_all(
+    walker: (&Walker, Shadow),
+    setup: &Setup<SpectralSingleScattering>,
+    medium: &Lookups,
+    rng: &mut Stream,
+) -> Draw<Values> {
+    in_fused_code(
+        #[inline(always)]
+        || draw(&Right, walker, setup, medium, rng),
+    )
+}
+
+/// Makes one draw that scores all channels, by the steps of a walk.
 #[inline(always)]
 pub fn draw(
     steps: &impl Steps,

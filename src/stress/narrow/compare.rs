@@ -154,7 +154,8 @@ impl Sums {
     }
 }
 
-/// A draw, in the code of machines that multiply and add at once: the same numbers, sooner.
+/// A draw, in the code of machines that multiply and add at once: the same numbers, sooner. Compiled once for each precision.
+#[inline(never)]
 fn draw<E: Estimator, P: Precision>(estimator: &E, scene: &Scene, trail: &mut Trail) -> f64 {
     in_fused_code(
         #[inline(always)]

@@ -20,8 +20,10 @@ use crate::numeric::quadrature::GaussLegendre;
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
 
-/// Panels of the integral over directions.
-const PANELS: usize = 16;
+/// So often panels of the integral over directions are halved towards straight on and straight back.
+const HALVINGS: i32 = 48;
+/// What all light of a phase function may be off by where these panels resolve it.
+const RESOLVED: f64 = 1e-11;
 /// Second moments that change by less than this share of σ̂ do not change.
 pub const NOTHING: f64 = 1e-12;
 /// What is made sure of beyond rounding.
@@ -62,8 +64,8 @@ impl Flight {
         if lost == 0.0 {
             return Self { leaves: 1.0, collides: length };
         }
-        let leaves = (-lost * length).exp();
-        Self { leaves, collides: (1.0 - leaves) / lost }
+        let gone = -lost * length;
+        Self { leaves: gone.exp(), collides: -gone.exp_m1() / lost }
     }
 
     /// `e + (A_b + S M) f`.
@@ -87,25 +89,40 @@ pub fn are_isotropic(phases: &[Phase]) -> bool {
     phases.iter().all(|phase| *phase == Phase::Isotropic(Isotropic))
 }
 
-/// `Φ = ∫ p_λ²/p_h dω`.
+/// `Φ = ∫ p_λ²/p_h dω ≥ 1`; infinite where a phase function is too peaked to be resolved.
 pub fn phi(own: &Phase, hero: &Phase) -> f64 {
     if own == hero {
         return 1.0;
     }
-    let (rule, step) = (GaussLegendre::new(32), 2.0 / PANELS as f64);
-    let mut sum = 0.0;
-    for panel in 0..PANELS {
-        for (&x, &weight) in rule.nodes.iter().zip(&rule.weights) {
-            let cosine = -1.0 + (panel as f64 + x) * step;
-            sum += weight * step * own.value(cosine).powi(2) / hero.value(cosine);
-        }
+    let rule = GaussLegendre::new(32);
+    let halves = (0..=HALVINGS).map(|k| 0.5f64.powi(k));
+    let mut knots: Vec<f64> = halves.flat_map(|half| [half - 1.0, 1.0 - half]).collect();
+    knots.extend([-1.0, 1.0]);
+    knots.sort_by(f64::total_cmp);
+    let over_directions = |f: &dyn Fn(f64) -> f64| {
+        let panels = knots.windows(2).map(|ends| rule.integrate(ends[0], ends[1], f));
+        std::f64::consts::TAU * panels.sum::<f64>()
+    };
+    let is_resolved =
+        |phase: &Phase| (over_directions(&|cosine| phase.value(cosine)) - 1.0).abs() < RESOLVED;
+    if !is_resolved(own) || !is_resolved(hero) {
+        return f64::INFINITY;
     }
-    std::f64::consts::TAU * sum
+    over_directions(&|cosine| own.value(cosine).powi(2) / hero.value(cosine)).max(1.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::phase::henyey_greenstein::HenyeyGreenstein;
+
+    /// g of a channel and of a hero, and Φ.
+    const PEAKED: [(f64, f64, f64); 4] = [
+        (0.999, 0.998, 1.518_211_790_224_436),
+        (0.99, 0.98, 1.524_101_485_328_942_3),
+        (0.98, 0.97, 1.155_975_345_208_080_6),
+        (0.9, -0.5, 224.796_962_135_276_35),
+    ];
 
     /// One channel by itself scores 1, always.
     #[test]
@@ -132,8 +149,26 @@ mod tests {
     }
 
     #[test]
-    fn phase_functions_are_densities() {
+    fn a_loss_of_nearly_nothing_collides_all_along() {
+        let flight = Flight::of(-1.1e-16, 0.5);
+        assert!((flight.collides - 0.5).abs() < 1e-15, "{flight:?}");
+    }
+
+    /// Beside an isotropic hero `Φ = Σ (2l + 1) g^{2l} = (1 + g²)/(1 − g²)²`; the others by adaptive quadrature in 30 digits.
+    #[test]
+    fn directions_are_integrated_however_peaked() {
         let isotropic = Phase::Isotropic(Isotropic);
-        assert_eq!(phi(&isotropic, &isotropic), 1.0);
+        let of = |g: f64| Phase::HenyeyGreenstein(HenyeyGreenstein::new(g).expect("|g| < 1"));
+        for g in [-0.999f64, -0.5, 0.3, 0.93, 0.99, 0.999] {
+            let exact = (1.0 + g * g) / (1.0 - g * g).powi(2);
+            let found = phi(&of(g), &isotropic);
+            assert!((found / exact - 1.0).abs() < 1e-9, "{g}: {found} for {exact}");
+        }
+        assert_eq!(phi(&of(0.4), &of(0.4)), 1.0);
+        for (own, hero, exact) in PEAKED {
+            let found = phi(&of(own), &of(hero));
+            assert!((found / exact - 1.0).abs() < 1e-9, "{own}, {hero}: {found} for {exact}");
+        }
+        assert!(phi(&of(0.999_999_99), &isotropic).is_infinite());
     }
 }

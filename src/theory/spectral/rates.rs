@@ -50,7 +50,8 @@ impl Rates {
     /// N and S, where the channels have these extinctions.
     pub fn gains(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
         let majorants = &self.majorants;
-        let null = |channel: usize| majorants[channel] - extinctions[channel];
+        // Where σ_t is above σ̂ by rounding nothing is null.
+        let null = |channel: usize| (majorants[channel] - extinctions[channel]).max(0.0);
         let scattered = |channel: usize| extinctions[channel] * self.albedos[channel];
         let [by_null, by_scattering] = match walk {
             Walk::Hero(hero) => [null(hero), scattered(hero)],

@@ -57,8 +57,11 @@ impl Body for Rods<'_> {
 
     fn beyond(&self, albedo: f64) -> Option<String> {
         let critical = critical(albedo, self.rod.forward);
-        let is_beyond = self.depth.value >= critical;
-        is_beyond.then(|| format!("from optical length {} on", rounded(critical)))
+        if self.depth.value >= critical {
+            return Some(format!("from optical length {} on", rounded(critical)));
+        }
+        let is_above = self.leaving(albedo).is_none();
+        is_above.then(|| "for a double: it is above 1.8e308".into())
     }
 
     fn orders(&self) -> Option<Orders> {
@@ -91,7 +94,9 @@ pub fn leaving(depth: f64, albedo: f64, forward: f64) -> Option<[f64; 2]> {
     if depth >= critical(albedo, forward) {
         return None;
     }
-    Some(continued(depth, Complex64::from(albedo), forward).map(|x| x.re))
+    let found = continued(depth, Complex64::from(albedo), forward).map(|x| x.re);
+    // Beyond the largest number, too.
+    found.iter().all(|value| value.is_finite()).then_some(found)
 }
 
 /// The optical length from which on a rod of an albedo has no finite answer; infinite where there is none.
@@ -118,6 +123,9 @@ pub fn critical(albedo: f64, forward: f64) -> f64 {
 /// R and T of a complex albedo.
 fn continued(depth: f64, albedo: Complex64, forward: f64) -> [Complex64; 2] {
     let (alpha, beta) = (-albedo * forward + 1.0, albedo * (1.0 - forward));
+    if forward == 1.0 {
+        return [Complex64::ZERO, (-alpha * depth).exp()];
+    }
     // (1 − a)(1 − a(2p_f − 1)), which cancels less than α² − β².
     let one = Complex64::from(1.0);
     let kappa = ((one - albedo) * (one - albedo * (2.0 * forward - 1.0))).sqrt();

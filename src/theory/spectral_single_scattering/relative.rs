@@ -27,6 +27,7 @@ use crate::theory::single::predict::{LOOKUPS, MOMENT};
 use crate::theory::single::scene::Place;
 use crate::theory::single::segment::along_all;
 use crate::theory::single::{Camera, CameraTracking, Points, Scene, Tracking};
+use crate::theory::spectral::chance::Chance;
 use crate::theory::spectral::rates::{Rates, Walk};
 use crate::theory::{Mesh, Prediction};
 
@@ -50,6 +51,8 @@ pub struct Relative<'a> {
     /// The exponents of all moments; the last are 0.
     powers: Vec<Vec<i32>>,
     rule: GaussLegendre,
+    /// Where what is integrated along the ray is not smooth.
+    cuts: Vec<f64>,
     /// The ends of panels, and `∫ N` up to there, power by power and walk by walk.
     ends: Vec<f64>,
     sums: Vec<Vec<f64>>,
@@ -75,11 +78,13 @@ impl<'a> Relative<'a> {
             tracks,
             powers: powers(channels.len()),
             rule: GaussLegendre::new(16),
+            cuts: Vec::new(),
             ends: Vec::new(),
             sums: Vec::new(),
         };
         let first = relative.meshes[0];
-        let fine = first.refined(&relative.cuts(), &|_, panel| {
+        relative.cuts = relative.kinks();
+        let fine = first.refined(&relative.cuts, &|_, panel| {
             let rows = relative.gains_at(panel.t);
             let width = relative.powers.len() * relative.walks.len();
             (0..width).map(|i| rows.iter().map(|row| row[i]).collect()).collect()
@@ -96,11 +101,25 @@ impl<'a> Relative<'a> {
         relative
     }
 
-    /// Where fields have kinks.
-    fn cuts(&self) -> Vec<f64> {
+    /// Where fields have kinks and, for the chances `maximum`, where another channel's event becomes the likeliest.
+    fn kinks(&self) -> Vec<f64> {
         let support = self.meshes[0].support();
         let ends = self.meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from));
-        ends.filter(|&t| support.contains_inside(t)).collect()
+        let mut kinks: Vec<f64> = ends.filter(|&t| support.contains_inside(t)).collect();
+        if self.walks.iter().all(|&(_, walk)| walk != Walk::Together(Chance::Maximum)) {
+            return kinks;
+        }
+        let cut = self.meshes[0].refined(&kinks, &|_, _| Vec::new());
+        let media: Vec<_> = self.meshes.iter().map(|mesh| mesh.medium()).collect();
+        for (i, a) in self.rates.albedos.iter().enumerate() {
+            for (j, b) in self.rates.albedos[..i].iter().enumerate() {
+                for [a, b] in [[1.0, 1.0], [*a, *b], [1.0 - a, 1.0 - b]] {
+                    let apart = |t, _| a * media[i].extinction(t) - b * media[j].extinction(t);
+                    kinks.extend(cut.roots(apart));
+                }
+            }
+        }
+        kinks
     }
 
     /// σ_t of all channels at each distance.
@@ -210,7 +229,7 @@ impl<'a> Relative<'a> {
         let last = self.powers.len() - 1;
         parts[..last].fill(MOMENT);
         parts[COUNTS..].fill(LOOKUPS);
-        let found = scene.over(parts, self.cuts(), &|place| self.row(place));
+        let found = scene.over(parts, self.cuts.clone(), &|place| self.row(place));
         let relative = |j: usize| found.error[j] / found.value[j].abs();
         let length = self.meshes[0].support().length();
         let largest = self.rates.majorants.iter().fold(0.0f64, |most, &own| most.max(own));

@@ -153,6 +153,9 @@ struct Pack<S: Simd, P> {
     /// Who is to cast a shadow ray, and from which distance.
     aiming: mask64x8<S>,
     from: f64x8<S>,
+    /// Who has found light, and how much.
+    lit: mask64x8<S>,
+    light: f64x8<S>,
 }
 
 impl<S: Simd, P: Page<S>> Pack<S, P> {
@@ -163,15 +166,27 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         page.begin(&mut numbers, !none, &mut sums);
         let shadows = Shadows::new(simd);
         let (origin, place) = ([zero; 3], [zero; 3]);
-        let (inside, casts, aiming) = (none, none, none);
-        Self { page, numbers, sums, shadows, origin, place, inside, casts, aiming, from: zero }
+        Self {
+            page,
+            numbers,
+            sums,
+            shadows,
+            origin,
+            place,
+            inside: none,
+            casts: none,
+            aiming: none,
+            from: zero,
+            lit: none,
+            light: zero,
+        }
     }
 
     /// All fly on; answers where they are on the ray, and writes where they are on their shadow rays.
     #[inline(always)]
     fn fly(&mut self, rays: &ShadowRays, number: usize, points: &mut [[f64; PAIR]; 3]) -> f64x8<S> {
         self.casts = self.shadows.on;
-        let flies = self.page.flies() & !(self.casts | self.aiming);
+        let flies = self.page.flies() & !(self.casts | self.aiming | self.lit);
         let moves = flies | self.casts;
         let mut depth = self.from.each(0.0);
         if moves.to_bitmask() != 0 {
@@ -196,7 +211,7 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         (extinction, on_shadow): (f64x8<S>, f64x8<S>),
     ) {
         let (numbers, one) = (&mut self.numbers, extinction.each(1.0));
-        let held = self.casts | self.aiming;
+        let held = self.casts | self.aiming | self.lit;
         let (aims, from) = self.page.collide(numbers, !held, extinction, &mut self.sums);
         let nobody = aims & !aims;
         let mut found: Found<S> = (nobody, one);
@@ -221,8 +236,11 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
             // What a ray that was cast before has found, and what one finds at once.
             found = (found.0 | which, Lane::select(which, through, found.1));
         }
-        if found.0.to_bitmask() != 0 {
-            self.page.lit(found, &mut self.sums);
+        self.lit |= found.0;
+        self.light = Lane::select(found.0, found.1, self.light);
+        if self.lit.to_bitmask().count_ones() >= P::LIT {
+            self.page.lit((self.lit, self.light), &mut self.sums);
+            self.lit = nobody;
         }
     }
 
@@ -235,6 +253,9 @@ impl<S: Simd, P: Page<S>> Pack<S, P> {
         streams: &mut Streams,
         buffer: &mut DrawBuffer,
     ) {
+        if self.page.done().to_bitmask().count_ones() < P::DONE {
+            return;
+        }
         let [ended, begins] = self.page.finish();
         if ended.any_true() {
             let Sums { value, lookups } = self.sums;

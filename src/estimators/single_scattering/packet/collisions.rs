@@ -84,9 +84,7 @@ impl<S: Simd> Page<S> for Collisions<'_, S> {
     }
 
     #[inline(always)]
-    fn finish(&mut self) -> [mask64x8<S>; 2] {
-        let done = self.done;
-        self.done = done & !done;
-        [done, done]
+    fn done(&mut self) -> &mut mask64x8<S> {
+        &mut self.done
     }
 }

@@ -105,9 +105,7 @@ impl<S: Simd, const RESAMPLED: bool> Page<S> for Interactions<'_, S, RESAMPLED> 
     }
 
     #[inline(always)]
-    fn finish(&mut self) -> [mask64x8<S>; 2] {
-        let done = self.done;
-        self.done = done & !done;
-        [done, done]
+    fn done(&mut self) -> &mut mask64x8<S> {
+        &mut self.done
     }
 }

@@ -92,6 +92,9 @@ impl<S: Simd> Mis<'_, S> {
 }
 
 impl<S: Simd> Page<S> for Mis<'_, S> {
+    const LIT: u32 = 4;
+    const DONE: u32 = 2;
+
     #[inline(always)]
     fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>) {
         let mut looks = which;
@@ -186,9 +189,7 @@ impl<S: Simd> Page<S> for Mis<'_, S> {
     }
 
     #[inline(always)]
-    fn finish(&mut self) -> [mask64x8<S>; 2] {
-        let done = self.done;
-        self.done = done & !done;
-        [done, done]
+    fn done(&mut self) -> &mut mask64x8<S> {
+        &mut self.done
     }
 }

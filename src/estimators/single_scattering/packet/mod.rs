@@ -38,6 +38,12 @@ pub struct Sums<S: Simd> {
 
 /// What a technique does with eight walks.
 pub trait Page<S: Simd> {
+    /// So many that have found light go on together: more than one where that costs more than a step.
+    const LIT: u32 = 1;
+    /// So many that have made their draws begin the next ones together. Of eight one is always on its way, for fewer than
+    /// this, than [`Page::LIT`] and than 4 that aim wait: 7 at most.
+    const DONE: u32 = 1;
+
     /// The draws that a mask names begin, and those that go on with another point.
     fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>);
 
@@ -60,8 +66,16 @@ pub trait Page<S: Simd> {
     /// The transmittances of shadow rays have been found.
     fn lit(&mut self, found: Found<S>, sums: &mut Sums<S>);
 
-    /// Who has made its draw, and who has to begin: those, and who goes on with another point.
-    fn finish(&mut self) -> [mask64x8<S>; 2];
+    /// Who waits to begin: it has made its draw, or goes on with another point.
+    fn done(&mut self) -> &mut mask64x8<S>;
+
+    /// Who has made its draw, and who has to begin: nobody waits from now on.
+    #[inline(always)]
+    fn finish(&mut self) -> [mask64x8<S>; 2] {
+        let done = *self.done();
+        *self.done() = done & !done;
+        [done, done]
+    }
 }
 
 /// The pages of a technique.

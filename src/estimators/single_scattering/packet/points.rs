@@ -95,6 +95,9 @@ fn density_of<S: Simd>(main: MainPart, s: f64x8<S>) -> f64x8<S> {
 }
 
 impl<S: Simd> Page<S> for Points<'_, S> {
+    const LIT: u32 = 4;
+    const DONE: u32 = 2;
+
     #[inline(always)]
     fn begin(&mut self, numbers: &mut Numbers<S>, which: mask64x8<S>, sums: &mut Sums<S>) {
         let u = numbers.uniform_where(which);
@@ -188,6 +191,11 @@ impl<S: Simd> Page<S> for Points<'_, S> {
         let value = if is_one_of_two { sums.value + value } else { value };
         sums.value = Lane::select(which, value, sums.value);
         self.done |= which;
+    }
+
+    #[inline(always)]
+    fn done(&mut self) -> &mut mask64x8<S> {
+        &mut self.done
     }
 
     #[inline(always)]
