@@ -62,7 +62,7 @@ impl DrawBuffer {
     }
 
     /// Adds a draw.
-    #[inline]
+    #[inline(always)]
     pub fn push<V: AsRef<[f64]>>(&mut self, draw: &Draw<V>) {
         for (channel, &value) in self.values.iter_mut().zip(draw.value.as_ref()) {
             channel.push(value);

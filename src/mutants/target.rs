@@ -1,6 +1,6 @@
 //! Where mutants are shown: experiments of the built-in suite.
 //!
-//! Most stand on the cases called `magnet`, made for this: an asymmetric medium, dense at both ends, and
+//! Most stand on the cases called `known-bugs`, made for this: an asymmetric medium, dense at both ends, and
 //! estimators for every regime of `r = (σ_t − σ_c)/σ̂`.
 
 /// One experiment of a case of the built-in suite.
@@ -22,7 +22,7 @@ const fn on(case: &'static str, index: usize, estimator: &'static str) -> Target
 
 /// In the case that was made for mutants.
 const fn transmittance(index: usize, estimator: &'static str) -> Target {
-    on("transmittance/magnet", index, estimator)
+    on("transmittance/known-bugs", index, estimator)
 }
 
 /// `σ̂ = 1.2`, a majorant.
@@ -63,23 +63,23 @@ pub const RATIO_ONE: Target = Target {
     ..on("transmittance/ratio-exactly-one", 0, "single (non-terminating)")
 };
 /// Free flight through a constant majorant, on a line that begins at 1.
-pub const FLIGHT: Target = on("free-flight/magnet", 0, "woodcock");
+pub const FLIGHT: Target = on("free-flight/known-bugs", 0, "woodcock");
 /// Free flight through a linear majorant.
-pub const FLIGHT_LINEAR: Target = on("free-flight/magnet", 1, "woodcock");
+pub const FLIGHT_LINEAR: Target = on("free-flight/known-bugs", 1, "woodcock");
 /// The curve without a control.
-pub const CURVE: Target = on("transmittance-curve/magnet", 0, "double");
+pub const CURVE: Target = on("transmittance-curve/known-bugs", 0, "double");
 /// The curve with a control whose knots are not on the ends.
-pub const CURVE_CONTROL: Target = on("transmittance-curve/magnet", 1, "double");
+pub const CURVE_CONTROL: Target = on("transmittance-curve/known-bugs", 1, "double");
 /// `σ̂ = 1.6`, `a` from 0.9 to 0.5 and `p_f` from 0.8 to 0.3 along the rod.
-pub const ROD_TERMINATING: Target = on("rod/magnet", 0, "terminating");
+pub const ROD_TERMINATING: Target = on("rod/known-bugs", 0, "terminating");
 /// `σ̂ = 1.6`.
-pub const ROD_ANALOG: Target = on("rod/magnet", 1, "analog");
+pub const ROD_ANALOG: Target = on("rod/known-bugs", 1, "analog");
 /// `σ̂ = 1.6`.
-pub const ROD_WEIGHTED: Target = on("rod/magnet", 2, "weighted");
+pub const ROD_WEIGHTED: Target = on("rod/known-bugs", 2, "weighted");
 /// `σ̂ = 0.9`, below σ_t at both ends.
-pub const ROD_NON_TERMINATING: Target = on("rod/magnet", 3, "non-terminating");
+pub const ROD_NON_TERMINATING: Target = on("rod/known-bugs", 3, "non-terminating");
 /// `σ̂ = 0.9`, below σ_t at both ends.
-pub const ROD_ADAPTIVE: Target = on("rod/magnet", 4, "adaptive");
+pub const ROD_ADAPTIVE: Target = on("rod/known-bugs", 4, "adaptive");
 /// `σ̂ = 2.4`, `a = 0.6`, roulette below 1/2.
 pub const ROD_ROULETTE: Target = on("rod/roulette", 0, "roulette (below 0.5)");
 /// Extinction that rises to the emitter, `p_f = 0.4`, `σ̂ = 1.25`.
@@ -91,82 +91,88 @@ pub const LIT_DIRECTIONAL: Target = on("lit-rod/rising", 4, "directional-mis (de
 /// The same.
 pub const LIT_FULL: Target = on("lit-rod/rising", 6, "full-mis (ratio shadow)");
 /// A wide disc close behind a slab whose extinction rises, g = 0.6, `σ̂ = 1.5`.
-pub const LIT_SLAB_NEXT_EVENT: Target = on("lit-slab/magnet", 3, "next-event (ratio shadow)");
+pub const LIT_SLAB_NEXT_EVENT: Target = on("lit-slab/known-bugs", 3, "next-event (ratio shadow)");
 /// The same.
-pub const LIT_SLAB_DIRECTIONAL: Target = on("lit-slab/magnet", 4, "directional-mis (delta shadow)");
+pub const LIT_SLAB_DIRECTIONAL: Target =
+    on("lit-slab/known-bugs", 4, "directional-mis (delta shadow)");
 /// The same.
-pub const LIT_SLAB_FULL: Target = on("lit-slab/magnet", 6, "full-mis (ratio shadow)");
+pub const LIT_SLAB_FULL: Target = on("lit-slab/known-bugs", 6, "full-mis (ratio shadow)");
 /// The same slab, a beam.
 pub const LIT_SLAB_DISTANT: Target = on("lit-slab/distant", 3, "full-mis (ratio shadow)");
 /// Single scattering in a homogeneous ball, light outside, exact transmittances.
 pub const SINGLE_EXACT: Target =
-    on("single-scattering/magnet", 0, "source-driven (exact camera, exact shadow)");
+    on("single-scattering/known-bugs", 0, "source-driven (exact camera, exact shadow)");
 /// The same with a ratio-tracked camera.
 pub const SINGLE_RATIO: Target =
-    on("single-scattering/magnet", 1, "source-driven (ratio camera, exact shadow)");
+    on("single-scattering/known-bugs", 1, "source-driven (ratio camera, exact shadow)");
 /// The same with ratio-tracked shadow rays.
 pub const SINGLE_SHADOW: Target =
-    on("single-scattering/magnet", 2, "source-driven (exact camera, ratio shadow 1.5)");
+    on("single-scattering/known-bugs", 2, "source-driven (exact camera, ratio shadow 1.5)");
 /// Equiangular points and delta tracking by null-scattering paths, `σ̂ = 1.2`.
-pub const SINGLE_NULL_PATHS: Target =
-    on("single-scattering/magnet", 3, "source-delta-mis (null paths, analog, ratio shadow 1.5)");
+pub const SINGLE_NULL_PATHS: Target = on(
+    "single-scattering/known-bugs",
+    3,
+    "source-delta-mis (null paths, analog, ratio shadow 1.5)",
+);
 /// One of both.
 pub const SINGLE_ONE_SAMPLE: Target = on(
-    "single-scattering/magnet",
+    "single-scattering/known-bugs",
     4,
     "source-delta-mis (null paths, analog, one sample, ratio shadow 1.5)",
 );
 /// By the power heuristic.
 pub const SINGLE_POWER: Target = on(
-    "single-scattering/magnet",
+    "single-scattering/known-bugs",
     5,
     "source-delta-mis (null paths, analog, power, ratio shadow 1.5)",
 );
 /// Henyey–Greenstein, g = 0.6, light at μ₀ = 0.6, `σ̂ = 1.2`.
-pub const SLAB_ANALOG: Target = on("slab/magnet", 0, "analog");
+pub const SLAB_ANALOG: Target = on("slab/known-bugs", 0, "analog");
 /// `σ̂ = 1.2`.
-pub const SLAB_WEIGHTED: Target = on("slab/magnet", 1, "weighted");
+pub const SLAB_WEIGHTED: Target = on("slab/known-bugs", 1, "weighted");
 /// `σ̂ = 0.9`, below σ_t at both ends.
-pub const SLAB_NON_TERMINATING: Target = on("slab/magnet", 2, "non-terminating");
+pub const SLAB_NON_TERMINATING: Target = on("slab/known-bugs", 2, "non-terminating");
 /// `σ̂ = 0.9`, below σ_t at both ends.
-pub const SLAB_ADAPTIVE: Target = on("slab/magnet", 3, "adaptive");
+pub const SLAB_ADAPTIVE: Target = on("slab/known-bugs", 3, "adaptive");
 /// Diffuse light, a σ̂ in steps.
-pub const SLAB_DIFFUSE: Target = on("slab/magnet-diffuse", 0, "non-terminating");
+pub const SLAB_DIFFUSE: Target = on("slab/known-bugs-diffuse", 0, "non-terminating");
 /// A thin ball, a = 0.9, `r = 1.15`.
-pub const FURNACE_BELOW: Target = on("furnace/magnet", 0, "particle (non-terminating)");
+pub const FURNACE_BELOW: Target = on("furnace/known-bugs", 0, "particle (non-terminating)");
 /// `σ̂ = 1.2`.
-pub const FURNACE_NON_TERMINATING: Target = on("furnace/magnet", 1, "particle (non-terminating)");
+pub const FURNACE_NON_TERMINATING: Target =
+    on("furnace/known-bugs", 1, "particle (non-terminating)");
 /// `σ̂ = 1.2`, roulette below 0.8.
 pub const FURNACE_ROULETTE: Target =
-    on("furnace/magnet", 2, "particle (non-terminating, roulette 0.8)");
+    on("furnace/known-bugs", 2, "particle (non-terminating, roulette 0.8)");
 /// `σ̂ = 1.2`.
-pub const FURNACE_ANALOG: Target = on("furnace/magnet", 3, "particle (analog)");
+pub const FURNACE_ANALOG: Target = on("furnace/known-bugs", 3, "particle (analog)");
 /// Eq. 21, a = 1, `σ̂ = 1`.
-pub const LAMBERTIAN: Target = on("lambertian/magnet", 0, "particle (non-terminating)");
+pub const LAMBERTIAN: Target = on("lambertian/known-bugs", 0, "particle (non-terminating)");
 /// A dense half and a thin one, a cell each.
-pub const LAMBERTIAN_CELLS: Target = on("lambertian/magnet-cells", 0, "particle (analog)");
+pub const LAMBERTIAN_CELLS: Target = on("lambertian/known-bugs-cells", 0, "particle (analog)");
 /// Henyey–Greenstein, g = 0.6, a = 0.7.
-pub const INFINITE_ANALOG: Target = on("infinite-medium/magnet", 0, "particle (analog)");
+pub const INFINITE_ANALOG: Target = on("infinite-medium/known-bugs", 0, "particle (analog)");
 /// Roulette below 0.5.
 pub const INFINITE_WEIGHTED: Target =
-    on("infinite-medium/magnet", 1, "particle (weighted, roulette 0.5)");
+    on("infinite-medium/known-bugs", 1, "particle (weighted, roulette 0.5)");
 /// A weighted walk in a ball, ratio-tracked shadow rays to a black light sphere.
-pub const SPHERE_LAMP: Target = on("sphere/magnet", 0, "next-event (weighted, ratio shadow 2)");
+pub const SPHERE_LAMP: Target = on("sphere/known-bugs", 0, "next-event (weighted, ratio shadow 2)");
 /// The same with exact shadow rays.
-pub const SPHERE_LAMP_EXACT: Target = on("sphere/magnet", 1, "next-event (weighted, exact shadow)");
+pub const SPHERE_LAMP_EXACT: Target =
+    on("sphere/known-bugs", 1, "next-event (weighted, exact shadow)");
 /// The same ball in an environment.
 pub const SPHERE_SKY: Target = on("sphere/environment", 0, "next-event (weighted, ratio shadow 2)");
 /// A black light sphere in a ball that thins out, by directions.
 pub const SPHERE_DIRECTIONAL: Target =
-    on("sphere/magnet-paths", 0, "directional-mis (analog, delta shadow 2.5)");
+    on("sphere/known-bugs-paths", 0, "directional-mis (analog, delta shadow 2.5)");
 /// The same by null-scattering paths.
-pub const SPHERE_FULL: Target = on("sphere/magnet-paths", 1, "full-mis (analog, ratio shadow)");
+pub const SPHERE_FULL: Target = on("sphere/known-bugs-paths", 1, "full-mis (analog, ratio shadow)");
 /// The same, the power heuristic.
 pub const SPHERE_POWER: Target =
-    on("sphere/magnet-paths", 2, "full-mis (analog, ratio shadow, power)");
+    on("sphere/known-bugs-paths", 2, "full-mis (analog, ratio shadow, power)");
 /// The same, with connections.
 pub const SPHERE_BIDIRECTIONAL: Target =
-    on("sphere/magnet-paths", 3, "bidirectional (independent subpaths)");
+    on("sphere/known-bugs-paths", 3, "bidirectional (independent subpaths)");
 /// In an environment, by null-scattering paths.
 pub const SPHERE_FULL_SKY: Target = on("sphere/techniques", 3, "full-mis (analog, ratio shadow)");
 /// The same with connections.
@@ -193,16 +199,16 @@ pub const SPECTRAL_ROD_MIS: Target = on("spectral-rod/three-albedos", 1, "spectr
 pub const SPECTRAL_ROD_TRACKING: Target =
     on("spectral-rod/near-albedos", 1, "spectral-tracking (average)");
 /// A slab of albedos .9, .5 and .2, σ̂ above σ_t.
-pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/magnet", 3, "spectral-mis");
+pub const SPECTRAL_SLAB_MIS: Target = on("spectral-slab/known-bugs", 3, "spectral-mis");
 /// The same.
 pub const SPECTRAL_SLAB_TRACKING: Target =
-    on("spectral-slab/magnet", 1, "spectral-tracking (average)");
+    on("spectral-slab/known-bugs", 1, "spectral-tracking (average)");
 /// The same scattering a point light once, exact shadow rays.
 pub const SPECTRAL_SINGLE_EXACT: Target =
-    on("spectral-single-scattering/magnet", 2, "spectral-mis (exact shadow)");
+    on("spectral-single-scattering/known-bugs", 2, "spectral-mis (exact shadow)");
 /// Tracked shadow rays.
 pub const SPECTRAL_SINGLE_RATIO: Target =
-    on("spectral-single-scattering/magnet", 3, "spectral-mis (ratio shadow)");
+    on("spectral-single-scattering/known-bugs", 3, "spectral-mis (ratio shadow)");
 /// The walk of a hero without multiple importance sampling, tracked shadow rays.
 pub const SPECTRAL_SINGLE_HERO: Target =
     on("spectral-single-scattering/without-mis", 1, "hero (ratio shadow, hero 0.3 0.3 0.4)");
@@ -218,20 +224,20 @@ pub const SPECTRAL_FURNACE_TRACKING: Target =
 /// Three channels of different σ_t, σ̂, albedo and phase function in a slab, light from aslant.
 pub const CHROMATIC_SLAB: Target = on("chromatic-slab/three-colours", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and phase function in a furnace.
-pub const SPECTRAL_FURNACE: Target = on("spectral-furnace/magnet", 1, "spectral-mis");
+pub const SPECTRAL_FURNACE: Target = on("spectral-furnace/known-bugs", 1, "spectral-mis");
 /// Three channels of different σ_t, σ̂, albedo and `p_f`, a σ̂ that touches its σ_t, hits alone.
 pub const SPECTRAL_LIT_HITS: Target = on("spectral-lit-rod/three-colours", 1, "spectral-mis");
 /// The same by hits and shadow rays.
 pub const SPECTRAL_LIT_FULL: Target = on("spectral-lit-rod/three-colours", 2, "next-event-mis");
 /// Both orders of a rod by all techniques, exact connections.
 pub const BIDIRECTIONAL_FULL: Target =
-    on("bidirectional-rod/magnet", 0, "full-mis (exact connection)");
+    on("bidirectional-rod/known-bugs", 0, "full-mis (exact connection)");
 /// The same with ratio-tracked connections.
 pub const BIDIRECTIONAL_TRACKED: Target =
-    on("bidirectional-rod/magnet", 1, "full-mis (ratio connection)");
+    on("bidirectional-rod/known-bugs", 1, "full-mis (ratio connection)");
 /// Directional weights.
 pub const BIDIRECTIONAL_DIRECTIONAL: Target =
-    on("bidirectional-rod/magnet", 2, "directional-mis (exact connection)");
+    on("bidirectional-rod/known-bugs", 2, "directional-mis (exact connection)");
 /// One technique: a connection between two scatterings.
 pub const BIDIRECTIONAL_TECHNIQUE: Target =
-    on("bidirectional-rod/magnet", 3, "technique (s=2, exact connection)");
+    on("bidirectional-rod/known-bugs", 3, "technique (s=2, exact connection)");

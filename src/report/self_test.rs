@@ -125,7 +125,7 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// `magnet: ratio`.
+/// `known-bugs: ratio`.
 fn place(mutant: &Caught) -> String {
     let case = mutant.case.rsplit('/').next().unwrap_or(mutant.case);
     format!("{case}: {}", mutant.estimator)

@@ -5,7 +5,7 @@ use trueflight::harness::record::Verdict;
 use crate::common::{case, mistakes, predicted, rows};
 use crate::packets::{compare, fusing_levels};
 
-const BALL: &str = include_str!("../../cases/spectral-furnace/magnet.toml");
+const BALL: &str = include_str!("../../cases/spectral-furnace/known-bugs.toml");
 const LIKE: &str = include_str!("../../cases/spectral-furnace/like-colours.toml");
 const NOISE: &str = include_str!("../../cases/spectral-furnace/noise.toml");
 

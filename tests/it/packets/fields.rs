@@ -125,7 +125,7 @@ pub fn cases(matrix: Matrix) -> Vec<Case> {
         ("forward", include_str!("../../../cases/spectral-lit-rod/forward.toml")),
         ("as-printed", include_str!("../../../cases/spectral-lit-rod/as-printed.toml")),
         ("one-medium", include_str!("../../../cases/spectral-lit-rod/one-medium.toml")),
-        ("connected", include_str!("../../../cases/bidirectional-rod/magnet.toml")),
+        ("connected", include_str!("../../../cases/bidirectional-rod/known-bugs.toml")),
         ("unscattered", include_str!("../../../cases/bidirectional-rod/unscattered.toml")),
         ("reflected", include_str!("../../../cases/bidirectional-rod/reflected.toml")),
     ] {
