@@ -198,6 +198,13 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
         settings.fault(key, message, "give all of them the same `bounds`");
         return None;
     }
+    for (number, (table, channel)) in (1..).zip(fields.iter().zip(&channels)) {
+        if !support.is_empty() && channel.medium().optical_depth(support).value <= 0.0 {
+            let message = format!("σ_t = 0 everywhere in channel {number}");
+            table.fault("", message, "give it some extinction, or leave the channel out");
+            return None;
+        }
+    }
     let mut different: Vec<&str> = channels.iter().map(Body::name).collect();
     different.dedup();
     Some(Body::Spectral { name: different.join(", "), channels })

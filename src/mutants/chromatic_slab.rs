@@ -22,9 +22,9 @@ pub fn mutants() -> Vec<Mutant<ChromaticSlab>> {
     let of = |name, bug, target: Target, slip: Slip| {
         let about = About { name, bug, target, check: "mean" };
         let walker = if target == CHROMATIC_SLAB {
-            Walker::Balanced(Heroes::Uniform)
+            Walker::Mis(Heroes::Uniform)
         } else {
-            Walker::Together(Chances::Fixed(Chance::Average))
+            Walker::SpectralTracking(Chances::Fixed(Chance::Average))
         };
         let right = walker.clone();
         Mutant::new(

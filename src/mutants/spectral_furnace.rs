@@ -22,9 +22,9 @@ pub fn mutants() -> Vec<Mutant<SpectralFurnace>> {
     let of = |name, bug, target: Target, slip: Slip| {
         let about = About { name, bug, target, check: "mean" };
         let walker = if target == SPECTRAL_FURNACE {
-            Walker::Balanced(Heroes::Uniform)
+            Walker::Mis(Heroes::Uniform)
         } else {
-            Walker::Together(Chances::Fixed(Chance::Maximum))
+            Walker::SpectralTracking(Chances::Fixed(Chance::Maximum))
         };
         let right = walker.clone();
         Mutant::new(

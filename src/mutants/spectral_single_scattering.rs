@@ -21,13 +21,13 @@ pub fn mutants() -> Vec<Mutant<SpectralSingleScattering>> {
     let of = |name, bug, target: Target, slip: Slip| {
         let about = About { name, bug, target, check: "mean" };
         let (walker, shadow) = if target == SPECTRAL_SINGLE_EXACT {
-            (Walker::Balanced(Heroes::Uniform), Shadow::Exact)
+            (Walker::Mis(Heroes::Uniform), Shadow::Exact)
         } else if target == SPECTRAL_SINGLE_TRACKING {
-            (Walker::Together(Chances::Fixed(Chance::Average)), Shadow::Exact)
+            (Walker::SpectralTracking(Chances::Fixed(Chance::Average)), Shadow::Exact)
         } else if target == SPECTRAL_SINGLE_HERO {
             (Walker::Hero(Heroes::Given(vec![0.3, 0.3, 0.4])), Shadow::Ratio)
         } else {
-            (Walker::Balanced(Heroes::Uniform), Shadow::Ratio)
+            (Walker::Mis(Heroes::Uniform), Shadow::Ratio)
         };
         let right = walker.clone();
         Mutant::new(

@@ -58,9 +58,9 @@ impl Problem for SpectralSingleScattering {
         let lamp = Lamp::read(settings);
         let scatterers = spectral_furnace::read_channels(body, settings);
         let (lamp, scatterers, bodies) = (lamp?, scatterers?, body?.channels());
-        if scatterers.iter().any(|channel| channel.albedo <= 0.0) {
-            let help = "every albedo is above 0";
-            settings.fault("albedos", "nothing is scattered in a channel", help);
+        if let Some(dark) = scatterers.iter().position(|channel| channel.albedo <= 0.0) {
+            let found = format!("nothing is scattered in channel {}", dark + 1);
+            settings.fault("albedos", found, "every albedo is above 0");
             return None;
         }
         let Body::Volume { ray, .. } = &bodies[0] else { return None };

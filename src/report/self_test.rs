@@ -125,10 +125,9 @@ fn mutants(text: &mut String, pen: Pen, mutants: &[Caught]) {
     let _ = writeln!(text, "{}", grid.render(pen));
 }
 
-/// `known-bugs: ratio`.
+/// `rod/known-bugs: analog`.
 fn place(mutant: &Caught) -> String {
-    let case = mutant.case.rsplit('/').next().unwrap_or(mutant.case);
-    format!("{case}: {}", mutant.estimator)
+    format!("{}: {}", mutant.case, mutant.estimator)
 }
 
 /// The columns of promised rates.

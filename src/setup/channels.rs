@@ -3,7 +3,7 @@
 use super::{Refusal, SpectralChannel};
 use crate::catalogue::rounded;
 
-/// A share of collisions below this is none.
+/// A share of null collisions below this is none, and a share beside that of another channel.
 const TOUCHES: f64 = 1e-9;
 
 /// A constant σ̂ > 0 in each channel, and so few collisions that walks end.
@@ -72,6 +72,8 @@ pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), 
         let majorant = rounded(hero.majorant);
         let room = Room {
             share: &null,
+            // They are differences: what is left of them is rounding.
+            none: TOUCHES,
             needs: "σ̂ > σ_t of the hero wherever another channel has null collisions",
             stretch: format!("σ̂ = σ_t = {majorant}"),
             touch: format!("σ̂ = {majorant} touches σ_t"),
@@ -80,6 +82,7 @@ pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), 
         if scatters {
             let room = Room {
                 share: &real,
+                none: 0.0,
                 needs: "σ_t > 0 of the hero wherever another channel scatters",
                 stretch: "σ_t = 0".into(),
                 touch: "σ_t comes down to 0".into(),
@@ -94,6 +97,8 @@ pub fn require_room(channels: &[SpectralChannel], scatters: bool) -> Result<(), 
 struct Room<'a> {
     /// Its share of collisions at a distance.
     share: &'a dyn Fn(&SpectralChannel, f64) -> f64,
+    /// A share up to this is none.
+    none: f64,
     needs: &'static str,
     /// What is said where it is missing on a stretch, and at a distance.
     stretch: String,
@@ -101,15 +106,22 @@ struct Room<'a> {
 }
 
 impl Room<'_> {
+    /// The hero's share over that of the channel that has most beside it; 1 where no other has any.
+    fn beside(&self, channels: &[SpectralChannel], number: usize, t: f64) -> f64 {
+        let share = |channel: &SpectralChannel| (self.share)(channel, t);
+        let most = channels.iter().map(share).fold(0.0, f64::max);
+        if most > self.none { share(&channels[number]) / most } else { 1.0 }
+    }
+
     fn require(&self, channels: &[SpectralChannel], number: usize) -> Result<(), Refusal> {
-        let (hero, Self { share, needs, stretch, touch }) = (&channels[number], self);
-        let is_open = |t: f64| channels.iter().any(|other| share(other, t) > TOUCHES);
+        let (hero, Self { share, none, needs, stretch, touch }) = (&channels[number], self);
         let cuts: Vec<f64> =
             channels.iter().flat_map(|c| c.mesh.panels().map(|panel| panel.span.from)).collect();
         let cut = hero.mesh.refined(&cuts, &|_, _| Vec::new());
+        let beside = |t: f64| self.beside(channels, number, t);
         // Missing at every node of a panel: on a stretch.
         let missing = cut.panels().find(|panel| {
-            panel.t.iter().all(|&t| share(hero, t) <= TOUCHES) && is_open(panel.span.middle())
+            panel.t.iter().all(|&t| share(hero, t) <= *none) && beside(panel.span.middle()) < 1.0
         });
         let number = number + 1;
         if let Some(panel) = missing {
@@ -117,8 +129,8 @@ impl Room<'_> {
                 format!("{stretch} in channel {number} on a stretch, which biases the others,");
             return Err(Refusal::Inequality { needs, found, at: panel.span.from });
         }
-        let least = cut.peaks(|t| -share(hero, t));
-        if let Some((at, _)) = least.into_iter().find(|&(t, s)| -s <= TOUCHES && is_open(t)) {
+        let touches = cut.peaks(|t| -beside(t)).into_iter().find(|&(_, found)| -found <= TOUCHES);
+        if let Some((at, _)) = touches {
             let found = format!("{touch} in channel {number}: E[X²] is infinite");
             return Err(Refusal::Inequality { needs: "a finite variance", found, at });
         }

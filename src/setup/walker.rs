@@ -10,7 +10,7 @@ use crate::theory::ParticleRule;
 use crate::theory::particle::Event;
 use crate::theory::spectral::bound::phi;
 use crate::theory::spectral::chance::{Chance, Chances, shares};
-use crate::theory::spectral::rates::Walk;
+use crate::theory::spectral::rates::Proposal;
 
 /// Whose walk scores all channels.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,9 +18,9 @@ pub enum Walker {
     /// That of a hero, divided by its density alone.
     Hero(Heroes),
     /// That of a hero, divided by the mean density of all heroes: multiple importance sampling.
-    Balanced(Heroes),
+    Mis(Heroes),
     /// One of all channels, divided by the chances of what happened to it: spectral tracking.
-    Together(Chances),
+    SpectralTracking(Chances),
 }
 
 /// The chances of what a tentative collision is.
@@ -57,10 +57,10 @@ impl EventChances {
 
 /// [`Walker::Hero`], as the kind of a page.
 pub const HERO: u8 = 0;
-/// [`Walker::Balanced`].
-pub const BALANCED: u8 = 1;
-/// [`Walker::Together`].
-pub const TOGETHER: u8 = 2;
+/// [`Walker::Mis`].
+pub const MIS: u8 = 1;
+/// [`Walker::SpectralTracking`].
+pub const SPECTRAL_TRACKING: u8 = 2;
 
 /// Reads `probabilities`: how spectral tracking chooses what a collision is.
 pub fn read_chances(settings: &Settings) -> Option<Chances> {
@@ -75,18 +75,18 @@ pub fn read_chances(settings: &Settings) -> Option<Chances> {
 impl Walker {
     /// Reads what a page of a kind takes: `hero`, or `probabilities`.
     pub fn read(kind: u8, settings: &Settings) -> Option<Self> {
-        if kind != TOGETHER {
+        if kind != SPECTRAL_TRACKING {
             let heroes = Heroes::read(settings)?;
-            return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Balanced(heroes) });
+            return Some(if kind == HERO { Self::Hero(heroes) } else { Self::Mis(heroes) });
         }
-        Some(Self::Together(read_chances(settings)?))
+        Some(Self::SpectralTracking(read_chances(settings)?))
     }
 
     /// Its settings in words.
     pub fn label(&self) -> String {
         match self {
-            Self::Hero(heroes) | Self::Balanced(heroes) => heroes.label(),
-            Self::Together(chances) => chances.label().into(),
+            Self::Hero(heroes) | Self::Mis(heroes) => heroes.label(),
+            Self::SpectralTracking(chances) => chances.label().into(),
         }
     }
 
@@ -94,8 +94,8 @@ impl Walker {
     #[inline(always)]
     pub fn heroes(&self) -> Option<&Heroes> {
         match self {
-            Self::Hero(heroes) | Self::Balanced(heroes) => Some(heroes),
-            Self::Together(_) => None,
+            Self::Hero(heroes) | Self::Mis(heroes) => Some(heroes),
+            Self::SpectralTracking(_) => None,
         }
     }
 
@@ -122,7 +122,7 @@ impl Walker {
         albedos: &[f64],
         weights: &[f64],
     ) -> EventChances {
-        let [null, scattered, absorbed] = if let Self::Together(chances) = self {
+        let [null, scattered, absorbed] = if let Self::SpectralTracking(chances) = self {
             chances.of_events(
                 ratios.len(),
                 #[inline(always)]
@@ -140,13 +140,12 @@ impl Walker {
     #[inline(always)]
     pub fn together(&self) -> Option<Chances> {
         match self {
-            Self::Together(chances) => Some(*chances),
+            Self::SpectralTracking(chances) => Some(*chances),
             _ => None,
         }
     }
 
-    /// A constant σ̂ in each channel, and what the walker needs of them: a probability for each, heroes with room for
-    /// what happens in other channels, or one σ̂ for all.
+    /// A constant σ̂ in each channel, and what the walker needs of them: a probability for each, or one σ̂ for all.
     ///
     /// # Errors
     ///
@@ -154,12 +153,12 @@ impl Walker {
     pub fn require(&self, of: &[SpectralChannel]) -> Result<(), Refusal> {
         channels::require_constants(of)?;
         match self {
-            Self::Hero(heroes) | Self::Balanced(heroes) => heroes.require(of.len()),
-            Self::Together(_) => require_common(of),
+            Self::Hero(heroes) | Self::Mis(heroes) => heroes.require(of.len()),
+            Self::SpectralTracking(_) => require_common(of),
         }
     }
 
-    /// The same, and `σ̂ ≥ σ_t` on the ray.
+    /// The same, `σ̂ ≥ σ_t` on the ray, and heroes by themselves with room for what happens in other channels.
     ///
     /// # Errors
     ///
@@ -181,7 +180,7 @@ impl Walker {
     pub fn require_phases(&self, phases: &[Phase]) -> Result<(), Refusal> {
         let other = phases.iter().find(|phase| **phase != phases[0]);
         match (self, other) {
-            (Self::Together(_), Some(other)) => {
+            (Self::SpectralTracking(_), Some(other)) => {
                 let found = format!("{} and {}", phases[0].label(), other.label());
                 Err(Refusal::mismatch("one phase function for all channels", found))
             }
@@ -195,34 +194,42 @@ impl Walker {
     /// # Errors
     ///
     /// The walk and the channel of which there is none.
-    pub fn squares(
+    pub fn second_moment_bounds(
         &self,
         phases: &[Phase],
-        of: impl Fn(Walk, usize, f64) -> Result<f64, f64>,
+        of: impl Fn(Proposal, usize, f64) -> Result<f64, f64>,
     ) -> Result<Vec<f64>, Refusal> {
-        let walks: Vec<(f64, Walk)> = match self {
-            Self::Hero(heroes) | Self::Balanced(heroes) => {
+        let walks: Vec<(f64, Proposal)> = match self {
+            Self::Hero(heroes) | Self::Mis(heroes) => {
                 let heroes = heroes.of(phases.len());
-                heroes.into_iter().enumerate().map(|(hero, w)| (w, Walk::Hero(hero))).collect()
+                heroes.into_iter().enumerate().map(|(hero, w)| (w, Proposal::Hero(hero))).collect()
             }
-            Self::Together(Chances::Fixed(chance)) => vec![(1.0, Walk::Together(*chance))],
-            Self::Together(Chances::History) => Vec::new(),
+            Self::SpectralTracking(Chances::Fixed(chance)) => {
+                vec![(1.0, Proposal::Together(*chance))]
+            }
+            // Nobody asks: it is bounded as multiple importance sampling is.
+            Self::SpectralTracking(Chances::History) => {
+                return Ok(vec![f64::INFINITY; phases.len()]);
+            }
         };
         let of_channel = |channel: usize| {
             let mut sum = 0.0;
             for &(weight, walk) in &walks {
                 let (phi, who) = match walk {
-                    Walk::Hero(hero) => (
+                    Proposal::Hero(hero) => (
                         phi(&phases[channel], &phases[hero]),
                         format!("walks of hero {}", hero + 1),
                     ),
-                    Walk::Together(_) => (1.0, "walks".into()),
+                    Proposal::Together(_) => (1.0, "walks".into()),
                 };
                 let found = of(walk, channel, phi).map_err(|factor| {
                     let times = if factor.is_finite() {
-                        format!("multiply E[X²] by up to {} between scatterings", rounded(factor))
+                        let factor = rounded(factor);
+                        format!("multiply E[X²] by {factor}, not by less than 1, from one scattering to the next")
+                    } else if phi.is_finite() {
+                        "lack what happens in another channel, which biases them, or gain without limit".into()
                     } else {
-                        "may gain without limit".into()
+                        "turn by a phase function too peaked for a bound".into()
                     };
                     let found = format!("{who} {times} in channel {}", channel + 1);
                     Refusal::mismatch("a second moment that theory bounds", found)

@@ -16,8 +16,8 @@ use super::prediction::Covariance;
 use super::rod::moments::POWERS;
 use super::rod::{central, tails};
 use super::slab::{self, Pieces, Walk};
-use super::spectral::bound::{self, Flight, Square};
-use super::spectral::rates::{Rates, Walk as Walker};
+use super::spectral::bound::{self, Flight, SecondMomentRates};
+use super::spectral::rates::{Proposal, Rates};
 use super::{Channel, CountLaw, Mesh, ParticleRule, Prediction};
 use crate::media::Piecewise;
 use crate::numeric::{Known, exponential_integrals};
@@ -78,8 +78,9 @@ impl<'a> Spectrum<'a> {
         let seen = &self.problem.colours.seen;
         let covariance = |next: usize| {
             let means = [next - 1, next].map(|i| channels[i].truth.value);
-            let squares = [next - 1, next].map(|i| channels[i].truth.value / heroes[seen[i].1]);
-            Covariance::of_raw([next - 1, next], means, squares, [0.0; 4])
+            let second_moment_bounds =
+                [next - 1, next].map(|i| channels[i].truth.value / heroes[seen[i].1]);
+            Covariance::of_raw([next - 1, next], means, second_moment_bounds, [0.0; 4])
         };
         let covariances = (1..channels.len()).map(covariance).collect();
         Prediction { channels, covariances, lookups: self.lookups(heroes), ..Prediction::default() }
@@ -97,8 +98,9 @@ impl<'a> Spectrum<'a> {
     }
 
     /// Of all channels relative to the density of one walker, given bounds on `E[X²]`; lookups are known of heroes.
-    pub fn relative(&self, heroes: Option<&[f64]>, squares: &[f64]) -> Prediction {
-        let channels = self.channels(|truth, channel| Channel::bounded(truth, squares[channel]));
+    pub fn relative(&self, heroes: Option<&[f64]>, second_moment_bounds: &[f64]) -> Prediction {
+        let channels =
+            self.channels(|truth, channel| Channel::bounded(truth, second_moment_bounds[channel]));
         let lookups = heroes.and_then(|heroes| self.lookups(heroes));
         Prediction { channels, lookups, ..Prediction::default() }
     }
@@ -108,7 +110,12 @@ impl<'a> Spectrum<'a> {
     /// # Errors
     ///
     /// What the second moment is multiplied by between two scatterings where that is too much.
-    pub fn square(&self, walk: Walker, channel: usize, phi: f64) -> Result<f64, f64> {
+    pub fn second_moment_bound(
+        &self,
+        walk: Proposal,
+        channel: usize,
+        phi: f64,
+    ) -> Result<f64, f64> {
         let problem = self.problem;
         let majorants =
             self.media.iter().map(|(_, sampling)| sampling.single_value().unwrap_or_default());
@@ -124,8 +131,8 @@ impl<'a> Spectrum<'a> {
         let mesh = self.media[0].0.refined(&ends.collect::<Vec<f64>>(), &|_, _| Vec::new());
         let nothing = bound::NOTHING * rates.majorants[0];
         // Where nothing happens nothing is lost or gained.
-        let is_empty = |s: &Square| s.scattered == 0.0 && s.lost.abs() <= nothing;
-        let of = |f: &dyn Fn(Square) -> f64| {
+        let is_empty = |s: &SecondMomentRates| s.scattered <= nothing && s.lost.abs() <= nothing;
+        let of = |f: &dyn Fn(SecondMomentRates) -> f64| {
             let peaks = mesh.peaks(|t| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
             peaks.into_iter().map(|(_, value)| value).fold(0.0, f64::max)
         };

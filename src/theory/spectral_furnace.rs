@@ -36,8 +36,8 @@ pub fn independent(heroes: &[f64]) -> Prediction {
         channel(count, index, Some(moments), tails(&raw))
     });
     let covariances = (1..count).map(|next| {
-        let squares = [heroes[next - 1], heroes[next]].map(|weight| 1.0 / weight);
-        Covariance::of_raw([next - 1, next], [1.0; 2], squares, [0.0; 4])
+        let second_moment_bounds = [heroes[next - 1], heroes[next]].map(|weight| 1.0 / weight);
+        Covariance::of_raw([next - 1, next], [1.0; 2], second_moment_bounds, [0.0; 4])
     });
     // Of two channels drawn equally often the product is the same in every draw: there is nothing to test.
     let covariances = covariances.filter(|found| found.variance > ROUNDING);
@@ -60,9 +60,9 @@ pub fn balanced(heroes: &[f64]) -> Prediction {
 }
 
 /// Of all channels relative to the density of one walker, given bounds on `E[X²]`.
-pub fn relative(squares: &[f64]) -> Prediction {
-    let count = squares.len();
-    let channels = squares.iter().enumerate().map(|(index, square)| {
+pub fn relative(second_moment_bounds: &[f64]) -> Prediction {
+    let count = second_moment_bounds.len();
+    let channels = second_moment_bounds.iter().enumerate().map(|(index, square)| {
         let unknown = channel(count, index, None, Tails::LIGHT);
         Channel { most_variance: Some((square - 1.0).max(ROUNDING)), ..unknown }
     });

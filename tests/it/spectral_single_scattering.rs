@@ -133,7 +133,11 @@ fn what_lies_behind_a_wall_fails_no_correct_estimator() {
 #[test]
 fn mistakes_and_what_is_out_of_reach_are_told() {
     let expected = [
-        ("albedos = [0.9, 0.5, 0.7]", "albedos = [0.9, 0, 0.7]", "nothing is scattered in a"),
+        (
+            "albedos = [0.9, 0.5, 0.7]",
+            "albedos = [0.9, 0, 0.7]",
+            "nothing is scattered in channel 2",
+        ),
         ("{ isotropic = {} }, ", "", "`phases` lists 2 channels, and the medium has 3"),
         ("radius = 1", "radius = 0.9", "do not fill the same part"),
         ("position = [0.9, -0.3, 0.4]", "position = [0.2, 0.1, 0.4]", "move it off the line"),
@@ -193,6 +197,28 @@ fn heroes_without_scatterings_are_refused_wherever_that_is() {
         ));
         let words = "σ_t comes down to 0 in channel 1: E[X²] is infinite";
         assert!(rows[0].reason.contains(words), "{other}: {}", rows[0].reason);
+    }
+}
+
+/// A hero that scatters ten times as rarely as another channel, wherever that is, lacks nothing, however thin both are.
+#[test]
+fn thin_tails_of_two_colours_are_no_reason_to_refuse() {
+    let volume = [1.0, 0.1].map(|peak: f64| {
+        format!(
+            "{{ gaussian = {{ peak = {peak:?}, centre = [0, 0, 0], width = 0.16, \
+             bounds.sphere = {{ centre = [0, 0, 0], radius = 1 }} }} }}"
+        )
+    });
+    let rows = predicted(&format!(
+        "title = \"tails\"\n[problem.spectral-single-scattering]\nvolume = [{}, {}]\n\
+         ray = {{ origin = [0, 0, -2], direction = [0, 0, 1], length = 4 }}\n\
+         light = {{ position = [0.9, -0.3, 0.4], power = 10 }}\nalbedos = [0.7, 0.8]\n\
+         phases = [{{ isotropic = {{}} }}, {{ isotropic = {{}} }}]\nsampling.constant.value = 1.6\n\
+         estimators = [{{ hero = {{}} }}]\n",
+        volume[0], volume[1]
+    ));
+    for row in &rows {
+        assert!(row.predicted_variance.is_some_and(f64::is_finite), "{}", row.reason);
     }
 }
 

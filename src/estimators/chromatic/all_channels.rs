@@ -9,7 +9,7 @@ use crate::kernels::packet::Request;
 use crate::media::Lookups;
 use crate::rng::Stream;
 use crate::setup::heroes::Heroes;
-use crate::setup::walker::{BALANCED, Walker};
+use crate::setup::walker::{MIS, Walker};
 use crate::theory::Prediction;
 use crate::theory::spectral::Chances;
 
@@ -22,7 +22,7 @@ pub struct AllChannels<const KIND: u8> {
 
 impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
     const INPUTS: Inputs = Inputs::SAMPLING;
-    const HAS_INVARIANT: bool = KIND == BALANCED;
+    const HAS_INVARIANT: bool = KIND == MIS;
     const IN_PACKETS: bool = true;
 
     fn read(settings: &Settings) -> Option<Self> {
@@ -36,25 +36,26 @@ impl<P: Chromatic, const KIND: u8> Estimator<P> for AllChannels<KIND> {
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {
         P::require(setup, &self.walker)?;
         match &self.walker {
-            Walker::Hero(_) | Walker::Together(Chances::Fixed(_)) => {
-                P::squares(setup, &self.walker).map(|_| ())
+            Walker::Hero(_) | Walker::SpectralTracking(Chances::Fixed(_)) => {
+                P::second_moment_bounds(setup, &self.walker).map(|_| ())
             }
-            Walker::Balanced(_) | Walker::Together(Chances::History) => Ok(()),
+            Walker::Mis(_) | Walker::SpectralTracking(Chances::History) => Ok(()),
         }
     }
 
     fn predict(&self, setup: &Setup<P>) -> Prediction {
         let count = setup.channels.len();
         match &self.walker {
-            Walker::Balanced(heroes) => P::predict_balanced(setup, &heroes.of(count)),
+            Walker::Mis(heroes) => P::predict_balanced(setup, &heroes.of(count)),
             // It scores what equal heroes score by the balance heuristic, and flies as they do.
-            Walker::Together(Chances::History) => {
+            Walker::SpectralTracking(Chances::History) => {
                 P::predict_balanced(setup, &Heroes::Uniform.of(count))
             }
-            Walker::Hero(_) | Walker::Together(Chances::Fixed(_)) => {
-                let squares = P::squares(setup, &self.walker);
-                let squares = squares.unwrap_or_else(|_| vec![f64::INFINITY; count]);
-                P::predict_relative(setup, &self.walker, &squares)
+            Walker::Hero(_) | Walker::SpectralTracking(Chances::Fixed(_)) => {
+                let second_moment_bounds = P::second_moment_bounds(setup, &self.walker);
+                let second_moment_bounds =
+                    second_moment_bounds.unwrap_or_else(|_| vec![f64::INFINITY; count]);
+                P::predict_relative(setup, &self.walker, &second_moment_bounds)
             }
         }
     }

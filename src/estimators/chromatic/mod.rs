@@ -98,7 +98,7 @@ pub trait Chromatic: Problem {
     /// # Errors
     ///
     /// Why there are none, or how the draws are biased.
-    fn squares(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal>;
+    fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal>;
 
     /// What theory says of one channel a draw.
     fn predict_independent(setup: &Setup<Self>, heroes: &[f64]) -> Prediction;
@@ -107,7 +107,11 @@ pub trait Chromatic: Problem {
     fn predict_balanced(setup: &Setup<Self>, heroes: &[f64]) -> Prediction;
 
     /// Of all channels relative to the density of one walker, given bounds on their second moments.
-    fn predict_relative(setup: &Setup<Self>, walker: &Walker, squares: &[f64]) -> Prediction;
+    fn predict_relative(
+        setup: &Setup<Self>,
+        walker: &Walker,
+        second_moment_bounds: &[f64],
+    ) -> Prediction;
 
     /// The draws of a page on the hardware of a level, which score all channels or the hero's alone; a request is handed
     /// back where the hardware is too narrow.
@@ -152,7 +156,7 @@ pub fn draw<P: Chromatic>(
     if end.is_none() {
         return Draw::free(problem.values(None, &[0.0; MOST_CHANNELS]), lookups);
     }
-    let Walker::Balanced(heroes) = walker else {
+    let Walker::Mis(heroes) = walker else {
         return Draw::free(problem.values(end, &path.relative(setup)), lookups);
     };
     let scores = path.score(setup, heroes, weighing);

@@ -65,13 +65,13 @@ impl Chromatic for ChromaticSlab {
         realisable(setup)
     }
 
-    fn squares(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+    fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
         if let Walker::Hero(_) = walker {
             channels::require_room(&setup.channels, true)?;
         }
         let spectrum = spectrum(setup);
-        walker.squares(&setup.problem.phases(), |walk, channel, phi| {
-            spectrum.square(walk, channel, phi)
+        walker.second_moment_bounds(&setup.problem.phases(), |walk, channel, phi| {
+            spectrum.second_moment_bound(walk, channel, phi)
         })
     }
 
@@ -83,9 +83,13 @@ impl Chromatic for ChromaticSlab {
         spectrum(setup).balanced(heroes)
     }
 
-    fn predict_relative(setup: &Setup<Self>, walker: &Walker, squares: &[f64]) -> Prediction {
+    fn predict_relative(
+        setup: &Setup<Self>,
+        walker: &Walker,
+        second_moment_bounds: &[f64],
+    ) -> Prediction {
         let heroes = walker.heroes().map(|heroes| heroes.of(setup.channels.len()));
-        spectrum(setup).relative(heroes.as_deref(), squares)
+        spectrum(setup).relative(heroes.as_deref(), second_moment_bounds)
     }
 
     fn packets<'a, const ALL: bool>(

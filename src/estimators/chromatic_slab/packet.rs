@@ -142,7 +142,7 @@ impl Page<'_> {
                     *found = left.row(simd, REST + channel, first);
                 }
                 self.media.common(hero, [length, lookups], found);
-                if matches!(self.walker, Walker::Balanced(_)) {
+                if matches!(self.walker, Walker::Mis(_)) {
                     let defect = balance(&self.media, found);
                     defects = Lane::select(end.below(zero.each(ABSORBED)), defect, zero);
                 }

@@ -11,7 +11,7 @@
 //! | `sampling` | one constant σ̂ for all channels, at least the σ_t of each | required here or in the case |
 //!
 //! Unbiased there, with one phase function for all channels. What the variance is theory does not know: of fixed chances it
-//! has a bound where `E[X²]` grows by less than 1 between two scatterings, and what has none is refused: its variance may
+//! has a bound where `E[X²]` is multiplied by less than 1 from one scattering to the next, and what has none is refused: its variance may
 //! be infinite. Chances that depend on the weights score what `spectral-mis` scores with one σ̂ and equal probabilities,
 //! and are bounded everywhere.
 //!
@@ -19,7 +19,7 @@
 //! Heterogeneous Volumes*, ACM Transactions on Graphics 36 (2017), sections 5.1.1 and 5.1.2.
 
 use crate::estimators::chromatic::all_channels::AllChannels;
-use crate::setup::walker::TOGETHER;
+use crate::setup::walker::SPECTRAL_TRACKING;
 
 /// Spectral tracking.
-pub type SpectralTracking = AllChannels<TOGETHER>;
+pub type SpectralTracking = AllChannels<SPECTRAL_TRACKING>;

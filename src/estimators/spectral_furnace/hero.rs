@@ -10,7 +10,7 @@
 //! | `sampling` | a constant σ̂ > σ_t in each channel | required here or in the case |
 //!
 //! Unbiased where nothing happens in a channel that never happens to a hero. What the variance is theory does not know: it
-//! has a bound where σ_t has one value in each channel and `E[X²]` grows by less than 1 between two scatterings, and what
+//! has a bound where σ_t has one value in each channel and `E[X²]` is multiplied by less than 1 from one scattering to the next, and what
 //! has none is refused: its variance may be infinite. What multiple importance sampling is for: see `spectral-mis`.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A Null-Scattering Path Integral Formulation of Light

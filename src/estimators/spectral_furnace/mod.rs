@@ -85,7 +85,7 @@ impl Chromatic for SpectralFurnace {
         realisable(setup)
     }
 
-    fn squares(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
+    fn second_moment_bounds(setup: &Setup<Self>, walker: &Walker) -> Result<Vec<f64>, Refusal> {
         let problem = &setup.problem;
         let values = problem.channels.iter().map(|channel| channel.volume.single_value());
         let Some(extinctions) = values.collect::<Option<Vec<f64>>>() else {
@@ -96,7 +96,7 @@ impl Chromatic for SpectralFurnace {
         let rates = Rates { majorants, albedos: problem.albedos.clone() };
         let phases: Vec<_> = problem.channels.iter().map(|channel| channel.phase).collect();
         let across = across(&problem.bounds);
-        walker.squares(&phases, |walk, channel, phi| {
+        walker.second_moment_bounds(&phases, |walk, channel, phi| {
             let square = bound::square(&rates, walk, channel, &extinctions, phi);
             let shorter = bound::are_isotropic(&phases) && square.lost > 0.0;
             // Lines from a place in a ball are at most as long as a radius on average, and e^{−x} is convex.
@@ -120,8 +120,8 @@ impl Chromatic for SpectralFurnace {
         theory::balanced(heroes)
     }
 
-    fn predict_relative(_: &Setup<Self>, _: &Walker, squares: &[f64]) -> Prediction {
-        theory::relative(squares)
+    fn predict_relative(_: &Setup<Self>, _: &Walker, second_moment_bounds: &[f64]) -> Prediction {
+        theory::relative(second_moment_bounds)
     }
 
     fn packets<'a, const ALL: bool>(

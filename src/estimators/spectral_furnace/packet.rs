@@ -314,7 +314,7 @@ fn score<S: Simd, const ALL: bool>(simd: S, world: &World<ALL>, left: &Left, mut
                 *found = left.row(simd, REST + channel, first);
             }
             media.common(hero, [length, lookups], found);
-            if matches!(world.walker, Walker::Balanced(_)) {
+            if matches!(world.walker, Walker::Mis(_)) {
                 defects = balance(media, found);
             }
         } else {

@@ -16,7 +16,7 @@
 //! ACM Transactions on Graphics 38 (2019), section 5.1, Algorithm 1.
 
 use crate::estimators::chromatic::all_channels::AllChannels;
-use crate::setup::walker::BALANCED;
+use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = AllChannels<BALANCED>;
+pub type SpectralMis = AllChannels<MIS>;

@@ -18,7 +18,7 @@ use crate::setup::walker::Walker;
 use crate::theory::Prediction;
 use crate::theory::single::{Points, Tracking};
 use crate::theory::spectral::Chances;
-use crate::theory::spectral::rates::Walk;
+use crate::theory::spectral::rates::Proposal;
 use crate::theory::spectral_single_scattering::{self as theory, relative::Relative};
 
 /// How shadow rays are tracked.
@@ -77,14 +77,16 @@ fn alone(setup: &Setup<SpectralSingleScattering>, shadow: Shadow) -> Vec<Points>
 fn predict(setup: &Setup<SpectralSingleScattering>, walker: &Walker, shadow: Shadow) -> Prediction {
     let (alone, count) = (alone(setup, shadow), setup.channels.len());
     let walks = match walker {
-        Walker::Balanced(heroes) => return theory::balanced(&alone, &heroes.of(count)),
+        Walker::Mis(heroes) => return theory::balanced(&alone, &heroes.of(count)),
         // It scores what equal heroes score by the balance heuristic, and flies as they do.
-        Walker::Together(Chances::History) => {
+        Walker::SpectralTracking(Chances::History) => {
             return theory::balanced(&alone, &Heroes::Uniform.of(count));
         }
-        Walker::Together(Chances::Fixed(chance)) => vec![(1.0, Walk::Together(*chance))],
+        Walker::SpectralTracking(Chances::Fixed(chance)) => {
+            vec![(1.0, Proposal::Together(*chance))]
+        }
         Walker::Hero(heroes) => {
-            heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Walk::Hero(h))).collect()
+            heroes.of(count).into_iter().enumerate().map(|(h, w)| (w, Proposal::Hero(h))).collect()
         }
     };
     let of_heroes = walker.heroes().and_then(|heroes| theory::lookups(&alone, &heroes.of(count)));

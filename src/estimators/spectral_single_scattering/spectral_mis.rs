@@ -16,7 +16,7 @@
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*,
 //! ACM Transactions on Graphics 38 (2019), sections 5.3 and 5.4.
 
-use crate::setup::walker::BALANCED;
+use crate::setup::walker::MIS;
 
 /// The balance heuristic over heroes.
-pub type SpectralMis = super::page::AllChannels<BALANCED>;
+pub type SpectralMis = super::page::AllChannels<MIS>;

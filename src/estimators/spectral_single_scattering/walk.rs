@@ -99,14 +99,14 @@ pub fn draw(
     let (mut scores, mut density) = ([0.0; MOST_CHANNELS], 0.0);
     for (channel, lit) in problem.channels.iter().enumerate() {
         let common = path.common(setup, channel, length);
-        if let Walker::Balanced(heroes) = walker
+        if let Walker::Mis(heroes) = walker
             && channel + steps.missing() < count
         {
             density += heroes.probability(count, channel) * common;
         }
         scores[channel] = common * through[channel] * lit.source(s) / lit.albedo();
     }
-    if matches!(walker, Walker::Balanced(_)) {
+    if matches!(walker, Walker::Mis(_)) {
         for score in &mut scores[..count] {
             *score /= density;
         }

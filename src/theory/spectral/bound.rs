@@ -15,7 +15,7 @@
 //! Source: derived; the equation of the second moment is that of J. Spanier, E. M. Gelbard, *Monte Carlo Principles and
 //! Neutron Transport Problems* (1969).
 
-use super::rates::{Rates, Walk};
+use super::rates::{Proposal, Rates};
 use crate::numeric::quadrature::GaussLegendre;
 use crate::phase::Phase;
 use crate::phase::isotropic::Isotropic;
@@ -31,7 +31,7 @@ const SLACK: f64 = 1e-9;
 
 /// The rates of the second moment of a channel.
 #[derive(Debug, Clone, Copy)]
-pub struct Square {
+pub struct SecondMomentRates {
     /// `α = A − N`.
     pub lost: f64,
     /// `S Φ`.
@@ -41,12 +41,22 @@ pub struct Square {
 }
 
 /// Those of a channel where all channels have these extinctions; `Φ` is given.
-pub fn square(rates: &Rates, walk: Walk, channel: usize, extinctions: &[f64], phi: f64) -> Square {
+pub fn square(
+    rates: &Rates,
+    walk: Proposal,
+    channel: usize,
+    extinctions: &[f64],
+    phi: f64,
+) -> SecondMomentRates {
     let mut k = vec![0; rates.majorants.len()];
     k[channel] = 2;
     let [null, scattered] = rates.gains(walk, &k, extinctions);
     let lost = rates.loss(walk, &k) - null;
-    Square { lost, scattered: scattered * phi, absorbed: rates.absorbed(walk, &k, extinctions) }
+    SecondMomentRates {
+        lost,
+        scattered: scattered * phi,
+        absorbed: rates.absorbed(walk, &k, extinctions),
+    }
 }
 
 /// How a flight ends: e, and f.
@@ -128,7 +138,7 @@ mod tests {
     #[test]
     fn a_channel_by_itself_scores_one() {
         let rates = Rates { majorants: vec![2.0], albedos: vec![0.7] };
-        let square = square(&rates, Walk::Hero(0), 0, &[1.5], 1.0);
+        let square = square(&rates, Proposal::Hero(0), 0, &[1.5], 1.0);
         assert!((square.lost - 1.5).abs() < 1e-15 && (square.scattered - 1.05).abs() < 1e-15);
         let flight = Flight::of(square.lost, 3.0);
         let found = largest(flight, flight, [square.scattered, square.absorbed]).expect("a bound");
@@ -138,7 +148,7 @@ mod tests {
     #[test]
     fn a_scatterer_that_gains_too_much_has_no_bound() {
         let rates = Rates { majorants: vec![1.0; 2], albedos: vec![1.0, 0.25] };
-        let square = square(&rates, Walk::Hero(1), 0, &[1.0, 1.0], 1.0);
+        let square = square(&rates, Proposal::Hero(1), 0, &[1.0, 1.0], 1.0);
         // Each scattering multiplies the second moment by 4: a quarter of the flights may collide.
         assert!((square.scattered - 4.0).abs() < 1e-12);
         let at = |length: f64| {

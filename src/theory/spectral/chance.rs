@@ -1,7 +1,7 @@
 //! The chances of spectral tracking: what a collision is, decided once for all channels.
 //!
 //! ```text
-//! P_e = mean_λ μ_e,λ,   P_e ∝ max_λ μ_e,λ,   P_e ∝ Σ_λ w_λ μ_e,λ,   events e null, scattered, absorbed
+//! P_e = mean_λ μ_e,λ/μ̄,   P_e ∝ max_λ μ_e,λ,   P_e ∝ Σ_λ w_λ μ_e,λ,   events e null, scattered, absorbed
 //! ```
 //!
 //! Source: P. Kutz, R. Habel, Y. K. Li, J. Novák, *Spectral and Decomposition Tracking for Rendering

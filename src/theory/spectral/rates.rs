@@ -19,7 +19,7 @@ use super::power;
 
 /// Who walks.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Walk {
+pub enum Proposal {
     /// The hero of a number.
     Hero(usize),
     /// All channels together, by fixed chances.
@@ -37,10 +37,10 @@ pub struct Rates {
 
 impl Rates {
     /// A, of the exponents k.
-    pub fn loss(&self, walk: Walk, k: &[i32]) -> f64 {
+    pub fn loss(&self, walk: Proposal, k: &[i32]) -> f64 {
         let hero = match walk {
-            Walk::Hero(hero) => hero,
-            Walk::Together(_) => 0,
+            Proposal::Hero(hero) => hero,
+            Proposal::Together(_) => 0,
         };
         let total: i32 = k.iter().sum();
         let all: f64 = k.iter().zip(&self.majorants).map(|(&k, own)| f64::from(k) * own).sum();
@@ -48,14 +48,14 @@ impl Rates {
     }
 
     /// N and S, where the channels have these extinctions.
-    pub fn gains(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
+    pub fn gains(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
         let majorants = &self.majorants;
         // Where σ_t is above σ̂ by rounding nothing is null.
         let null = |channel: usize| (majorants[channel] - extinctions[channel]).max(0.0);
         let scattered = |channel: usize| extinctions[channel] * self.albedos[channel];
         let [by_null, by_scattering] = match walk {
-            Walk::Hero(hero) => [null(hero), scattered(hero)],
-            Walk::Together(chance) => {
+            Proposal::Hero(hero) => [null(hero), scattered(hero)],
+            Proposal::Together(chance) => {
                 let [null, scattered, _] = self.chances(chance, extinctions);
                 [majorants[0] * null, majorants[0] * scattered]
             }
@@ -64,11 +64,11 @@ impl Rates {
     }
 
     /// The same of absorption, as of a scattering.
-    pub fn absorbed(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> f64 {
+    pub fn absorbed(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> f64 {
         let own = |channel: usize| extinctions[channel] * (1.0 - self.albedos[channel]);
         let by = match walk {
-            Walk::Hero(hero) => own(hero),
-            Walk::Together(chance) => self.majorants[0] * self.chances(chance, extinctions)[2],
+            Proposal::Hero(hero) => own(hero),
+            Proposal::Together(chance) => self.majorants[0] * self.chances(chance, extinctions)[2],
         };
         product(k, own, by)
     }
@@ -80,10 +80,10 @@ impl Rates {
     }
 
     /// N of ratio tracking through the walker's σ̂.
-    pub fn gain_of_ratio(&self, walk: Walk, k: &[i32], extinctions: &[f64]) -> f64 {
+    pub fn gain_of_ratio(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> f64 {
         let hero = match walk {
-            Walk::Hero(hero) => hero,
-            Walk::Together(_) => 0,
+            Proposal::Hero(hero) => hero,
+            Proposal::Together(_) => 0,
         };
         product(k, |channel| self.majorants[channel] - extinctions[channel], self.majorants[hero])
     }

@@ -28,7 +28,7 @@ use crate::theory::single::scene::Place;
 use crate::theory::single::segment::along_all;
 use crate::theory::single::{Camera, CameraTracking, Points, Scene, Tracking};
 use crate::theory::spectral::chance::Chance;
-use crate::theory::spectral::rates::{Rates, Walk};
+use crate::theory::spectral::rates::{Proposal, Rates};
 use crate::theory::{Mesh, Prediction};
 
 /// Room for the moments of eight channels, `4·8 + 4·7`, and for those of lookups.
@@ -45,7 +45,7 @@ pub struct Relative<'a> {
     sampling: &'a Piecewise,
     rates: Rates,
     /// Who walks, with which probability.
-    walks: Vec<(f64, Walk)>,
+    walks: Vec<(f64, Proposal)>,
     /// Whether shadow rays are tracked.
     tracks: bool,
     /// The exponents of all moments; the last are 0.
@@ -64,7 +64,7 @@ impl<'a> Relative<'a> {
         channels: &'a [Arc<SingleScattering>],
         media: Vec<(&'a Mesh, f64)>,
         sampling: &'a Piecewise,
-        walks: Vec<(f64, Walk)>,
+        walks: Vec<(f64, Proposal)>,
         tracks: bool,
     ) -> Self {
         let (meshes, majorants): (Vec<&Mesh>, Vec<f64>) = media.into_iter().unzip();
@@ -106,7 +106,7 @@ impl<'a> Relative<'a> {
         let support = self.meshes[0].support();
         let ends = self.meshes.iter().flat_map(|mesh| mesh.panels().map(|panel| panel.span.from));
         let mut kinks: Vec<f64> = ends.filter(|&t| support.contains_inside(t)).collect();
-        if self.walks.iter().all(|&(_, walk)| walk != Walk::Together(Chance::Maximum)) {
+        if self.walks.iter().all(|&(_, walk)| walk != Proposal::Together(Chance::Maximum)) {
             return kinks;
         }
         let cut = self.meshes[0].refined(&kinks, &|_, _| Vec::new());
@@ -131,7 +131,7 @@ impl<'a> Relative<'a> {
 
     /// N at each distance, power by power and walk by walk.
     fn gains_at(&self, t: &[f64]) -> Vec<Vec<f64>> {
-        let of_walk = |here: &Vec<f64>, walk: Walk| -> Vec<f64> {
+        let of_walk = |here: &Vec<f64>, walk: Proposal| -> Vec<f64> {
             self.powers.iter().map(|k| self.rates.gains(walk, k, here)[0]).collect()
         };
         let row = |here: &Vec<f64>| self.walks.iter().flat_map(|w| of_walk(here, w.1)).collect();
@@ -161,7 +161,7 @@ impl<'a> Relative<'a> {
     }
 
     /// `ln E[Π T̂_λ^{k_λ}]` of the shadow ray, power by power, for a walk, given the medium of each channel there.
-    fn shadow(&self, walk: Walk, media: &[Medium]) -> Vec<f64> {
+    fn shadow(&self, walk: Proposal, media: &[Medium]) -> Vec<f64> {
         if !self.tracks {
             let depths: Vec<f64> =
                 media.iter().map(|m| m.optical_depth(m.support()).value).collect();
@@ -204,7 +204,7 @@ impl<'a> Relative<'a> {
                 let gained: f64 = worth.iter().zip(k).map(|(x, &k)| x.powi(k)).product();
                 row[j] += weight * scattered * gained * (passed[j] - lost + shadow[j]).exp();
             }
-            let Walk::Together(_) = walk else { continue };
+            let Proposal::Together(_) = walk else { continue };
             let [null, scattered] = self.rates.gains(walk, &self.powers[last], here);
             let rate = self.rates.loss(walk, &self.powers[last]);
             let alive = (passed[last] - rate * (s - from)).exp();
@@ -258,7 +258,7 @@ impl<'a> Relative<'a> {
 
     /// The moments of lookups with those of walks that leave the ray.
     fn escaped(&self, found: [f64; 4]) -> Option<[f64; 5]> {
-        let &[(_, walk @ Walk::Together(_))] = self.walks.as_slice() else { return None };
+        let &[(_, walk @ Proposal::Together(_))] = self.walks.as_slice() else { return None };
         let last = self.powers.len() - 1;
         let passed = self.up_to(self.meshes[0].support().to)[last];
         let rate = self.rates.loss(walk, &self.powers[last]);

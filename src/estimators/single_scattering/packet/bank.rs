@@ -161,6 +161,7 @@ struct Pack<S: Simd, P> {
 impl<S: Simd, P: Page<S>> Pack<S, P> {
     #[inline(always)]
     fn begin(simd: S, mut page: P, mut numbers: Numbers<S>) -> Self {
+        const { assert!(TOGETHER + P::LIT + P::DONE < 8 + 3, "all lanes may wait for each other") };
         let (zero, none) = (f64x8::splat(simd, 0.0), mask64x8::splat(simd, false));
         let mut sums = Sums { value: zero, lookups: zero };
         page.begin(&mut numbers, !none, &mut sums);

@@ -40,8 +40,8 @@ pub struct Sums<S: Simd> {
 pub trait Page<S: Simd> {
     /// So many that have found light go on together: more than one where that costs more than a step.
     const LIT: u32 = 1;
-    /// So many that have made their draws begin the next ones together. Of eight one is always on its way, for fewer than
-    /// this, than [`Page::LIT`] and than 4 that aim wait: 7 at most.
+    /// So many that have made their draws begin the next ones together. Who waits does not move: of eight lanes at most
+    /// (4 − 1) aim, (LIT − 1) have found light and (DONE − 1) have ended, which must leave one.
     const DONE: u32 = 1;
 
     /// The draws that a mask names begin, and those that go on with another point.

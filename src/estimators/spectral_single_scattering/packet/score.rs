@@ -17,7 +17,7 @@ use crate::setup::walker::Walker;
 #[inline(always)]
 pub fn all<S: Simd, const ALL: bool>(simd: S, world: &World<ALL>, left: &Left, mut made: Made) {
     let (media, zero) = (&world.media, f64x8::splat(simd, 0.0));
-    let is_balanced = matches!(world.walker, Walker::Balanced(_));
+    let is_balanced = matches!(world.walker, Walker::Mis(_));
     let mut found = [zero; MOST_CHANNELS];
     let found = &mut found[..media.count];
     for first in made.packs() {
