@@ -131,7 +131,7 @@ impl<'a> Spectrum<'a> {
         let mesh = self.media[0].0.refined(&ends.collect::<Vec<f64>>(), &|_, _| Vec::new());
         let nothing = bound::NOTHING * rates.majorants[0];
         // Where nothing happens nothing is lost or gained.
-        let is_empty = |s: &SecondMomentRates| s.scattered <= nothing && s.lost.abs() <= nothing;
+        let is_empty = |s: &SecondMomentRates| s.scattered == 0.0 && s.lost.abs() <= nothing;
         let of = |f: &dyn Fn(SecondMomentRates) -> f64| {
             let peaks = mesh.peaks(|t| Some(at(t)).filter(|s| !is_empty(s)).map_or(0.0, f));
             peaks.into_iter().map(|(_, value)| value).fold(0.0, f64::max)

@@ -50,10 +50,9 @@ pub fn square(
 ) -> SecondMomentRates {
     let mut k = vec![0; rates.majorants.len()];
     k[channel] = 2;
-    let [null, scattered] = rates.gains(walk, &k, extinctions);
-    let lost = rates.loss(walk, &k) - null;
+    let [_, scattered] = rates.gains(walk, &k, extinctions);
     SecondMomentRates {
-        lost,
+        lost: rates.lost_by_square(walk, channel, extinctions),
         scattered: scattered * phi,
         absorbed: rates.absorbed(walk, &k, extinctions),
     }
@@ -125,6 +124,7 @@ pub fn phi(own: &Phase, hero: &Phase) -> f64 {
 mod tests {
     use super::*;
     use crate::phase::henyey_greenstein::HenyeyGreenstein;
+    use crate::theory::spectral::Chance;
 
     /// g of a channel and of a hero, and Φ.
     const PEAKED: [(f64, f64, f64); 4] = [
@@ -156,6 +156,39 @@ mod tests {
             largest(flight, flight, [square.scattered, square.absorbed])
         };
         assert!(at(0.28).is_some() && at(0.29).is_none());
+    }
+
+    /// By the definition where nothing cancels, and with all its digits where the medium is thin.
+    #[test]
+    fn what_flights_lose_keeps_its_digits() {
+        let rates = Rates { majorants: vec![1.5, 1.7], albedos: vec![0.4, 0.9] };
+        let common = Rates { majorants: vec![1.5; 2], ..rates.clone() };
+        for chance in [Chance::Average, Chance::Maximum] {
+            for (rates, walk) in [
+                (&rates, Proposal::Hero(0)),
+                (&rates, Proposal::Hero(1)),
+                (&common, Proposal::Together(chance)),
+            ] {
+                for channel in 0..2 {
+                    let mut k = vec![0; 2];
+                    k[channel] = 2;
+                    let here = [0.8, 0.3];
+                    let exact = rates.loss(walk, &k) - rates.gains(walk, &k, &here)[0];
+                    let found = rates.lost_by_square(walk, channel, &here);
+                    assert!((found - exact).abs() < 1e-14, "{walk:?}: {found} for {exact}");
+                }
+            }
+        }
+        // α ≈ 2σ_λ − σ_h, and 2σ_λ − (σ_λ + σ_h)/2 by the average.
+        let thin = [1e-20, 0.8e-20];
+        for (walk, exact) in [
+            (Proposal::Hero(0), 0.6e-20),
+            (Proposal::Hero(1), 0.8e-20),
+            (Proposal::Together(Chance::Average), 0.7e-20),
+        ] {
+            let found = common.lost_by_square(walk, 1, &thin);
+            assert!((found / exact - 1.0).abs() < 1e-14, "{walk:?}: {found} for {exact}");
+        }
     }
 
     #[test]

@@ -47,6 +47,37 @@ impl Rates {
         all - f64::from(total - 1) * self.majorants[hero]
     }
 
+    /// `A − N` of the square of a channel, where the channels have these extinctions, with all digits where these are small:
+    ///
+    /// ```text
+    /// hero h               (2 μ̄_λ (σ_λ − σ_h) + μ̄_h σ_h − σ_λ² − (μ̄_λ − μ̄_h)²)/n_h,  σ_h for its own channel
+    /// spectral tracking    μ̄ (r (2 − r) − (1 − P_n))/P_n,  r = σ_λ/μ̄
+    /// ```
+    pub fn lost_by_square(&self, walk: Proposal, channel: usize, extinctions: &[f64]) -> f64 {
+        let (own, majorant) = (extinctions[channel], self.majorants[channel]);
+        let is_null = own < majorant;
+        match walk {
+            Proposal::Hero(hero) if hero == channel => own,
+            Proposal::Hero(hero) => {
+                let (other, of_hero) = (extinctions[hero], self.majorants[hero]);
+                if !is_null {
+                    return 2.0 * majorant - of_hero;
+                }
+                if other >= of_hero {
+                    return f64::NEG_INFINITY;
+                }
+                let linear = 2.0 * majorant * (own - other) + of_hero * other;
+                (linear - own * own - (majorant - of_hero).powi(2)) / (of_hero - other)
+            }
+            Proposal::Together(_) if !is_null => majorant,
+            Proposal::Together(chance) => {
+                let [null, scattered, absorbed] = self.chances(chance, extinctions);
+                let ratio = own / majorant;
+                majorant * (ratio * (2.0 - ratio) - (scattered + absorbed)) / null
+            }
+        }
+    }
+
     /// N and S, where the channels have these extinctions.
     pub fn gains(&self, walk: Proposal, k: &[i32], extinctions: &[f64]) -> [f64; 2] {
         let majorants = &self.majorants;
