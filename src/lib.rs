@@ -40,6 +40,7 @@ pub mod baseline;
 #[cfg(feature = "library")]
 pub mod bench;
 pub mod catalogue;
+pub mod check;
 #[cfg(feature = "library")]
 pub mod estimators;
 #[cfg(feature = "library")]
@@ -66,7 +67,6 @@ pub mod recipes;
 pub mod render;
 #[cfg(feature = "cli")]
 pub mod report;
-#[cfg(any(feature = "library", test))]
 pub mod rng;
 #[cfg(feature = "library")]
 pub mod self_test;
@@ -77,6 +77,8 @@ pub mod stats;
 pub mod stress;
 #[cfg(feature = "library")]
 pub mod theory;
+
+pub use check::{Check, Gate, check, check_with, claim};
 
 /// The examples of README and manual are compiled and run with the documentation's.
 #[cfg(all(doctest, feature = "cli"))]

@@ -4,6 +4,7 @@
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
+pub mod digits;
 #[cfg(test)]
 pub mod fixture;
 mod lists;

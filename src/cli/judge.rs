@@ -277,19 +277,17 @@ impl Arguments {
                 rounding: self.rounding,
             })?);
         };
-        let cases = selection::read_case(name).map_err(|errors| {
-            let shown = errors.iter().map(|error| match error {
-                CaseError::Faulty { .. } => format!("{error}\n\n{}", error.render(false)),
-                other => other.to_string(),
-            });
-            anyhow::anyhow!("--case: {}", shown.collect::<Vec<_>>().join("\n\n"))
+        let cases = Case::named(name).map_err(|errors| {
+            let shown: Vec<String> = errors.iter().map(CaseError::in_full).collect();
+            anyhow::anyhow!("--case: {}", shown.join("\n\n"))
         })?;
         let [case] = &cases[..] else {
             let names: Vec<&str> = cases.iter().map(|case: &Case| case.name.as_str()).collect();
             anyhow::bail!("--case {name} is several cases; choose one of: {}", names.join(", "));
         };
         let channel = self.channel.as_deref();
-        let choice = Choice { estimator, swept: self.swept, channel, seed: self.seed };
+        let choice =
+            Choice { estimator, swept: self.swept, is_exact: false, channel, seed: self.seed };
         let theory = Claim::of_case(case, &choice, self.rounding)?;
         let takes_all = !self.mean_only && self.batch == 1;
         if takes_all && (self.variance.is_some() || self.kurtosis.is_some()) {

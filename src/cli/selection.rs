@@ -1,12 +1,9 @@
 //! Which cases, and how they are drawn.
 
-use std::path::Path;
-
 use anyhow::Context;
 use clap::Args;
 use trueflight::estimators::Order;
 use trueflight::harness::case::Case;
-use trueflight::harness::source::CaseError;
 use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
 use super::{Console, output};
@@ -55,7 +52,8 @@ impl Experiments {
             Case::read(source).map_or_else(|error| errors.push(error), |case| cases.push(case));
         }
         for name in &self.cases {
-            read_case(name).map_or_else(|found| errors.extend(found), |found| cases.extend(found));
+            Case::named(name)
+                .map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
         if let Some(order) = self.kernel {
             for case in &mut cases {
@@ -141,16 +139,6 @@ fn distinct(cases: Vec<Case>) -> anyhow::Result<Vec<Case>> {
         }
     }
     Ok(kept)
-}
-
-/// Reads a case file, a folder of them, or a built-in case.
-pub fn read_case(name: &str) -> Result<Vec<Case>, Vec<CaseError>> {
-    match suite::find(name) {
-        Some(source) if !Path::new(name).exists() => {
-            Case::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
-        }
-        _ => Case::read_all(&[name]),
-    }
 }
 
 /// A number of draws such as 4e6.

@@ -37,6 +37,7 @@ use super::options::Tolerance;
 use super::problem;
 use super::scenario::Scenario;
 use super::source::{CaseError, Source};
+use super::suite;
 use super::sweep::{SweepAxis, What};
 use crate::catalogue::{Domain, Entry, Fault, Node, Page, Settings, Value, number};
 use crate::media::Body;
@@ -122,6 +123,20 @@ impl Case {
     pub fn pilots(&self, seed: u64, estimator: usize) -> Address {
         let names = self.scenario.names(estimator, None);
         addresses::own(seed, &self.name, &names, None, estimator)
+    }
+
+    /// Reads what a user names: a case file, a folder of them, or a built-in case.
+    ///
+    /// # Errors
+    ///
+    /// All files that cannot be read or are wrong.
+    pub fn named(name: &str) -> Result<Vec<Self>, Vec<CaseError>> {
+        match suite::find(name) {
+            Some(source) if !Path::new(name).exists() => {
+                Self::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
+            }
+            _ => Self::read_all(&[name]),
+        }
     }
 
     /// Reads every case of a file, or of a folder and those below it, in the order of the names.

@@ -91,6 +91,14 @@ impl CaseError {
         if let Self::Faulty { faults, .. } = self { faults.len() } else { 1 }
     }
 
+    /// The error, and below it the lines of the file it is about, where there are any; without colours.
+    pub fn in_full(&self) -> String {
+        match self {
+            Self::Faulty { .. } => format!("{self}\n\n{}", self.render(false)),
+            other => other.to_string(),
+        }
+    }
+
     /// The error with the lines of the file it is about, a caret under each mistake.
     pub fn render(&self, colour: bool) -> String {
         let Self::Faulty { source_text, faults } = self else {

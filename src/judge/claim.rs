@@ -79,7 +79,7 @@ pub enum ClaimError {
     },
     /// A range that does not hold the truth inside.
     #[error(
-        "a range of {low} to {high} does not have the truth {truth} inside; give --range LOW,HIGH around it"
+        "a range of {low} to {high} does not have the truth {truth} inside; give a range around it"
     )]
     Range {
         /// Its lower end.

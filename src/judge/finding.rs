@@ -41,9 +41,9 @@ impl Scalar {
     /// What would be a ground.
     fn cure(&self) -> &'static str {
         if self.ask.check == "variance" {
-            "--kurtosis or --range LOW,HIGH"
+            "the kurtosis or the range"
         } else {
-            "--variance, --range LOW,HIGH or --kurtosis"
+            "the variance, the range or the largest kurtosis"
         }
     }
 

@@ -33,10 +33,11 @@ mod grounds;
 pub mod judgement;
 #[cfg(feature = "library")]
 mod of_case;
-mod reading;
+pub mod reading;
 mod scalar;
 pub mod trial;
 mod verdict;
+mod words;
 
 #[cfg(feature = "library")]
 pub use files::{Column, Draws, ForeignError, Format, count};

@@ -4,7 +4,7 @@ use super::claim::{Claim, ClaimError, Lookups};
 use crate::harness::case::Case;
 use crate::harness::checks;
 use crate::harness::ready::Ready;
-use crate::harness::sweep::Variation;
+use crate::harness::sweep::{Variation, What};
 
 /// Two values of a sweep this near to each other are the same: tables print few digits.
 const SAME: f64 = 1e-3;
@@ -16,6 +16,9 @@ pub struct Choice<'a> {
     pub estimator: &'a str,
     /// The swept value, where it is swept.
     pub swept: Option<f64>,
+    /// Whether the swept value is taken as it is, be it in the case's sweep or not; without a sweep it is then a
+    /// constant σ̂. Otherwise it must be one of the values of the sweep, as tables print them.
+    pub is_exact: bool,
     /// The channel, where a draw has several.
     pub channel: Option<&'a str>,
     /// The seed of pilot rays, where σ̂ is learned from them.
@@ -29,40 +32,56 @@ impl Claim {
     ///
     /// The choice fits none or several, or the experiment is refused.
     pub fn of_case(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
+        let mut claims = Self::of_channels(case, choice, rounding)?;
+        let chosen = match choice.channel {
+            None if claims.len() == 1 => Some(0),
+            None => None,
+            Some(name) => claims.iter().position(|(channel, _)| channel == name),
+        };
+        chosen.map(|index| claims.swap_remove(index).1).ok_or_else(|| {
+            let channels = claims.into_iter().map(|(channel, _)| channel).collect();
+            ClaimError::Channel { case: case.name.clone(), channels }
+        })
+    }
+
+    /// What theory says of each channel of one experiment of a case, with the channels' names.
+    ///
+    /// # Errors
+    ///
+    /// The choice fits none or several, or the experiment is refused.
+    pub fn of_channels(
+        case: &Case,
+        choice: &Choice,
+        rounding: f64,
+    ) -> Result<Vec<(String, Self)>, ClaimError> {
         let (index, label) = find(case, choice.estimator)?;
-        let variation = variation(case, index, &label, choice.swept)?;
+        let variation = variation(case, index, &label, choice)?;
         let pilots = case.pilots(choice.seed, index);
         let prepared = case.scenario.prepare(index, variation, pilots);
         let Ready { prediction, .. } = prepared.map_err(|refusal| {
             let why = refusal.to_string();
             ClaimError::Refused { case: case.name.clone(), estimator: label, why }
         })?;
-        let channels = &prediction.channels;
-        let chosen = match choice.channel {
-            None if channels.len() == 1 => channels.first(),
-            None => None,
-            Some(name) => channels.iter().find(|channel| channel.name == name),
-        };
-        let channel = chosen.ok_or_else(|| {
-            let channels = channels.iter().map(|channel| channel.name.clone()).collect();
-            ClaimError::Channel { case: case.name.clone(), channels }
-        })?;
         let lookups = prediction.lookups.as_ref();
-        Ok(Self {
-            truth: channel.truth.value,
-            truth_error: channel.truth.error,
-            unit: channel.unit,
-            variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
-            variance_error: channel.moments.map_or(0.0, |moments| moments.error),
-            kurtosis: channel.moments.and_then(|m| m.kurtosis()).filter(|k| k.is_finite()),
-            range: None,
-            lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
-                mean: law.mean,
-                variance: Some(law.variance),
-                error: checks::lookups::ERROR.max(law.error),
-            }),
-            rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
-        })
+        let claims = prediction.channels.iter().map(|channel| {
+            let claim = Self {
+                truth: channel.truth.value,
+                truth_error: channel.truth.error,
+                unit: channel.unit,
+                variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
+                variance_error: channel.moments.map_or(0.0, |moments| moments.error),
+                kurtosis: channel.moments.and_then(|m| m.kurtosis()).filter(|k| k.is_finite()),
+                range: None,
+                lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
+                    mean: law.mean,
+                    variance: Some(law.variance),
+                    error: checks::lookups::ERROR.max(law.error),
+                }),
+                rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
+            };
+            (channel.name.clone(), claim)
+        });
+        Ok(claims.collect())
     }
 }
 
@@ -110,10 +129,17 @@ fn variation(
     case: &Case,
     index: usize,
     label: &str,
-    swept: Option<f64>,
+    choice: &Choice,
 ) -> Result<Variation, ClaimError> {
+    let swept = choice.swept;
     let (name, estimator) = (case.name.clone(), label.to_owned());
     let axis = case.sweep.as_ref().filter(|axis| case.scenario.depends_on(index, axis.what));
+    if let (true, Some(value)) = (choice.is_exact, swept) {
+        let what = axis.map_or(What::Sampling, |axis| axis.what);
+        if axis.is_some() || case.scenario.depends_on(index, What::SamplingScale) {
+            return Ok(Some((what, value)));
+        }
+    }
     let Some(axis) = axis else {
         return match swept {
             None => Ok(None),

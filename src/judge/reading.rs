@@ -63,14 +63,14 @@ impl Averages {
     }
 }
 
-/// Draws on their way.
-pub(super) struct Reading<'t> {
-    pub trial: &'t Trial,
+/// Draws on their way: what makes them may hand them over block by block.
+pub struct Reading {
+    pub(super) trial: Trial,
     powers: Powers,
-    pub mean: Option<Scalar>,
-    pub variance: Option<Scalar>,
-    pub lookups: Option<Scalar>,
-    pub refuted: Option<Refuted>,
+    pub(super) mean: Option<Scalar>,
+    pub(super) variance: Option<Scalar>,
+    pub(super) lookups: Option<Scalar>,
+    pub(super) refuted: Option<Refuted>,
     refuting: u64,
     /// Where draws may lie, rounding included.
     range: Option<[f64; 2]>,
@@ -80,8 +80,8 @@ pub(super) struct Reading<'t> {
     averages: [Averages; 2],
     /// How many draws or averages are judged at a time.
     block: usize,
-    pub independence: Independence,
-    pub replays: Replays,
+    pub(super) independence: Independence,
+    pub(super) replays: Replays,
     lookup_sum: Sum,
     is_single: bool,
     is_varied: bool,
@@ -90,9 +90,10 @@ pub(super) struct Reading<'t> {
     other: Vec<f64>,
 }
 
-impl<'t> Reading<'t> {
-    pub(super) fn new(trial: &'t Trial) -> Self {
-        let asks = asks(trial);
+impl Reading {
+    /// Before the first draw.
+    pub fn new(trial: Trial) -> Self {
+        let asks = asks(&trial);
         let count = asks.len().max(1) as f64;
         let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
         let ln_fail = (count / (share * trial.wanted.alpha)).ln();
@@ -134,7 +135,8 @@ impl<'t> Reading<'t> {
         }
     }
 
-    pub(super) fn draws(&self) -> u64 {
+    /// How many draws there were.
+    pub fn draws(&self) -> u64 {
         self.read
     }
 
@@ -153,8 +155,9 @@ impl<'t> Reading<'t> {
         (!(low <= x && x <= high)).then_some(Fault::Range)
     }
 
-    /// Adds draws with their lookups, if there are any.
-    pub(super) fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
+    /// Adds draws with their lookups, if there are any. What is said depends on where one call ends and the next
+    /// begins; blocks of [`BUFFER`] draws suit the gate best.
+    pub fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
         self.look_at_each(block, lookups);
         self.read += block.len() as u64;
         self.lookup_sum.add(lookups.iter().sum());
@@ -264,25 +267,29 @@ impl<'t> Reading<'t> {
     }
 
     /// Whether more draws may change what is said, were all decisions final.
-    pub(super) fn is_open(&mut self) -> bool {
+    pub fn is_open(&self) -> bool {
         if self.refuted.is_some() {
             return false;
         }
         if self.mean.is_none() {
             return true;
         }
-        !self.scalars().any(|scalar| scalar.has_failed())
-            && self.scalars().any(|scalar| scalar.is_open())
+        let scalars = [&self.mean, &self.variance, &self.lookups].into_iter().flatten();
+        let mut scalars = scalars.map(|scalar| (scalar.has_failed(), scalar.is_open()));
+        // One that has failed decides; else any that is open keeps the draws coming.
+        let [failed, open] =
+            scalars.by_ref().fold([false; 2], |[failed, open], (f, o)| [failed | f, open | o]);
+        !failed && open
     }
 
-    /// What is said in the end.
-    pub(super) fn close(mut self, stopped: Option<Stop>) -> Judgement {
+    /// What is said in the end; `stopped` tells why, where draws are left.
+    pub fn close(mut self, stopped: Option<Stop>) -> Judgement {
         let rest = self.averages[0].ready.len();
         if rest > 0 {
             self.judge_averages(rest);
         }
         self.scalars().for_each(Scalar::decide);
-        let Trial { claim, wanted, length } = self.trial;
+        let Trial { claim, wanted, length } = &self.trial;
         let unit = claim.unit;
         let n = self.powers.draws() as f64;
         let finite = |x: f64| Some(x).filter(|x| x.is_finite());

@@ -29,7 +29,7 @@ use crate::stats::verdict::{BLOCK, FURTHEST};
 pub(super) const MEAN_CAP: f64 = 0.05;
 /// How many draws are read at a time: a block.
 #[allow(clippy::cast_possible_truncation)] // 2¹⁴
-pub(super) const BUFFER: usize = BLOCK as usize;
+pub const BUFFER: usize = BLOCK as usize;
 
 /// What is wanted of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -147,7 +147,7 @@ impl Trial {
         let most = usize::try_from(self.wanted.most.unwrap_or(length)).unwrap_or(usize::MAX);
         let seen = &draws[..draws.len().min(most)];
         let mut stopped = (seen.len() < draws.len()).then_some(Stop::Limit);
-        let mut reading = Reading::new(self);
+        let mut reading = Reading::new(*self);
         for block in seen.chunks(BUFFER) {
             reading.absorb(block, &[]);
             if self.wanted.stop_early && !reading.is_open() {

@@ -85,13 +85,13 @@ fn withhold(judgement: &mut Judgement) {
 fn dependent(found: &IndependenceFinding) -> String {
     let cure = match (found.replay, found.batch) {
         (Some(_), _) => {
-            "write each draw once, and give each pass and thread a seed of its own".into()
+            "give each draw once, and give each pass and thread a seed of its own".into()
         }
         (None, Some(batch)) => format!(
-            "judge averages by --batch {batch}, from where on no dependence shows, and give the \
-             variance of averages or a --range"
+            "judge averages of {batch} draws (batch), from where on no dependence shows, and give the \
+             variance of averages or a range"
         ),
-        (None, None) => "write one average a pass, or judge averages by --batch N".to_owned(),
+        (None, None) => "give one average a pass, or judge averages (batch)".to_owned(),
     };
     format!("{}; the mean is not judged: {cure}", found.reason)
 }
@@ -188,7 +188,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
         (None, Some(most), _) => format!("{correct} with a kurtosis of {most} at most"),
         (None, None, true) => {
             let shown = judgement.kurtosis.map_or("no spread".to_owned(), |k| format!("{k:.3}"));
-            let cure = "give --variance, --range LOW,HIGH or --kurtosis for a promise";
+            let cure = "give the variance, the range or the largest kurtosis for a promise";
             let seems = if claim.range.is_some() { "too small" } else { "off" };
             let nothing = format!(
                 "variance estimated: {draws} whose mean seems {seems} do not fail, since rare events \

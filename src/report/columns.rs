@@ -2,7 +2,7 @@
 
 use serde::ser::{Serialize, Serializer};
 
-use crate::report::number::exact;
+use crate::catalogue::digits::exact;
 use crate::report::{Artifact, ReportError};
 
 /// What stands in one field.

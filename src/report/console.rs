@@ -10,9 +10,9 @@ pub mod views;
 
 use std::fmt::Write;
 
+use crate::catalogue::digits::{count, short};
 use crate::harness::record::{CaseRecord, Record, Row, Verdict};
 use crate::report::labels::Labels;
-use crate::report::number::{count, short};
 use crate::report::totals;
 use layout::{Field, Grid, Paint, end_elided};
 

@@ -2,9 +2,9 @@
 
 use std::borrow::Cow;
 
+use crate::catalogue::digits::{short, signed};
 use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
 use crate::report::labels::Labels;
-use crate::report::number::{short, signed};
 
 /// A finding that is not as it should be, with what it belongs to.
 #[derive(Debug, Clone, Copy)]

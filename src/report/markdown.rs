@@ -4,10 +4,10 @@
 use std::fmt::Write;
 
 use crate::baseline::Comparison;
+use crate::catalogue::digits::range;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
-use crate::report::number::range;
 use crate::report::totals;
 
 /// A job's summary may have a mebibyte: beyond so many rows the file only counts.

@@ -16,7 +16,6 @@ pub mod judge;
 pub mod junit;
 pub mod labels;
 pub mod markdown;
-pub mod number;
 pub mod plots;
 pub mod record_json;
 pub mod render;

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use crate::catalogue::digits::{count, short};
 use crate::report::columns::{self, Column, columns};
 use crate::report::console::layout::{Field, Grid, Paint, Pen};
-use crate::report::number::{count, short};
 use crate::report::{Artifact, ReportError};
 use crate::self_test::calibration::Rate;
 use crate::self_test::streams::ALPHA;

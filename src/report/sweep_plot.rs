@@ -4,8 +4,8 @@
 
 use plotters::style::Color;
 
+use crate::catalogue::digits::{count, short};
 use crate::harness::record::{CaseRecord, CurvePoint, Record, Row, Sweep};
-use crate::report::number::{count, short};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend;
 use crate::report::plots::series::{Series, collect};

@@ -10,6 +10,7 @@ mod channels;
 mod check;
 mod chromatic_slab;
 mod cli;
+mod closures;
 mod coloured_pictures;
 mod common;
 mod equation14;

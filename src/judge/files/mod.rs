@@ -189,7 +189,7 @@ impl Trial {
     ///
     /// The draws cannot be read to their end, or to where they are decided.
     pub fn judge(&self, draws: &mut Draws) -> Result<Judgement, ForeignError> {
-        let mut reading = Reading::new(self);
+        let mut reading = Reading::new(*self);
         let mut block = Vec::with_capacity(BUFFER);
         let mut stopped = None;
         loop {

@@ -6,8 +6,8 @@
 use plotters::style::{Color, RGBAColor};
 
 use crate::bench::record::{Bench, BenchCase, BenchRow, CurvePoint, Times};
+use crate::catalogue::digits::count;
 use crate::report::labels::Labels;
-use crate::report::number::count;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::Style;

@@ -6,10 +6,10 @@ use std::fmt::Write;
 use super::layout::{Grid, Paint, Pen};
 use super::{View, views};
 use crate::baseline::Comparison;
+use crate::catalogue::digits::{fixed, range, short};
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::failing;
-use crate::report::number::{fixed, range, short};
 use crate::report::totals;
 
 /// Beyond so many, suspects are only counted.

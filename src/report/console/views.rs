@@ -1,10 +1,10 @@
 //! Which columns each view of the table has, and what stands in them.
 
+use crate::catalogue::digits::{count, fixed, percent, short, signed};
 use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;
-use crate::report::number::{count, fixed, percent, short, signed};
 
 type Spec = layout::Spec<Row>;
 

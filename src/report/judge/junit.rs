@@ -5,11 +5,11 @@
 
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
+use crate::catalogue::digits::exact;
 use crate::harness::record::Verdict;
 use crate::judge::judgement::Judgement;
 use crate::report::ReportError;
 use crate::report::junit::Inconclusive;
-use crate::report::number::exact;
 
 /// The verdicts on files of these names, at the level `alpha` together; `unread` are files that could not be
 /// read, each with the reason.

@@ -1,6 +1,6 @@
 //! An axis: its range, its ticks, and where a value stands on it.
 
-use crate::report::number::short;
+use crate::catalogue::digits::short;
 
 /// An axis of a panel.
 #[derive(Debug, Clone)]

@@ -2,8 +2,8 @@
 
 use plotters::style::RGBAColor;
 
+use crate::catalogue::digits::short;
 use crate::harness::record::{Row, Sweep};
-use crate::report::number::short;
 use crate::report::plots::font::Typeface;
 use crate::report::plots::legend;
 use crate::report::plots::series::Series;

@@ -6,9 +6,9 @@ use std::fmt::Write;
 
 use serde::Serialize;
 
+use crate::catalogue::digits::{count, exact, short};
 use crate::report::columns::table as csv;
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
-use crate::report::number::{count, exact, short};
 use crate::report::plots;
 use crate::report::{Artifact, ReportError};
 use crate::stress::narrow::{Along, Curve, DRAWS};

@@ -205,7 +205,7 @@ fn a_kurtosis_that_draws_refute_is_not_assumed() {
     let mut draws = uniform(400_000);
     draws[100_000..].iter_mut().step_by(100).for_each(|x| *x = 1.0 + 30.0 * (*x - 1.0));
     let place = Place::new(&[("x.f64", &raw(&draws))]);
-    let words = ["more than the 82 that was assumed", "give --variance, --range LOW,HIGH"];
+    let words = ["more than the 82 that was assumed", "give the variance, the range"];
     place.expect(3, "--truth 1 x.f64", &words);
 }
 

@@ -2,7 +2,7 @@
 
 /// The shortest text that reads back as the same number, plain or with an exponent.
 pub fn exact(x: f64) -> String {
-    crate::catalogue::number(x)
+    super::number(x)
 }
 
 /// At most `digits` significant digits, with an exponent where plain notation would hide or pad

@@ -1,0 +1,328 @@
+//! What is asked of an estimator: where its draws come from, and what they should be.
+
+use super::error::CheckError;
+use super::made::{Closure, Factory};
+use super::sample::Sample;
+use crate::judge::claim::{Claim, Given, Lookups, ROUNDING};
+use crate::judge::reading::Reading;
+use crate::judge::trial::{Trial, Wanted};
+use crate::rng::Stream;
+
+/// How many draws are made at most where [`Check::draws`] does not say.
+pub const MOST: u64 = 1 << 24;
+
+/// One number for each value of a draw, or one for all: from `f64`, `[f64; K]` or `Vec<f64>`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Values(Vec<f64>);
+
+impl From<f64> for Values {
+    fn from(value: f64) -> Self {
+        Self(vec![value])
+    }
+}
+
+impl<const K: usize> From<[f64; K]> for Values {
+    fn from(values: [f64; K]) -> Self {
+        Self(values.to_vec())
+    }
+}
+
+impl From<Vec<f64>> for Values {
+    fn from(values: Vec<f64>) -> Self {
+        Self(values)
+    }
+}
+
+/// A check that is being set up: a name, a source of draws, and what is known of them.
+///
+/// What makes no sense is told by the verdict, as a [`CheckError`].
+#[derive(Debug, Clone)]
+#[must_use = "a check draws nothing before .verdict() or .assert_pass()"]
+pub struct Check<S> {
+    pub(super) name: String,
+    pub(super) source: S,
+    pub(super) said: Said,
+}
+
+/// What is known of a draw, and what is wanted of the verdict.
+#[derive(Debug, Clone)]
+pub(super) struct Said {
+    truth: Option<Values>,
+    variance: Option<Values>,
+    kurtosis: Option<Values>,
+    range: Option<[f64; 2]>,
+    lookups: Option<Lookups>,
+    pub(super) rounding: f64,
+    /// What theory claims of each value, or why it claims nothing.
+    pub(super) theory: Option<Result<Vec<Claim>, String>>,
+    mean_only: bool,
+    tolerance: Option<f64>,
+    variance_tolerance: Option<f64>,
+    batch: u64,
+    pub(super) alpha: f64,
+    pub(super) draws: Option<u64>,
+    pub(super) seed: u64,
+}
+
+impl Default for Said {
+    fn default() -> Self {
+        Self {
+            truth: None,
+            variance: None,
+            kurtosis: None,
+            range: None,
+            lookups: None,
+            rounding: ROUNDING,
+            theory: None,
+            mean_only: false,
+            tolerance: None,
+            variance_tolerance: None,
+            batch: 1,
+            alpha: 1e-3,
+            draws: None,
+            seed: 1,
+        }
+    }
+}
+
+/// A check of draws that a closure makes, one a call: `f64`, `f32`, `[f64; K]`, or one of them with a number of
+/// lookups, `(value, u64)`.
+///
+/// ```
+/// // Two channels of one ray, with the number of lookups: ratio tracking at σ̂ = 2 in σ_t = 0.5 and 1 on [0, 1].
+/// trueflight::check("two channels", |rng| {
+///     let (mut weights, mut lookups, mut t) = ([1.0, 1.0], 0, 0.0);
+///     loop {
+///         t -= rng.positive_uniform().ln() / 2.0;
+///         if t > 1.0 {
+///             return (weights, lookups);
+///         }
+///         weights = [weights[0] * 0.75, weights[1] * 0.5];
+///         lookups += 1;
+///     }
+/// })
+/// .truth([(-0.5f64).exp(), (-1.0f64).exp()])
+/// .range(0.0, 1.0)
+/// .lookups(2.0, 2.0)
+/// .assert_pass();
+/// ```
+pub fn check<T: Sample, F: FnMut(&mut Stream) -> T>(
+    name: impl Into<String>,
+    draw: F,
+) -> Check<Closure<F>> {
+    Check { name: name.into(), source: Closure { draw }, said: Said::default() }
+}
+
+/// A check of draws that several threads make, each by a closure of its own that the factory makes: by all
+/// processors, or as many as [`Check::threads`] says.
+///
+/// ```
+/// let factory = || {
+///     let mut scratch = Vec::new(); // what is costly to make, or cannot be shared
+///     move |rng: &mut trueflight::rng::Stream| {
+///         scratch.clear();
+///         scratch.push(rng.uniform());
+///         scratch[0]
+///     }
+/// };
+/// trueflight::check_with("uniform", factory).truth(0.5).variance(1.0 / 12.0).threads(2).assert_pass();
+/// ```
+pub fn check_with<T: Sample, F: FnMut(&mut Stream) -> T, M: Fn() -> F + Sync>(
+    name: impl Into<String>,
+    make: M,
+) -> Check<Factory<M>> {
+    Check { name: name.into(), source: Factory { make, threads: None }, said: Said::default() }
+}
+
+/// A check of draws that come later: [`Check::judge`] takes all of them, [`Check::open`] some at a time.
+pub fn claim(name: impl Into<String>) -> Check<()> {
+    Check { name: name.into(), source: (), said: Said::default() }
+}
+
+impl<S> Check<S> {
+    /// The mean of a correct draw.
+    pub fn truth(mut self, truth: impl Into<Values>) -> Self {
+        self.said.truth = Some(truth.into());
+        self
+    }
+
+    /// The variance of a correct draw; it is tested, too.
+    pub fn variance(mut self, variance: impl Into<Values>) -> Self {
+        self.said.variance = Some(variance.into());
+        self
+    }
+
+    /// The kurtosis of a correct draw, 3 for the normal law; without a variance an upper bound of it.
+    pub fn kurtosis(mut self, kurtosis: impl Into<Values>) -> Self {
+        self.said.kurtosis = Some(kurtosis.into());
+        self
+    }
+
+    /// Where correct draws lie; either end may be infinite. A draw outside fails.
+    pub fn range(mut self, low: f64, high: f64) -> Self {
+        self.said.range = Some([low, high]);
+        self
+    }
+
+    /// Mean and variance of the number of lookups that a correct draw tells.
+    pub fn lookups(mut self, mean: f64, variance: f64) -> Self {
+        self.said.lookups = Some(Lookups { mean, variance: Some(variance), error: 0.0 });
+        self
+    }
+
+    /// What rounding may add to a draw, relative to the truth; absolute for a truth of 0. Without it 3.6e-13; for
+    /// draws in single precision some 1e-6.
+    pub fn rounding(mut self, rounding: f64) -> Self {
+        self.said.rounding = rounding;
+        self
+    }
+
+    /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.
+    pub fn mean_only(mut self) -> Self {
+        self.said.mean_only = true;
+        self
+    }
+
+    /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or
+    /// with [`Check::draws`] what so many draws can see, at most 5 %.
+    pub fn tolerance(mut self, tolerance: f64) -> Self {
+        self.said.tolerance = Some(tolerance);
+        self
+    }
+
+    /// The same for the variance, relative to it.
+    pub fn variance_tolerance(mut self, tolerance: f64) -> Self {
+        self.said.variance_tolerance = Some(tolerance);
+        self
+    }
+
+    /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance
+    /// and kurtosis are then those of an average.
+    pub fn batch(mut self, batch: u64) -> Self {
+        self.said.batch = batch;
+        self
+    }
+
+    /// α: the chance that a correct estimator fails, 1e-3 without it.
+    pub fn alpha(mut self, alpha: f64) -> Self {
+        self.said.alpha = alpha;
+        self
+    }
+
+    /// So many draws, all of them, in place of as many as the decision takes.
+    pub fn draws(mut self, draws: u64) -> Self {
+        self.said.draws = Some(draws);
+        self
+    }
+
+    /// Where the random streams begin; 1 without it.
+    pub fn seed(mut self, seed: u64) -> Self {
+        self.said.seed = seed;
+        self
+    }
+
+    /// A gate for each value of a draw, before the first draw; `length` is the number of draws, if known.
+    pub(super) fn readings(
+        &self,
+        values: usize,
+        has_lookups: bool,
+        length: Option<u64>,
+    ) -> Result<Vec<Reading>, CheckError> {
+        let claims = self.said.claims(&self.name, values, has_lookups)?;
+        let wanted = Wanted {
+            tolerance: self.said.tolerance,
+            variance_tolerance: self.said.variance_tolerance,
+            alpha: self.said.alpha / values as f64,
+            batch: self.said.batch,
+            stop_early: false,
+            most: self.said.draws,
+        };
+        let reading = |claim| Ok(Reading::new(Trial::new(claim, wanted, length)?));
+        let readings: Result<Vec<Reading>, _> = claims.into_iter().map(reading).collect();
+        readings.map_err(|source| CheckError::Claim { name: self.name.clone(), source })
+    }
+}
+
+impl Said {
+    /// How many values a pushed draw has.
+    pub(super) fn values(&self) -> usize {
+        let theory = self.theory.as_ref().and_then(|claims| claims.as_ref().ok());
+        let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
+        theory.map_or(truths, Vec::len).max(1)
+    }
+
+    /// Whether a pushed draw tells its lookups.
+    pub(super) fn has_lookups(&self) -> bool {
+        self.lookups.is_some()
+    }
+
+    /// What is claimed of each value of a draw.
+    fn claims(&self, name: &str, values: usize, lookups: bool) -> Result<Vec<Claim>, CheckError> {
+        let name = || name.to_owned();
+        if self.lookups.is_some() && !lookups {
+            return Err(CheckError::NoLookups { name: name() });
+        }
+        let number = |what, given: &Option<Values>, index: usize| match given {
+            None => Ok(None),
+            Some(Values(list)) if list.len() == 1 => Ok(Some(list[0])),
+            Some(Values(list)) if list.len() == values => Ok(Some(list[index])),
+            Some(Values(list)) => {
+                Err(CheckError::Values { name: name(), what, found: list.len(), wanted: values })
+            }
+        };
+        let theory = match &self.theory {
+            None => None,
+            Some(Err(message)) => {
+                return Err(CheckError::Case { name: name(), message: message.clone() });
+            }
+            Some(Ok(claims)) if claims.len() == values => Some(claims),
+            Some(Ok(claims)) => {
+                let (what, found) = ("channels of the case", claims.len());
+                return Err(CheckError::Values { name: name(), what, found, wanted: values });
+            }
+        };
+        if self.truth.is_none() && theory.is_none() {
+            return Err(CheckError::NoTruth { name: name() });
+        }
+        let twice = [("truth", self.truth.is_some(), true)].into_iter().chain([
+            ("variance", self.variance.is_some(), !self.mean_only),
+            ("kurtosis", self.kurtosis.is_some(), !self.mean_only),
+        ]);
+        if let (Some(_), Some((what, ..))) = (theory, twice.into_iter().find(|t| t.1 && t.2)) {
+            return Err(CheckError::Twice { name: name(), what });
+        }
+        let claim = |index: usize| {
+            let truth = match theory {
+                Some(claims) => claims[index].truth,
+                None => number("truth", &self.truth, index)?.unwrap_or(f64::NAN),
+            };
+            let (variance, kurtosis) = (
+                number("variance", &self.variance, index)?,
+                number("kurtosis", &self.kurtosis, index)?,
+            );
+            // Lookups belong to the draw, not to each of its values.
+            let own_lookups = self.lookups.filter(|_| index == 0);
+            let rounding = self.rounding;
+            let given =
+                Given { truth, variance, kurtosis, range: None, lookups: own_lookups, rounding };
+            let by_numbers =
+                Claim::new(&given).map_err(|source| CheckError::Claim { name: name(), source })?;
+            let claim = match theory {
+                None => by_numbers,
+                Some(claims) if self.mean_only => Claim {
+                    variance,
+                    kurtosis,
+                    variance_error: 0.0,
+                    lookups: own_lookups,
+                    ..claims[index].of_mean_alone()
+                },
+                Some(claims) => {
+                    let told = claims[index].lookups.filter(|_| lookups && index == 0);
+                    Claim { lookups: own_lookups.or(told), ..claims[index] }
+                }
+            };
+            claim.within(self.range).map_err(|source| CheckError::Claim { name: name(), source })
+        };
+        (0..values).map(claim).collect()
+    }
+}

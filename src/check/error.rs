@@ -1,0 +1,113 @@
+//! Why a check has no verdict.
+
+use crate::judge::claim::ClaimError;
+
+/// Why a check has no verdict.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CheckError {
+    /// Nothing says what the mean of a correct draw is.
+    #[error(
+        "check `{name}`: the truth is not known; give it by .truth(…), or by .of(case, estimator, σ̂)"
+    )]
+    NoTruth {
+        /// The check.
+        name: String,
+    },
+    /// What was said makes no sense.
+    #[error("check `{name}`: {source}")]
+    Claim {
+        /// The check.
+        name: String,
+        /// What is wrong with it.
+        source: ClaimError,
+    },
+    /// Numbers for another number of values than a draw has.
+    #[error(
+        "check `{name}`: {found} numbers for the {what}, but a draw has {wanted} values; give one for each value, or one for all"
+    )]
+    Values {
+        /// The check.
+        name: String,
+        /// What was given.
+        what: &'static str,
+        /// How many numbers.
+        found: usize,
+        /// How many values a draw has.
+        wanted: usize,
+    },
+    /// What theory says was given beside numbers.
+    #[error(
+        "check `{name}`: the {what} is given twice, by a number and by .of(…); leave one of them out, or add .mean_only()"
+    )]
+    Twice {
+        /// The check.
+        name: String,
+        /// What.
+        what: &'static str,
+    },
+    /// What is claimed of lookups cannot be judged.
+    #[error(
+        "check `{name}`: a draw does not tell its lookups; return (value, lookups), or leave .lookups(…) out"
+    )]
+    NoLookups {
+        /// The check.
+        name: String,
+    },
+    /// Lookups that nobody asked for.
+    #[error(
+        "check `{name}`: nothing is known of the lookups; give .lookups(mean, variance), or push draws alone"
+    )]
+    NoLookupsWanted {
+        /// The check.
+        name: String,
+    },
+    /// Another number of lookups than of draws.
+    #[error("check `{name}`: {found} lookups for {wanted} draws; give one for each draw")]
+    Lookups {
+        /// The check.
+        name: String,
+        /// How many lookups.
+        found: usize,
+        /// How many draws.
+        wanted: usize,
+    },
+    /// The case could not be read.
+    #[error("check `{name}`: {message}")]
+    Case {
+        /// The check.
+        name: String,
+        /// What is wrong with it, and what would be right.
+        message: String,
+    },
+    /// The closure panicked.
+    #[error("check `{name}`: the estimator panicked in draw {draw} (seed {seed}): {message}")]
+    Panicked {
+        /// The check.
+        name: String,
+        /// Which draw, counted from 0.
+        draw: u64,
+        /// The seed that leads there again.
+        seed: u64,
+        /// What it said.
+        message: String,
+    },
+    /// Draws that do not fill their last one.
+    #[error(
+        "check `{name}`: {found} numbers are no whole number of draws of {wanted} values; push whole draws"
+    )]
+    Ragged {
+        /// The check.
+        name: String,
+        /// How many numbers.
+        found: usize,
+        /// How many values a draw has.
+        wanted: usize,
+    },
+    /// There are no draws.
+    #[error("check `{name}`: there are no draws; make one at least")]
+    NoDraws {
+        /// The check.
+        name: String,
+    },
+}

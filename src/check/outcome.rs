@@ -1,0 +1,73 @@
+//! What a check found.
+
+use std::fmt;
+
+use crate::judge::judgement::Judgement;
+use crate::stats::verdict::Verdict;
+
+/// The verdict of a check, with everything that `trueflight judge` tells.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
+pub struct Outcome {
+    /// The check's name.
+    pub name: String,
+    /// The chance that a correct estimator fails, all values together.
+    pub alpha: f64,
+    /// What was found of each value of a draw.
+    pub values: Vec<Judgement>,
+}
+
+impl Outcome {
+    /// Fail if any value fails, pass if all pass.
+    pub fn verdict(&self) -> Verdict {
+        let any = |verdict| self.values.iter().any(|value| value.verdict == verdict);
+        let order = [Verdict::Fail, Verdict::Inconclusive];
+        order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)
+    }
+
+    /// Whether all values pass.
+    pub fn passed(&self) -> bool {
+        self.verdict() == Verdict::Pass
+    }
+
+    /// Why it does not pass, in words; empty for a plain pass.
+    pub fn reason(&self) -> String {
+        let verdict = self.verdict();
+        let alike = self.values.iter().enumerate().filter(|(_, value)| value.verdict == verdict);
+        let reasons = alike.filter(|(_, value)| !value.reason.is_empty());
+        let many = self.values.len() > 1;
+        let said = reasons.map(|(index, value)| {
+            if many { format!("value {index}: {}", value.reason) } else { value.reason.clone() }
+        });
+        said.collect::<Vec<_>>().join("; ")
+    }
+
+    /// Panics unless all values pass, with the words of [`Outcome`]'s display.
+    ///
+    /// # Panics
+    ///
+    /// The verdict is fail or inconclusive.
+    #[track_caller]
+    pub fn assert_pass(&self) {
+        assert!(self.passed(), "check {self}");
+    }
+}
+
+/// The lines of `trueflight judge`, under a line with the verdict.
+impl fmt::Display for Outcome {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let reason = self.reason();
+        write!(f, "`{}`: {}", self.name, self.verdict().word())?;
+        if !reason.is_empty() {
+            write!(f, ": {reason}")?;
+        }
+        for (index, value) in self.values.iter().enumerate() {
+            let name =
+                if self.values.len() > 1 { format!("value {index}") } else { self.name.clone() };
+            for (word, text) in value.lines(&name) {
+                write!(f, "\n  {word:10}{text}")?;
+            }
+        }
+        Ok(())
+    }
+}
