@@ -1,16 +1,42 @@
-//! Trueflight proves that a light-transport estimator is fair.
+//! Is my estimator unbiased, and is its variance what theory says? Three lines in a test of one's own:
 //!
-//! It drives null-collision Monte Carlo estimators of transmittance and free flight in
-//! heterogeneous media through millions of draws, compares every mean, variance, cost and law with
-//! what theory predicts, and says *pass*, *fail* or *inconclusive*.
+#![cfg_attr(feature = "library", doc = "```")]
+#![cfg_attr(not(feature = "library"), doc = "```ignore")]
+//! # use trueflight::rng::Stream;
+//! # fn sigma_t(t: f64) -> f64 {
+//! #     (0.75 * t).cos().powi(10) * ((t / 2.0).sin() + 2.0) / 3.0
+//! # }
+//! # fn my_estimator(rng: &mut Stream) -> f64 {
+//! #     let (mut weight, mut t) = (1.0, -rng.positive_uniform().ln());
+//! #     while t < 20.0 {
+//! #         weight *= 1.0 - sigma_t(t);
+//! #         t -= rng.positive_uniform().ln();
+//! #     }
+//! #     weight
+//! # }
+//! trueflight::check("ratio tracking, Eq. 21", |rng| my_estimator(rng))
+//!     .of("transmittance/eq21-overview", "ratio", 1.0)
+//!     .assert_pass();
+//! ```
+//!
+//! [`check`](fn@check) draws from the closure until all is decided, compares mean, variance and lookups with what
+//! theory says of this experiment, and panics with the reason unless they agree; a correct estimator fails with
+//! chance 0.001 at most. Without a case, [`Check::truth`], [`Check::variance`] and [`Check::range`] say what is
+//! known. [`claim`] judges draws that come from elsewhere, [`Gate`] shares one error rate among several checks.
+//!
+//! Trueflight proves that a light-transport estimator is fair. It drives null-collision Monte Carlo estimators of
+//! transmittance, free flight and scattering in heterogeneous media through millions of draws, compares every mean,
+//! variance, cost and law with what theory predicts, and says *pass*, *fail* or *inconclusive*. `Catalogue` takes
+//! media and estimators of one's own, and `cli::main` makes a command of them.
 //!
 //! # The house
 //!
 //! A module uses only floors strictly below its own; modules on one floor do not know each other.
 //!
 //! ```text
-//! 8  cli            arguments, exit codes, progress, the only prints (in the binary)
+//! 8  cli            arguments, exit codes, progress, the only prints
 //! 7  report         record → artifacts: csv, json, svg, png, console, junit, markdown
+//!    check          somebody's own estimator: closures and pushed draws against the gate
 //! 6  baseline judge bench stress self_test render   programs that use the harness; they do not know each other
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
@@ -41,6 +67,8 @@ pub mod baseline;
 pub mod bench;
 pub mod catalogue;
 pub mod check;
+#[cfg(feature = "cli")]
+pub mod cli;
 #[cfg(feature = "library")]
 pub mod estimators;
 #[cfg(feature = "library")]
@@ -79,6 +107,8 @@ pub mod stress;
 pub mod theory;
 
 pub use check::{Check, Gate, check, check_with, claim};
+#[cfg(feature = "library")]
+pub use harness::Catalogue;
 
 /// The examples of README and manual are compiled and run with the documentation's.
 #[cfg(all(doctest, feature = "cli"))]
@@ -87,4 +117,6 @@ mod manual {
     struct Readme;
     #[doc = include_str!("../docs/library.md")]
     struct Library;
+    #[doc = include_str!("../docs/extending.md")]
+    struct Extending;
 }

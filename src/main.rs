@@ -2,8 +2,8 @@
 
 use std::process::ExitCode;
 
-mod cli;
+use trueflight::Catalogue;
 
 fn main() -> ExitCode {
-    cli::main()
+    trueflight::cli::main(&Catalogue::builtin())
 }

@@ -4,6 +4,7 @@
 //! page is one source file. Its name in case files is the file's name with hyphens, and its text
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
+pub mod additions;
 pub mod digits;
 #[cfg(test)]
 pub mod fixture;
@@ -13,7 +14,8 @@ pub mod settings;
 pub mod tree;
 mod words;
 
-pub use page::{Catalogue, Page};
+pub use additions::{Addition, Additions};
+pub use page::{Page, PageList};
 pub use settings::Settings;
 pub use tree::{Domain, Entry, Fault, Node, Value};
 pub use words::{number, rounded};

@@ -5,13 +5,13 @@
 pub struct Page {
     /// The module's name, as in `residual_ratio`.
     pub module: &'static str,
-    /// The text of the source file.
+    /// The text of the source file, or the page's text alone.
     pub source: &'static str,
 }
 
 /// A named list of pages.
 #[derive(Debug, Clone, Copy)]
-pub struct Catalogue {
+pub struct PageList {
     /// What the pages are, in the plural: `media`, `estimators`.
     pub name: &'static str,
     /// The pages, in the order of registration.
@@ -35,8 +35,11 @@ impl Page {
         self.module.replace('_', "-")
     }
 
-    /// The file's own documentation: its leading `//!` lines.
+    /// The file's own documentation: its leading `//!` lines; a text without such lines is documentation itself.
     pub fn text(&self) -> String {
+        if !self.source.starts_with("//!") {
+            return self.source.to_owned();
+        }
         let lines = self.source.lines().take_while(|line| line.starts_with("//!"));
         let text: Vec<&str> = lines
             .map(|line| line.trim_start_matches("//!"))
@@ -60,5 +63,7 @@ mod tests {
         let page = page!(settings);
         assert_eq!(page.name(), "settings");
         assert!(page.summary().starts_with("Settings as written"));
+        let plain = super::Page { module: "haze", source: "Haze above a floor.\n\nThin." };
+        assert_eq!(plain.summary(), "Haze above a floor");
     }
 }

@@ -9,6 +9,7 @@ use std::cell::RefCell;
 use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
+use super::additions::{self, Additions};
 use super::words::{brief, number, quoted, suggestion, whole};
 use super::{Domain, Entry, Fault, Value};
 
@@ -23,6 +24,7 @@ pub struct Settings<'a> {
     /// The folder that relative file names start from.
     pub folder: &'a Path,
     faults: &'a RefCell<Vec<Fault>>,
+    additions: &'a Additions,
     asked: RefCell<Vec<&'static str>>,
 }
 
@@ -30,7 +32,19 @@ impl<'a> Settings<'a> {
     /// Reads the top-level table of a file in `folder`; mistakes go to `faults`.
     pub fn new(root: &'a [Entry], folder: &'a Path, faults: &'a RefCell<Vec<Fault>>) -> Self {
         let asked = RefCell::default();
-        Self { table: root, span: 0..0, path: String::new(), folder, faults, asked }
+        let additions = &additions::NONE;
+        Self { table: root, span: 0..0, path: String::new(), folder, faults, additions, asked }
+    }
+
+    /// The same with pages of the program's own.
+    #[must_use]
+    pub fn with(self, additions: &'a Additions) -> Self {
+        Self { additions, ..self }
+    }
+
+    /// The pages of the program's own.
+    pub fn additions(&self) -> &'a Additions {
+        self.additions
     }
 
     /// The entry of a key, if the file has it.
@@ -306,7 +320,7 @@ impl<'a> Settings<'a> {
 
     fn child(&self, table: &'a [Entry], span: Range<usize>, path: String) -> Settings<'a> {
         let asked = RefCell::default();
-        Settings { table, span, path, folder: self.folder, faults: self.faults, asked }
+        Settings { table, span, path, asked, ..*self }
     }
 
     /// Reports every key that was never asked for.

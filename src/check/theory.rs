@@ -2,6 +2,7 @@
 
 use super::builder::Check;
 use crate::harness::case::Case;
+use crate::harness::catalogue::Catalogue;
 use crate::harness::source::CaseError;
 use crate::judge::Choice;
 use crate::judge::claim::Claim;
@@ -31,7 +32,7 @@ impl<S> Check<S> {
     /// ```
     pub fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self {
         let choice = Choice { estimator, swept: swept.into(), is_exact: true, ..Choice::default() };
-        match Case::named(case) {
+        match Catalogue::builtin().named(case) {
             Ok(read) => match &read[..] {
                 [case] => self.of_case(case, &choice),
                 cases => {

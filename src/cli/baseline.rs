@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
+use crate::harness::record::Verdict;
+use crate::harness::{Case, Record};
+use crate::report::diff;
 use anyhow::anyhow;
 use clap::Args;
-use trueflight::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
-use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Record};
-use trueflight::report::diff;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]

@@ -2,17 +2,18 @@
 
 use std::path::PathBuf;
 
+use crate::bench::compare::compare;
+use crate::bench::comparison::Comparison;
+use crate::bench::record::Bench;
+use crate::bench::stored::Stored;
+use crate::bench::{Amounts, measure};
+use crate::harness::Catalogue;
+use crate::harness::{Amount, Plan};
+use crate::numeric::pack;
+use crate::report::bench as page;
 use anyhow::bail;
 use clap::Args;
 use fearless_simd::Level;
-use trueflight::bench::compare::compare;
-use trueflight::bench::comparison::Comparison;
-use trueflight::bench::record::Bench;
-use trueflight::bench::stored::Stored;
-use trueflight::bench::{Amounts, measure};
-use trueflight::harness::{Amount, Plan};
-use trueflight::numeric::pack;
-use trueflight::report::bench as page;
 
 use super::Console;
 use super::baseline::{self, Files};
@@ -61,9 +62,9 @@ pub struct Arguments {
 }
 
 /// Times, compares, writes, prints.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let Arguments { experiments, draws, rounds, threads, .. } = arguments;
-    let cases = experiments.read(console)?;
+    let cases = experiments.read(catalogue, console)?;
     let options = experiments.options(Amount::Exactly(*draws))?;
     output::writable(&arguments.out)?;
     let baselines = arguments.open()?;

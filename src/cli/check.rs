@@ -7,11 +7,12 @@ use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
+use crate::files;
+use crate::harness::Catalogue;
+use crate::harness::{Case, Options, Record};
+use crate::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
 use anyhow::Context;
 use clap::Args;
-use trueflight::files;
-use trueflight::harness::{Case, Options, Record};
-use trueflight::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
 
 use super::baseline::BaselineArguments;
 use super::drawing::{self, Budget};
@@ -60,9 +61,9 @@ pub struct Arguments {
 }
 
 /// Draws, judges, prints, writes.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
-    let cases = selection.read(console)?;
+    let cases = selection.read(catalogue, console)?;
     let (seconds, budget) = match arguments.budget {
         Some(Budget::Seconds(seconds)) => (Some(seconds), None),
         Some(Budget::Draws(draws)) => (None, Some(draws)),

@@ -5,13 +5,13 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::Instant;
 
+use crate::baseline::fingerprint;
+use crate::files;
+use crate::harness::cache::Cache;
+use crate::harness::record::Record;
+use crate::harness::{Plan, run, verdict};
 use anyhow::Context;
 use indicatif::ProgressBar;
-use trueflight::baseline::fingerprint;
-use trueflight::files;
-use trueflight::harness::cache::Cache;
-use trueflight::harness::record::Record;
-use trueflight::harness::{Plan, run, verdict};
 
 use super::{Console, output};
 

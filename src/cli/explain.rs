@@ -1,11 +1,11 @@
 //! `trueflight explain`: the manual page of anything in the catalogue.
 
+use crate::harness::{Catalogue, suite};
+use crate::render::gallery;
 use clap::Args;
-use trueflight::harness::suite;
-use trueflight::render::gallery;
 
 use super::Console;
-use super::list::catalogues;
+use super::list::pages;
 use super::output;
 
 /// Arguments of `explain`.
@@ -16,17 +16,19 @@ pub struct Arguments {
 }
 
 /// Prints every page of that name; `console` has no say in it.
-pub fn main(arguments: &Arguments, _console: &Console) -> anyhow::Result<u8> {
+pub fn main(
+    arguments: &Arguments,
+    catalogue: &Catalogue,
+    _console: &Console,
+) -> anyhow::Result<u8> {
     let name = &arguments.name;
     let mut found = Vec::new();
     let mut names = Vec::new();
-    for (part, catalogue) in catalogues() {
-        for page in catalogue.pages {
-            if page.name() == *name {
-                found.push(format!("{name} ({part})\n\n{}\n", page.text().trim_end()));
-            }
-            names.push(page.name());
+    for (part, page) in pages(catalogue) {
+        if page.name() == *name {
+            found.push(format!("{name} ({part})\n\n{}\n", page.text().trim_end()));
         }
+        names.push(page.name());
     }
     if let Some(source) = suite::find(name) {
         found.push(format!("{name} (cases)\n\n{}\n", source.text.trim_end()));

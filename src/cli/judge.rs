@@ -2,17 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::files;
+use crate::harness::Catalogue;
+use crate::harness::case::Case;
+use crate::harness::record::Verdict;
+use crate::harness::source::CaseError;
+use crate::judge::claim::{Claim, Given, Lookups, ROUNDING};
+use crate::judge::judgement::Judgement;
+use crate::judge::trial::{Trial, Wanted};
+use crate::judge::{self, Choice, Column, Draws, Format};
+use crate::report::judge as report;
 use anyhow::Context;
 use clap::{Args, ValueEnum};
-use trueflight::files;
-use trueflight::harness::case::Case;
-use trueflight::harness::record::Verdict;
-use trueflight::harness::source::CaseError;
-use trueflight::judge::claim::{Claim, Given, Lookups, ROUNDING};
-use trueflight::judge::judgement::Judgement;
-use trueflight::judge::trial::{Trial, Wanted};
-use trueflight::judge::{self, Choice, Column, Draws, Format};
-use trueflight::report::judge as report;
 
 use super::verdict::Inconclusive;
 use super::{Console, USAGE, output, selection};
@@ -141,8 +142,8 @@ enum Shown {
 }
 
 /// Reads, judges, prints.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
-    let claim = arguments.claim()?;
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    let claim = arguments.claim(catalogue)?;
     let wanted = Wanted {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
@@ -259,7 +260,7 @@ impl Arguments {
         }
     }
 
-    fn claim(&self) -> anyhow::Result<Claim> {
+    fn claim(&self, catalogue: &Catalogue) -> anyhow::Result<Claim> {
         let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
             let lookups = match (&self.lookups, self.expected_lookups) {
                 (Some(_), None) => anyhow::bail!(
@@ -277,7 +278,7 @@ impl Arguments {
                 rounding: self.rounding,
             })?);
         };
-        let cases = Case::named(name).map_err(|errors| {
+        let cases = catalogue.named(name).map_err(|errors| {
             let shown: Vec<String> = errors.iter().map(CaseError::in_full).collect();
             anyhow::anyhow!("--case: {}", shown.join("\n\n"))
         })?;

@@ -3,14 +3,15 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
+use crate::catalogue::{Page, PageList};
+use crate::estimators::Estimated;
+use crate::harness::catalogue::{Catalogue, built_in};
+use crate::harness::{self, checks, suite};
+use crate::problems::{self, MultipleScattering};
+use crate::recipes::{controls, sampling};
+use crate::render::{self, Picture, gallery};
+use crate::{phase, report};
 use clap::{Args, ValueEnum};
-use trueflight::catalogue::{Catalogue, Page};
-use trueflight::estimators::{self, Estimated};
-use trueflight::harness::{self, case::Case, checks, suite};
-use trueflight::problems::{self, MultipleScattering};
-use trueflight::recipes::{controls, sampling};
-use trueflight::render::{self, Picture, gallery};
-use trueflight::{media, phase, report};
 
 use super::Console;
 use super::output::{self, Format};
@@ -50,57 +51,53 @@ struct Row {
     summary: String,
 }
 
-/// Every catalogue of the library with the name of its part.
-pub fn catalogues() -> Vec<(String, Catalogue)> {
-    let mut all = vec![
-        ("media".to_owned(), media::CATALOGUE),
-        ("phases".to_owned(), phase::CATALOGUE),
-        ("sampling".to_owned(), sampling::CATALOGUE),
-        ("controls".to_owned(), controls::CATALOGUE),
-    ];
-    let of_problems = problems::CATALOGUE.pages.iter().zip(estimators::catalogues());
-    all.extend(
-        of_problems
-            .map(|(problem, catalogue)| (format!("estimators of {}", problem.name()), catalogue)),
-    );
+/// Every page with the name of its part; those of the program's own come last in theirs.
+pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
+    let mut lists = built_in();
+    let own = [("phases", phase::CATALOGUE), ("sampling", sampling::CATALOGUE)];
+    let own = own.into_iter().chain([("controls", controls::CATALOGUE)]);
+    lists.splice(1..1, own.map(|(part, list)| (part.to_owned(), list)));
     let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
-    all.push(("estimators of pictures of multiple-scattering".to_owned(), of_pictures));
-    all.extend([
+    lists.push(("estimators of pictures of multiple-scattering".to_owned(), of_pictures));
+    lists.extend([
         ("problems".to_owned(), problems::CATALOGUE),
         ("checks".to_owned(), checks::CATALOGUE),
         ("reports".to_owned(), report::CATALOGUE),
         ("files".to_owned(), harness::CATALOGUE),
         ("files".to_owned(), render::CATALOGUE),
     ]);
-    all
+    let additions = catalogue.additions().all();
+    let with_own = |(part, list): (String, PageList)| {
+        let own = additions.iter().filter(|own| own.part == part).map(|own| own.page);
+        let pages = list.pages.iter().copied().chain(own);
+        pages.map(|page| (part.clone(), page)).collect::<Vec<_>>()
+    };
+    lists.into_iter().flat_map(with_own).collect()
 }
 
 /// Prints the names with one sentence each.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let wanted = |part: &str| {
         let what = arguments.what.and_then(|what| what.to_possible_value());
         what.is_none_or(|what| part.split(' ').next() == Some(what.get_name()))
     };
-    let mut rows: Vec<Row> = catalogues()
-        .into_iter()
-        .filter(|(part, _)| wanted(part))
-        .flat_map(|(part, catalogue)| {
-            catalogue.pages.iter().map(move |page: &Page| Row {
-                part: part.clone(),
-                name: page.name(),
-                summary: page.summary(),
-            })
-        })
-        .collect();
+    let wanted_pages = pages(catalogue).into_iter().filter(|(part, _)| wanted(part));
+    let row = |(part, page): (String, Page)| {
+        let (name, summary) = (page.name(), page.summary());
+        Row { part, name, summary }
+    };
+    let mut rows: Vec<Row> = wanted_pages.map(row).collect();
     if wanted("cases") {
         for source in suite::suite() {
-            let title = Case::read(&source).map(|case| case.title).unwrap_or_default();
+            let title = catalogue.read(&source).map(|case| case.title).unwrap_or_default();
             rows.push(Row { part: "cases".into(), name: source.name, summary: title });
         }
     }
     if wanted("pictures") {
         for source in gallery::gallery() {
-            let title = Picture::read(&source).map(|picture| picture.title).unwrap_or_default();
+            let title = Picture::read(&source, catalogue.additions())
+                .map(|picture| picture.title)
+                .unwrap_or_default();
             rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
         }
     }

@@ -1,4 +1,7 @@
-//! Arguments, exit codes, progress, and the only prints. Floor 8.
+//! The command line: arguments, exit codes, progress, and the only prints. Floor 8.
+//!
+//! A program with media and estimators of its own has all commands by
+//! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`.
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -25,9 +28,12 @@ mod self_test;
 mod stress;
 mod verdict;
 
+use std::ffi::OsString;
 use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
+
+use crate::harness::Catalogue;
 
 /// Everything that went wrong before or beside the verdicts.
 pub const USAGE: u8 = 2;
@@ -82,22 +88,38 @@ enum Command {
     Completions(completions::Arguments),
 }
 
-/// Runs the command and answers its exit code.
-pub fn main() -> ExitCode {
-    let cli = Cli::parse();
+/// Runs the command that the program's arguments ask for, with this catalogue, and answers its exit code.
+pub fn main(catalogue: &Catalogue) -> ExitCode {
+    run_with(catalogue, &Cli::parse())
+}
+
+/// The same with these arguments, the first of which is the program's name.
+///
+/// # Errors
+///
+/// What is wrong with the arguments, in the words of the command line.
+pub fn run_as<T: Into<OsString> + Clone>(
+    catalogue: &Catalogue,
+    arguments: impl IntoIterator<Item = T>,
+) -> Result<ExitCode, String> {
+    let cli = Cli::try_parse_from(arguments).map_err(|error| error.to_string())?;
+    Ok(run_with(catalogue, &cli))
+}
+
+fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
     let console = &cli.console;
     let done = match &cli.command {
-        Command::Run(arguments) => run::main(arguments, console),
-        Command::Check(arguments) => check::main(arguments, console),
-        Command::Predict(arguments) => predict::main(arguments, console),
-        Command::Bench(arguments) => bench::main(arguments, console),
-        Command::Plan(arguments) => plan::main(arguments, console),
-        Command::Render(arguments) => render::main(arguments, console),
+        Command::Run(arguments) => run::main(arguments, catalogue, console),
+        Command::Check(arguments) => check::main(arguments, catalogue, console),
+        Command::Predict(arguments) => predict::main(arguments, catalogue, console),
+        Command::Bench(arguments) => bench::main(arguments, catalogue, console),
+        Command::Plan(arguments) => plan::main(arguments, catalogue, console),
+        Command::Render(arguments) => render::main(arguments, catalogue, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::Stress(arguments) => stress::main(arguments, console),
-        Command::List(arguments) => list::main(arguments, console),
-        Command::Explain(arguments) => explain::main(arguments, console),
-        Command::Judge(arguments) => judge::main(arguments, console),
+        Command::List(arguments) => list::main(arguments, catalogue, console),
+        Command::Explain(arguments) => explain::main(arguments, catalogue, console),
+        Command::Judge(arguments) => judge::main(arguments, catalogue, console),
         Command::Completions(arguments) => completions::main(arguments),
     };
     match done {

@@ -4,12 +4,12 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::time::Duration;
 
+use crate::harness::{CaseError, Record};
+use crate::report::console::{self, View, layout::Pen};
+use crate::report::{self, Artifact, ReportError, rows};
 use anyhow::Context;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use trueflight::harness::{CaseError, Record};
-use trueflight::report::console::{self, View, layout::Pen};
-use trueflight::report::{self, Artifact, ReportError, rows};
 
 use super::{Console, USAGE};
 

@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::harness::Catalogue;
+use crate::harness::{options::DRAWS, verdict};
+use crate::report::console::View;
 use clap::Args;
-use trueflight::harness::{options::DRAWS, verdict};
-use trueflight::report::console::View;
 
 use super::output::{self, Format};
 use super::selection::Selection;
@@ -24,9 +25,9 @@ pub struct Arguments {
 }
 
 /// Prints the experiments with their draws, or why they are refused.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
-    let cases = selection.read(console)?;
+    let cases = selection.read(catalogue, console)?;
     let (record, [kept, ready]) =
         selection.with_plan(&cases, &selection.options(DRAWS)?, |plan| {
             Ok((verdict::planned(plan), drawing::cached(&arguments.out)?.count(plan)))

@@ -1,8 +1,9 @@
 //! `trueflight predict`: theory only, no draws.
 
+use crate::harness::Catalogue;
+use crate::harness::{options::DRAWS, verdict};
+use crate::report::console::View;
 use clap::Args;
-use trueflight::harness::{options::DRAWS, verdict};
-use trueflight::report::console::View;
 
 use super::Console;
 use super::output::{self, Format};
@@ -26,9 +27,9 @@ pub struct Arguments {
 }
 
 /// Prints what theory says of each experiment.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
-    let cases = selection.read(console)?;
+    let cases = selection.read(catalogue, console)?;
     let predict =
         if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
     let options = selection.options(DRAWS)?;

@@ -4,11 +4,13 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use crate::catalogue::Additions;
+use crate::harness::Catalogue;
+use crate::harness::source::CaseError;
+use crate::render::{Picture, PictureRecord, gallery as built_in};
+use crate::report::{self, Artifact};
 use anyhow::bail;
 use clap::Args;
-use trueflight::harness::source::CaseError;
-use trueflight::render::{Picture, PictureRecord, gallery as built_in};
-use trueflight::report::{self, Artifact};
 
 use super::{Console, output, selection};
 
@@ -30,8 +32,8 @@ pub struct Arguments {
 }
 
 /// Renders, writes, prints.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
-    let pictures = read(&arguments.pictures, console)?;
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    let pictures = read(&arguments.pictures, catalogue.additions(), console)?;
     let out = arguments.out.join("gallery");
     // Better to learn now than after the rendering that nothing can be written.
     output::writable(&out)?;
@@ -62,11 +64,11 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     Ok(0)
 }
 
-fn read(names: &[String], console: &Console) -> anyhow::Result<Vec<Picture>> {
+fn read(names: &[String], own: &Additions, console: &Console) -> anyhow::Result<Vec<Picture>> {
     let read: Vec<Result<Picture, CaseError>> = if names.is_empty() {
-        built_in::gallery().iter().map(Picture::read).collect()
+        built_in::gallery().iter().map(|source| Picture::read(source, own)).collect()
     } else {
-        names.iter().map(|name| Picture::open(name)).collect()
+        names.iter().map(|name| Picture::open(name, own)).collect()
     };
     let (mut pictures, mut errors) = (Vec::<Picture>::new(), Vec::new());
     for picture in read {

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
+use crate::harness::Catalogue;
+use crate::harness::Options;
+use crate::harness::options::DRAWS;
+use crate::report::{self, console::View};
 use clap::Args;
-use trueflight::harness::Options;
-use trueflight::harness::options::DRAWS;
-use trueflight::report::{self, console::View};
 
 use super::baseline::BaselineArguments;
 use super::output::{self, Errors, Format};
@@ -45,9 +46,9 @@ pub struct Arguments {
 }
 
 /// Draws, judges, writes, prints.
-pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
-    let cases = selection.read(console)?;
+    let cases = selection.read(catalogue, console)?;
     let options = Options {
         seconds: arguments.time,
         fixed: arguments.fixed_draws,

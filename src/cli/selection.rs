@@ -1,10 +1,10 @@
 //! Which cases, and how they are drawn.
 
+use crate::estimators::Order;
+use crate::harness::case::Case;
+use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
 use anyhow::Context;
 use clap::Args;
-use trueflight::estimators::Order;
-use trueflight::harness::case::Case;
-use trueflight::harness::{Amount, Filter, Options, Plan, suite};
 
 use super::{Console, output};
 
@@ -44,15 +44,16 @@ pub struct Selection {
 
 impl Experiments {
     /// Reads the cases; mistakes in files are shown in place.
-    pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
+    pub fn read(&self, catalogue: &Catalogue, console: &Console) -> anyhow::Result<Vec<Case>> {
         let mut cases = Vec::new();
         let mut errors = Vec::new();
         let built_in = if self.cases.is_empty() { suite::suite() } else { Vec::new() };
         for source in &built_in {
-            Case::read(source).map_or_else(|error| errors.push(error), |case| cases.push(case));
+            catalogue.read(source).map_or_else(|error| errors.push(error), |case| cases.push(case));
         }
         for name in &self.cases {
-            Case::named(name)
+            catalogue
+                .named(name)
                 .map_or_else(|found| errors.extend(found), |found| cases.extend(found));
         }
         if let Some(order) = self.kernel {
@@ -90,8 +91,8 @@ impl Experiments {
 
 impl Selection {
     /// Reads the cases; mistakes in files are shown in place.
-    pub fn read(&self, console: &Console) -> anyhow::Result<Vec<Case>> {
-        self.experiments.read(console)
+    pub fn read(&self, catalogue: &Catalogue, console: &Console) -> anyhow::Result<Vec<Case>> {
+        self.experiments.read(catalogue, console)
     }
 
     /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.

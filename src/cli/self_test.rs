@@ -3,9 +3,9 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
+use crate::report::{self, self_test as page};
+use crate::self_test::{SelfTest, calibration, mutation, streams};
 use clap::Args;
-use trueflight::report::{self, self_test as page};
-use trueflight::self_test::{SelfTest, calibration, mutation, streams};
 
 use super::Console;
 use super::output;

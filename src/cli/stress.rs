@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use crate::report::{self, stress as page};
+use crate::stress::{self, Effort, PAGES};
 use clap::Args;
-use trueflight::report::{self, stress as page};
-use trueflight::stress::{self, Effort, PAGES};
 
 use super::Console;
 use super::output;

@@ -1,9 +1,9 @@
 //! From verdicts to an exit code.
 
+use crate::baseline::Comparison;
+use crate::harness::record::{Record, Verdict};
+use crate::report::junit;
 use clap::ValueEnum;
-use trueflight::baseline::Comparison;
-use trueflight::harness::record::{Record, Verdict};
-use trueflight::report::junit;
 
 use super::USAGE;
 use super::output::{self, Errors};

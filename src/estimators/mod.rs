@@ -14,6 +14,7 @@ pub mod lambertian;
 pub mod lit_rod;
 pub mod lit_slab;
 pub mod multiple_scattering;
+pub mod own;
 pub mod rod;
 pub mod single_scattering;
 pub mod slab;
@@ -31,10 +32,10 @@ pub mod trial;
 
 use fearless_simd::Level;
 
-use crate::catalogue::{Catalogue, Settings};
+use crate::catalogue::{PageList, Settings};
 use crate::kernels::{order_free, packet};
 use crate::media::Lookups;
-use crate::problems::{Problem, each_problem};
+use crate::problems::{Named, Problem, each_problem};
 use crate::recipes::controls;
 use crate::rng::{Address, Stream};
 use crate::theory::Prediction;
@@ -160,9 +161,9 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
 }
 
 /// A problem with a catalogue of estimators.
-pub trait Estimated: Problem {
+pub trait Estimated: Problem + Named {
     /// The estimators of this problem.
-    const CATALOGUE: Catalogue;
+    const CATALOGUE: PageList;
 
     /// Reads the settings of the estimator at a position of the catalogue.
     fn read_estimator(index: usize, settings: &Settings) -> Option<Box<dyn trial::Entry<Self>>>;
@@ -175,7 +176,7 @@ macro_rules! estimators_of {
 }
 
 /// The estimators of every problem, in the order of the problems.
-pub fn catalogues() -> Vec<Catalogue> {
+pub fn catalogues() -> Vec<PageList> {
     each_problem!(estimators_of)
 }
 
@@ -184,7 +185,7 @@ pub fn catalogues() -> Vec<Catalogue> {
 macro_rules! estimators {
     ($Problem:ty: $($module:ident :: $Page:ident,)*) => {
         impl $crate::estimators::Estimated for $Problem {
-            const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
+            const CATALOGUE: $crate::catalogue::PageList = $crate::catalogue::PageList {
                 name: "estimators",
                 pages: &[$($crate::page!($module)),*],
             };

@@ -27,9 +27,8 @@
 //! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use super::addresses;
 use super::estimator::{Defaults, read_expect, read_kernel};
@@ -37,8 +36,8 @@ use super::options::Tolerance;
 use super::problem;
 use super::scenario::Scenario;
 use super::source::{CaseError, Source};
-use super::suite;
 use super::sweep::{SweepAxis, What};
+use crate::catalogue::additions::{self, Additions};
 use crate::catalogue::{Domain, Entry, Fault, Node, Page, Settings, Value, number};
 use crate::media::Body;
 use crate::problems;
@@ -69,13 +68,22 @@ pub struct Case {
 }
 
 impl Case {
-    /// Reads a case.
+    /// Reads a case of the built-in catalogue; [`super::Catalogue`] reads those with pages of a program's own.
     ///
     /// # Errors
     ///
     /// Every mistake in the file.
     pub fn read(source: &Source) -> Result<Self, CaseError> {
-        let case = source.read_as(|root| Self::from_root(source, root))?;
+        Self::read_with(source, &additions::NONE)
+    }
+
+    /// Reads a case with pages of the program's own.
+    ///
+    /// # Errors
+    ///
+    /// Every mistake in the file.
+    pub fn read_with(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
+        let case = source.read_as(additions, |root| Self::from_root(source, root))?;
         Ok(Self { digest: name_hash(&source.text), ..case })
     }
 
@@ -124,44 +132,6 @@ impl Case {
         let names = self.scenario.names(estimator, None);
         addresses::own(seed, &self.name, &names, None, estimator)
     }
-
-    /// Reads what a user names: a case file, a folder of them, or a built-in case.
-    ///
-    /// # Errors
-    ///
-    /// All files that cannot be read or are wrong.
-    pub fn named(name: &str) -> Result<Vec<Self>, Vec<CaseError>> {
-        match suite::find(name) {
-            Some(source) if !Path::new(name).exists() => {
-                Self::read(&source).map(|case| vec![case]).map_err(|error| vec![error])
-            }
-            _ => Self::read_all(&[name]),
-        }
-    }
-
-    /// Reads every case of a file, or of a folder and those below it, in the order of the names.
-    ///
-    /// # Errors
-    ///
-    /// All files that cannot be read or are wrong.
-    pub fn read_all(paths: &[impl AsRef<Path>]) -> Result<Vec<Self>, Vec<CaseError>> {
-        let mut cases = Vec::new();
-        let mut errors = Vec::new();
-        for path in paths {
-            match files(path.as_ref()) {
-                Ok(files) => {
-                    for file in files {
-                        match Source::read(&file).and_then(|source| Self::read(&source)) {
-                            Ok(case) => cases.push(case),
-                            Err(error) => errors.push(error),
-                        }
-                    }
-                }
-                Err(error) => errors.push(error),
-            }
-        }
-        if errors.is_empty() { Ok(cases) } else { Err(errors) }
-    }
 }
 
 /// `[problem.NAME]`, read.
@@ -208,11 +178,12 @@ impl Problem {
         let axis = self.sweep.as_ref().and_then(|axis| Some((axis, axis.what.rewrite()?)));
         let Some((axis, rewrite)) = axis else { return Some(self) };
         let (written, folder) = (root.entries().to_vec(), root.folder.to_owned());
+        let additions = root.additions().clone();
         let read = move |value: f64| {
             let mut written = written.clone();
             rewrite(problem_table(&mut written), value).map_err(|fault| vec![fault])?;
             let faults = RefCell::default();
-            let read = read_problem(&Settings::new(&written, &folder, &faults));
+            let read = read_problem(&Settings::new(&written, &folder, &faults).with(&additions));
             read.map(|read| read.scenario).ok_or_else(|| faults.into_inner())
         };
         let mut known = Vec::with_capacity(axis.values.len());
@@ -255,35 +226,6 @@ fn has_one_channel(settings: &Settings, body: &Body) -> bool {
     let help = "give it one field, as in { constant = { value = 1 } }; `spectral-transmittance` takes a list";
     settings.fault(key, "this problem is about one channel", help);
     false
-}
-
-fn files(path: &Path) -> Result<Vec<PathBuf>, CaseError> {
-    let unreadable = |cause| CaseError::Unreadable { path: path.display().to_string(), cause };
-    if !path.is_dir() {
-        return Ok(vec![path.to_owned()]);
-    }
-    let mut found = Vec::new();
-    let mut folders = vec![path.to_owned()];
-    let mut seen = BTreeSet::new();
-    while let Some(folder) = folders.pop() {
-        // A link may lead back to a folder above it.
-        if !seen.insert(folder.canonicalize().map_err(unreadable)?) {
-            continue;
-        }
-        for entry in std::fs::read_dir(&folder).map_err(unreadable)? {
-            let entry = entry.map_err(unreadable)?.path();
-            if entry.is_dir() {
-                folders.push(entry);
-            } else if entry.extension().is_some_and(|extension| extension == "toml") {
-                found.push(entry);
-            }
-        }
-    }
-    found.sort();
-    if found.is_empty() {
-        return Err(CaseError::Empty { path: path.display().to_string() });
-    }
-    Ok(found)
 }
 
 #[allow(clippy::option_option)] // the outer `None` is a recorded mistake

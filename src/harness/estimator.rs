@@ -1,7 +1,8 @@
 //! One estimator as a case file has it.
 
 use super::sweep::What;
-use crate::catalogue::{Catalogue, Page, Settings, Value};
+use crate::catalogue::{Page, Settings, Value};
+use crate::estimators::own::EstimatorReader;
 use crate::estimators::trial::Entry;
 use crate::estimators::{Estimated, Inputs, Order};
 use crate::media::Body;
@@ -10,14 +11,25 @@ use crate::recipes::{controls, sampling};
 
 /// The estimators of one problem, whose type is no longer visible, while they are being read.
 pub trait EntryReader {
-    /// Reads the settings of the estimator at a position of the catalogue and keeps it; `None` after
-    /// a mistake.
+    /// The names of the estimators, those of the program's own last.
+    fn names(&self, settings: &Settings) -> Vec<String>;
+
+    /// Reads the settings of the estimator of the name at this position and keeps it; `None` after a mistake.
     fn read(&mut self, index: usize, settings: &Settings) -> Option<Features>;
 }
 
 impl<P: Estimated> EntryReader for Vec<Box<dyn Entry<P>>> {
+    fn names(&self, settings: &Settings) -> Vec<String> {
+        let own = settings.additions().of::<EstimatorReader<P>>().map(|(page, _)| page);
+        P::CATALOGUE.pages.iter().chain(own).map(Page::name).collect()
+    }
+
     fn read(&mut self, index: usize, settings: &Settings) -> Option<Features> {
-        let entry = P::read_estimator(index, settings)?;
+        let built_in = P::CATALOGUE.pages.len();
+        let entry = match index.checked_sub(built_in) {
+            None => P::read_estimator(index, settings)?,
+            Some(own) => settings.additions().of::<EstimatorReader<P>>().nth(own)?.1(settings)?,
+        };
         let features = Features {
             inputs: entry.inputs(),
             may_take: entry.may_take(),
@@ -160,10 +172,9 @@ impl ParsedEstimator {
         table: &Settings,
         body: Option<&Body>,
         defaults: Defaults,
-        catalogue: &Catalogue,
         reader: &mut dyn EntryReader,
     ) -> Option<Self> {
-        let names: Vec<String> = catalogue.pages.iter().map(Page::name).collect();
+        let names = reader.names(table);
         let (index, settings) = table.choice(&names)?;
         let features = reader.read(index, &settings);
         let own_expect = if settings.has("expect") {
@@ -231,7 +242,6 @@ impl Estimators {
     pub fn read(
         settings: &Settings,
         body: Option<&Body>,
-        catalogue: &Catalogue,
         reader: &mut dyn EntryReader,
         (defaults, swept): (Defaults, Option<What>),
         accept: Accept,
@@ -240,7 +250,7 @@ impl Estimators {
         let control = read_if(settings, "control", body, controls::read);
         let list = settings.tables("estimators").map(|tables| {
             let read = |table: &Settings| {
-                let parsed = ParsedEstimator::read(table, body, defaults, catalogue, reader);
+                let parsed = ParsedEstimator::read(table, body, defaults, reader);
                 accept(table, parsed.as_ref().and_then(|parsed| parsed.sampling.as_deref()))?;
                 parsed
             };

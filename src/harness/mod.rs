@@ -8,7 +8,7 @@
 //!
 //! ```text
 //! words       source  rewrite  sweep  names  filter  options  addresses  normality  suite
-//! case        ready  estimator  problem  scenario  case
+//! case        ready  estimator  problem  scenario  case  catalogue
 //! plan        checks  levels  plan  mutation
 //! draws       draw  drawn  cache  run
 //! record      comparison  plot_data  record
@@ -19,6 +19,7 @@ pub mod addresses;
 mod anatomy;
 pub mod cache;
 pub mod case;
+pub mod catalogue;
 pub mod checks;
 pub mod comparison;
 pub mod curves;
@@ -50,13 +51,14 @@ pub mod sweep;
 mod theory_rows;
 pub mod verdict;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::PageList;
 
 /// The manual of case files.
-pub const CATALOGUE: Catalogue =
-    Catalogue { name: "case files", pages: &[crate::page!(case), crate::page!(sweep)] };
+pub const CATALOGUE: PageList =
+    PageList { name: "case files", pages: &[crate::page!(case), crate::page!(sweep)] };
 
 pub use case::Case;
+pub use catalogue::Catalogue;
 pub use filter::Filter;
 pub use options::{Amount, Options};
 pub use plan::Plan;

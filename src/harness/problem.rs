@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::estimator::ReadEstimators;
 use super::ready::{FAINTEST, Ready};
-use crate::catalogue::{Catalogue, Settings, rounded};
+use crate::catalogue::{Settings, rounded};
 use crate::estimators::trial::Entry;
 use crate::estimators::{Experiment, Order, RayView, Refusal, Setup};
 use crate::media::body::RayNeed;
@@ -22,8 +22,6 @@ pub struct ProblemKind {
     pub ray: RayNeed,
     /// Whether its medium may have several channels.
     pub spectral: bool,
-    /// Its estimators.
-    pub estimators: Catalogue,
     /// Its reader.
     pub read: Read,
 }
@@ -47,7 +45,6 @@ impl ProblemKind {
         Self {
             ray: P::RAY,
             spectral: P::SPECTRAL,
-            estimators: P::CATALOGUE,
             read: |body, settings, read_estimators| {
                 let problem = P::read(body, settings).map(Arc::new);
                 let mut entries: Vec<Box<dyn Entry<P>>> = Vec::new();

@@ -53,8 +53,7 @@ impl Scenario {
         let mut estimators = None;
         let problem = (kind.read)(body, settings, &mut |reader| {
             let accept = |_: &Settings, _: Option<&dyn sampling::Recipe>| Some(());
-            let catalogue = &kind.estimators;
-            estimators = Estimators::read(settings, body, catalogue, reader, defaults, &accept);
+            estimators = Estimators::read(settings, body, reader, defaults, &accept);
         });
         let (problem, estimators, body) = (problem?, estimators?, body?.clone());
         Some(Self { body, problem, meshes: OnceLock::new(), estimators, variants: None })

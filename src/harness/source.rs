@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use toml::de::{DeTable, DeValue};
 
-use crate::catalogue::{Entry, Fault, Node, Settings, Value};
+use crate::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
 
 /// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
 const TOLD: usize = 50;
@@ -156,17 +156,22 @@ impl Source {
         Ok(Self { name, path: path.to_owned(), text })
     }
 
-    /// Reads what the text says; `read` records mistakes and answers `None` after one.
+    /// Reads what the text says, with pages of the program's own; `read` records mistakes and answers `None` after
+    /// one.
     ///
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read_as<T>(&self, read: impl FnOnce(&Settings) -> Option<T>) -> Result<T, CaseError> {
+    pub fn read_as<T>(
+        &self,
+        additions: &Additions,
+        read: impl FnOnce(&Settings) -> Option<T>,
+    ) -> Result<T, CaseError> {
         let faults = RefCell::default();
         let root = self.parse(&faults);
         let broken = !faults.borrow().is_empty();
         let folder = self.path.parent().map(Path::to_owned).unwrap_or_default();
-        let found = read(&Settings::new(&root, &folder, &faults));
+        let found = read(&Settings::new(&root, &folder, &faults).with(additions));
         let mut faults = faults.into_inner();
         if broken {
             // Half a file is missing keys that the other half may hold.

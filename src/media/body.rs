@@ -3,7 +3,7 @@
 
 use std::sync::Arc;
 
-use super::{CATALOGUE, Medium, Profile, READERS, Volume};
+use super::{CATALOGUE, Medium, Profile, READERS, Reader, Volume};
 use crate::catalogue::{Domain, Settings, Value, number};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
@@ -175,17 +175,17 @@ fn read_channels(settings: &Settings, key: &'static str) -> Option<Body> {
         settings.fault(key, message, format!("it takes 1 to {MOST_CHANNELS}"));
         return None;
     }
-    let (names, mut channels) = (names(), Vec::new());
+    let mut channels = Vec::new();
     for table in &fields {
         channels.push(if let Some(span) = span {
-            choose_line(table, &names, Settings::choice_among).zip(span).and_then(
+            choose_line(table, Settings::choice_among).zip(span).and_then(
                 |((name, profile), span)| {
                     not_too_many(table, "", profile.pieces(span))?;
                     Some(Body::Line { name, profile, span })
                 },
             )
         } else {
-            read_listed(table, &names).zip(ray.flatten()).and_then(|((name, volume), ray)| {
+            read_listed(table).zip(ray.flatten()).and_then(|((name, volume), ray)| {
                 fits(table, &*volume, &ray)?;
                 Some(Body::Volume { name, volume, ray })
             })
@@ -238,12 +238,14 @@ fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<(
     None
 }
 
-fn names() -> Vec<String> {
-    CATALOGUE.pages.iter().map(crate::catalogue::Page::name).collect()
+/// The pages of media, those of the program's own last, each with its name.
+fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
+    let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
+    built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
 }
 
 fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
-    choose_line(settings, &names(), |settings, names, offered| {
+    choose_line(settings, |settings, names, offered| {
         settings.chosen_among("medium", names, offered)
     })
 }
@@ -251,15 +253,20 @@ fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
 /// Reads a field along a line that `choose` finds among the names, of which some are offered.
 fn choose_line<'a>(
     settings: &Settings<'a>,
-    names: &[String],
     choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
 ) -> Option<(String, Arc<Profile>)> {
-    let offered = names.iter().zip(READERS).filter(|(_, reader)| reader.in_line);
+    let (mut names, readers) = readers(settings);
+    let offered = names.iter().zip(&readers).filter(|(_, reader)| reader.line.is_some());
     let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
-    let (index, field) = choose(settings, names, &offered)?;
-    let profile = (READERS[index].line)(&field);
+    let (index, field) = choose(settings, &names, &offered)?;
+    let Some(read) = &readers[index].line else {
+        let help = "write `volume` instead of `medium`, and give a `ray`";
+        field.fault_at(field.span.clone(), "", "this field has no 1-D form", help);
+        return None;
+    };
+    let profile = read(&field);
     field.close();
-    Some((names[index].clone(), profile?))
+    Some((names.swap_remove(index), profile?))
 }
 
 /// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
@@ -269,25 +276,35 @@ pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
 
 /// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
 pub fn read_volumes(settings: &Settings) -> Option<Vec<(String, Arc<Volume>)>> {
-    let (tables, names) = (settings.tables("volume")?, names());
-    let fields: Vec<_> = tables.iter().map(|table| read_listed(table, &names)).collect();
+    let fields: Vec<_> = settings.tables("volume")?.iter().map(read_listed).collect();
     fields.into_iter().collect()
 }
 
 /// Reads a field in space of a list.
-fn read_listed(table: &Settings, names: &[String]) -> Option<(String, Arc<Volume>)> {
-    let (index, field) = table.choice(names)?;
-    let volume = (READERS[index].volume)(&field);
-    field.close();
-    Some((names[index].clone(), volume?))
+fn read_listed(table: &Settings) -> Option<(String, Arc<Volume>)> {
+    choose_volume(table, Settings::choice)
 }
 
 /// Reads a field in space, `KEY.NAME = { … }`.
 pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc<Volume>)> {
-    let (index, field) = settings.chosen(key, &names())?;
-    let volume = (READERS[index].volume)(&field);
+    choose_volume(settings, |settings, names| settings.chosen(key, names))
+}
+
+/// Reads a field in space that `choose` finds among the names.
+fn choose_volume<'a>(
+    settings: &Settings<'a>,
+    choose: impl FnOnce(&Settings<'a>, &[String]) -> Option<(usize, Settings<'a>)>,
+) -> Option<(String, Arc<Volume>)> {
+    let (mut names, readers) = readers(settings);
+    let (index, field) = choose(settings, &names)?;
+    let Some(read) = &readers[index].volume else {
+        let help = "write `medium` instead of `volume`, and give a `span`";
+        field.fault_at(field.span.clone(), "", "this field has no 3-D form", help);
+        return None;
+    };
+    let volume = read(&field);
     field.close();
-    Some((names().swap_remove(index), volume?))
+    Some((names.swap_remove(index), volume?))
 }
 
 fn read_span(settings: &Settings) -> Option<Span> {

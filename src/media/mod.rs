@@ -26,6 +26,7 @@ pub mod lookup;
 pub mod majorants;
 pub mod medium;
 pub mod noise;
+pub mod own;
 pub mod piecewise;
 pub mod piecewise_constant;
 pub mod piecewise_linear;
@@ -35,11 +36,11 @@ pub mod search;
 pub mod sines;
 pub mod voxels;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use fearless_simd::Level;
 
-use crate::catalogue::{Catalogue, Settings};
+use crate::catalogue::{PageList, Settings};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::pack::in_fused_code;
 use crate::numeric::{Known, Lane, Span, roots};
@@ -168,8 +169,7 @@ pub trait Field: Sized + Send + Sync + 'static {
     ///
     /// The default is for fields that exist in 3-D only.
     fn line(settings: &Settings) -> Option<Self::Profile> {
-        let help = "write `volume` instead of `medium`, and give a `ray`";
-        settings.fault_at(settings.span.clone(), "", "this field has no 1-D form", help);
+        let _ = settings;
         None
     }
 
@@ -316,21 +316,21 @@ impl<F: Field> InSpace for F {
     }
 }
 
-/// How the fields of a page are read.
-struct Reader {
-    /// See [`Field::IN_LINE`].
-    in_line: bool,
-    line: fn(&Settings) -> Option<Arc<Profile>>,
-    volume: fn(&Settings) -> Option<Arc<Volume>>,
+/// Reads the fields of a page from a case file.
+pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
+
+/// How the fields of a page are read: as one ray sees them, in space, or both.
+pub struct Reader {
+    line: Option<Read<Profile>>,
+    volume: Option<Read<Volume>>,
 }
 
 impl Reader {
-    const fn of<F: Field>() -> Self {
-        Self {
-            in_line: F::IN_LINE,
-            line: |settings| F::line(settings).map(|field| Arc::new(field) as Arc<Profile>),
-            volume: |settings| F::volume(settings).map(|field| Arc::new(field) as Arc<Volume>),
-        }
+    fn of<F: Field>() -> Self {
+        let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
+        let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
+        let line = F::IN_LINE.then(|| Box::new(line) as Read<Profile>);
+        Self { line, volume: Some(Box::new(volume)) }
     }
 }
 
@@ -339,10 +339,11 @@ impl Reader {
 macro_rules! media {
     ($($module:ident :: $Field:ident,)*) => {
         /// Every page, in the order of registration.
-        pub const CATALOGUE: Catalogue =
-            Catalogue { name: "media", pages: &[$($crate::page!($module)),*] };
+        pub const CATALOGUE: PageList =
+            PageList { name: "media", pages: &[$($crate::page!($module)),*] };
 
-        const READERS: &[Reader] = &[$(Reader::of::<$module::$Field>()),*];
+        static READERS: LazyLock<Vec<Reader>> =
+            LazyLock::new(|| vec![$(Reader::of::<$module::$Field>()),*]);
     };
 }
 

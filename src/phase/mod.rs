@@ -19,7 +19,7 @@ pub mod henyey_greenstein;
 pub mod isotropic;
 pub mod rayleigh;
 
-use crate::catalogue::{Catalogue, Settings};
+use crate::catalogue::{PageList, Settings};
 use crate::numeric::Lane;
 
 /// A page of the catalogue: a phase function that depends on `cos θ` only.
@@ -48,8 +48,8 @@ pub trait PhaseFunction: Sized + Copy + Send + Sync + 'static {
 macro_rules! phases {
     ($($module:ident :: $Page:ident,)*) => {
         /// Every page, in the order of registration.
-        pub const CATALOGUE: Catalogue =
-            Catalogue { name: "phases", pages: &[$($crate::page!($module)),*] };
+        pub const CATALOGUE: PageList =
+            PageList { name: "phases", pages: &[$($crate::page!($module)),*] };
 
         /// Some phase function of the catalogue: one small type for kernels and theory alike.
         #[derive(Debug, Clone, Copy, PartialEq)]

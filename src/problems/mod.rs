@@ -23,7 +23,7 @@ pub mod transmittance_curve;
 
 use fearless_simd::Level;
 
-use crate::catalogue::{Catalogue, Domain, Settings, Value};
+use crate::catalogue::{Domain, PageList, Settings, Value};
 use crate::media::body::RayNeed;
 use crate::media::{Body, Lookups, Medium, Volume};
 
@@ -88,11 +88,25 @@ pub(crate) use each_problem;
 macro_rules! pages {
     ($($module:ident :: $Problem:ident,)*) => {
         /// Every problem.
-        pub const CATALOGUE: Catalogue =
-            Catalogue { name: "problems", pages: &[$(crate::page!($module)),*] };
+        pub const CATALOGUE: PageList =
+            PageList { name: "problems", pages: &[$(crate::page!($module)),*] };
+
+        $(impl Named for $Problem {
+            const MODULE: &'static str = stringify!($module);
+        })*
     };
 }
 each_problem!(pages);
+
+/// A problem's name: that of its module.
+pub trait Named {
+    /// As in `single_scattering`.
+    const MODULE: &'static str;
+}
+
+impl Named for MultipleScattering {
+    const MODULE: &'static str = "multiple_scattering";
+}
 
 /// An integral along one ray.
 ///

@@ -54,7 +54,7 @@ impl Refusal {
 macro_rules! recipes {
     ($name:literal, $Trait:ident: $($module:ident :: $Page:ident,)*) => {
         /// Every recipe, in the order of registration.
-        pub const CATALOGUE: $crate::catalogue::Catalogue = $crate::catalogue::Catalogue {
+        pub const CATALOGUE: $crate::catalogue::PageList = $crate::catalogue::PageList {
             name: $name,
             pages: &[$($crate::page!($module)),*],
         };

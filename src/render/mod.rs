@@ -18,5 +18,5 @@ pub use picture::Picture;
 pub use record::PictureRecord;
 
 /// The manual of picture files.
-pub const CATALOGUE: crate::catalogue::Catalogue =
-    crate::catalogue::Catalogue { name: "picture files", pages: &[crate::page!(picture)] };
+pub const CATALOGUE: crate::catalogue::PageList =
+    crate::catalogue::PageList { name: "picture files", pages: &[crate::page!(picture)] };

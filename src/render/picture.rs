@@ -44,7 +44,7 @@ use super::gallery;
 use super::record::PictureRecord;
 use super::scene::{Request, Scene};
 use super::subject::SUBJECTS;
-use crate::catalogue::Settings;
+use crate::catalogue::{Additions, Settings};
 use crate::harness::source::{CaseError, Source};
 
 /// A picture file, read.
@@ -59,13 +59,13 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// Reads a picture.
+    /// Reads a picture, with pages of the program's own.
     ///
     /// # Errors
     ///
     /// Every mistake in the file.
-    pub fn read(source: &Source) -> Result<Self, CaseError> {
-        source.read_as(|root| Self::from_root(source, root))
+    pub fn read(source: &Source, additions: &Additions) -> Result<Self, CaseError> {
+        source.read_as(additions, |root| Self::from_root(source, root))
     }
 
     fn from_root(source: &Source, root: &Settings) -> Option<Self> {
@@ -91,10 +91,10 @@ impl Picture {
     /// # Errors
     ///
     /// The file cannot be read, or every mistake in it.
-    pub fn open(name: &str) -> Result<Self, CaseError> {
+    pub fn open(name: &str, additions: &Additions) -> Result<Self, CaseError> {
         match gallery::find(name) {
-            Some(source) if !Path::new(name).exists() => Self::read(&source),
-            _ => Self::read(&Source::read(Path::new(name))?),
+            Some(source) if !Path::new(name).exists() => Self::read(&source, additions),
+            _ => Self::read(&Source::read(Path::new(name))?, additions),
         }
     }
 

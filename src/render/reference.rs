@@ -56,9 +56,9 @@ impl Reference {
             }
             _ => {
                 let lookups = reference.count("lookups", 1..=1_000_000_000);
-                let parsed = reference.table("estimator").and_then(|table| {
-                    ParsedEstimator::read(&table, body, defaults, &kind.estimators, reader)
-                });
+                let parsed = reference
+                    .table("estimator")
+                    .and_then(|table| ParsedEstimator::read(&table, body, defaults, reader));
                 let (lookups, parsed) = (lookups?, Box::new(parsed?));
                 Some(Self::Draws { lookups, parsed })
             }

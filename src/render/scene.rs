@@ -65,9 +65,8 @@ impl Scene {
         let defaults = Defaults { sampling: settings.has("sampling"), ..Defaults::default() };
         let (mut estimators, mut reference) = (None, None);
         let ray_of = (kind.read)(settings, view.as_ref(), &mut |reader, has_exact| {
-            let catalogue = &kind.estimators;
             let (all, accept) = ((defaults, None), &countable);
-            estimators = Estimators::read(settings, body, catalogue, reader, all, accept);
+            estimators = Estimators::read(settings, body, reader, all, accept);
             reference = Reference::read(settings, (kind, has_exact), body, reader, defaults);
         });
         Some(Self {

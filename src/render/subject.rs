@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::budget::MOST_CHANNELS;
 use super::view::View;
-use crate::catalogue::{Catalogue, Domain, Settings};
+use crate::catalogue::{Domain, Settings};
 use crate::estimators::trial::Entry;
 use crate::estimators::{Estimated, Experiment, Order, Refusal, Setup};
 use crate::geometry::Ray;
@@ -86,8 +86,6 @@ pub struct SubjectKind {
     pub is_predicted: bool,
     /// How many channels a pixel has: 1, or 3 where the medium has them.
     pub channels: usize,
-    /// Its estimators.
-    pub estimators: Catalogue,
     /// Its reader.
     pub read: Read,
 }
@@ -118,7 +116,6 @@ impl SubjectKind {
             along_ray: P::ALONG_RAY,
             is_predicted: P::IS_PREDICTED,
             channels: if P::SPECTRAL { MOST_CHANNELS } else { 1 },
-            estimators: P::CATALOGUE,
             read: read::<P>,
         }
     }

@@ -30,7 +30,7 @@ use std::fs;
 use std::io;
 use std::path::{Component, Path, PathBuf};
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::PageList;
 use crate::files;
 use crate::harness::record::Record;
 
@@ -139,8 +139,8 @@ pub fn case_path(case: &str, ending: &str) -> PathBuf {
 macro_rules! reports {
     ($($module:ident,)*; $($asked:ident,)*) => {
         /// Every page, in the order of registration.
-        pub const CATALOGUE: Catalogue =
-            Catalogue { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };
+        pub const CATALOGUE: PageList =
+            PageList { name: "reports", pages: &[$($crate::page!($module),)* $($crate::page!($asked)),*] };
 
         /// Every report that a run writes, in the same order.
         pub const REPORTS: &[Report] = &[$($module::render),*];

@@ -27,6 +27,7 @@ mod media_laws;
 mod moments;
 mod mutants;
 mod optical_depth;
+mod own_pages;
 mod packets;
 mod properties;
 mod render;

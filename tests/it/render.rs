@@ -3,6 +3,7 @@
 
 use std::path::PathBuf;
 
+use trueflight::catalogue::additions::NONE;
 use trueflight::harness::Source;
 use trueflight::render::record::{Exposure, PictureRecord};
 use trueflight::render::{Picture, gallery as built_in};
@@ -13,7 +14,7 @@ fn source(text: &str) -> Source {
 }
 
 fn picture(text: &str) -> Picture {
-    Picture::read(&source(text)).unwrap_or_else(|error| panic!("{}", error.render(false)))
+    Picture::read(&source(text), &NONE).unwrap_or_else(|error| panic!("{}", error.render(false)))
 }
 
 pub fn rendered(text: &str, seed: u64) -> PictureRecord {
@@ -21,7 +22,7 @@ pub fn rendered(text: &str, seed: u64) -> PictureRecord {
 }
 
 pub fn mistakes(text: &str) -> String {
-    Picture::read(&source(text)).err().expect("mistakes").render(false)
+    Picture::read(&source(text), &NONE).err().expect("mistakes").render(false)
 }
 
 pub fn found(record: &PictureRecord, number: usize) -> &Exposure {
@@ -316,7 +317,8 @@ fn every_built_in_picture_is_well_written() {
     let sources = built_in::gallery();
     assert_eq!(sources.len(), 9);
     for source in &sources {
-        let picture = Picture::read(source).unwrap_or_else(|e| panic!("{}", e.render(false)));
+        let picture =
+            Picture::read(source, &NONE).unwrap_or_else(|e| panic!("{}", e.render(false)));
         assert!(picture.title.len() < 100, "{}", picture.name);
         assert!(built_in::find(&source.name).is_some());
     }

@@ -5,7 +5,7 @@ use crate::common::{case, none, options};
 use serde::Deserialize;
 use trueflight::estimators::DrawBuffer;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::{Case, Plan, run, verdict};
+use trueflight::harness::{Plan, run, verdict};
 use trueflight::media::eq21::Eq21;
 use trueflight::rng::{Address, Streams};
 use trueflight::theory::space::content::content;
@@ -223,7 +223,7 @@ fn what_no_page_takes_is_a_mistake_with_its_place() {
 #[test]
 fn every_rule_passes_in_every_shipped_case() {
     let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium"];
-    let cases = Case::read_all(&folders).unwrap_or_else(|errors| {
+    let cases = trueflight::Catalogue::builtin().read_all(&folders).unwrap_or_else(|errors| {
         panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
     });
     let draws = std::env::var("TRUEFLIGHT_DRAWS").ok().and_then(|n| n.parse().ok());

@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 use crate::common::{case, options};
-use trueflight::catalogue::Catalogue;
+use trueflight::catalogue::PageList;
 use trueflight::estimators::{DrawBuffer, Estimated};
 use trueflight::harness::{Case, Plan};
 use trueflight::problems::{
@@ -347,7 +347,7 @@ fn the_first_draws_have_not_changed() {
 #[test]
 fn every_estimator_of_the_catalogue_is_there() {
     let text = drawn();
-    for (Catalogue { pages, .. }, cases) in [
+    for (PageList { pages, .. }, cases) in [
         (Transmittance::CATALOGUE, ["transmittance", "volume"]),
         (FreeFlight::CATALOGUE, ["flight", "flight"]),
         (TransmittanceCurve::CATALOGUE, ["curve", "curve"]),

@@ -27,7 +27,7 @@ pub mod resolution;
 pub mod streams;
 pub mod variance;
 
-use crate::catalogue::Catalogue;
+use crate::catalogue::PageList;
 
 pub use observe::Observe;
 pub use question::{Always, Inspected, Kind, Law, Pilot, Question, Scalar, Subject, rounding};
@@ -85,8 +85,8 @@ pub fn is_uniform(name: &str) -> bool {
 macro_rules! checks {
     ($($module:ident $($how:ident)*,)*) => {
         /// Every check, in the order of registration.
-        pub const CATALOGUE: Catalogue =
-            Catalogue { name: "checks", pages: &[$($crate::page!($module)),*] };
+        pub const CATALOGUE: PageList =
+            PageList { name: "checks", pages: &[$($crate::page!($module)),*] };
 
         /// The checks, in the order of the catalogue.
         const ALL: &[Check] = &[$(Check::new($module::questions)$(.$how())*),*];

@@ -30,6 +30,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("self_test", 6),
     ("render", 6),
     ("report", 7),
+    ("check", 7),
     ("cli", 8),
     ("main", 8),
 ];

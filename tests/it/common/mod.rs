@@ -103,7 +103,7 @@ pub fn medium(text: &str) -> Medium {
 /// Every case file of the repository.
 pub fn shipped() -> Vec<Case> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases");
-    Case::read_all(&[folder]).unwrap_or_else(|errors| {
+    trueflight::Catalogue::builtin().read_all(&[folder]).unwrap_or_else(|errors| {
         let shown: Vec<String> = errors.iter().map(|error| error.render(false)).collect();
         panic!("{}", shown.join("\n\n"))
     })

@@ -103,9 +103,11 @@ fn packets_are_the_scalar_draws_at_every_level_that_fuses() {
 #[test]
 #[ignore = "long: every technique in bodies of all kinds, 45 s of two cores"]
 fn packets_are_the_scalar_draws_in_bodies_of_all_kinds() {
-    let shipped = Case::read_all(&["cases/single-scattering"]).unwrap_or_else(|errors| {
-        panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
-    });
+    let shipped = trueflight::Catalogue::builtin()
+        .read_all(&["cases/single-scattering"])
+        .unwrap_or_else(|errors| {
+            panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
+        });
     let compared = compare(&cases(1)) + compare(&shipped);
     assert!(fusing_levels().is_empty() || compared > 500, "only {compared} compared");
 }

@@ -73,7 +73,7 @@ const ESTIMATORS: &str = "{ particle.rule = \"terminating\" }, { particle.rule =
 
 fn cases() -> Vec<Case> {
     let folders = ["cases/furnace", "cases/lambertian", "cases/infinite-medium", "cases/sphere"];
-    let mut cases = Case::read_all(&folders).unwrap_or_else(|errors| {
+    let mut cases = trueflight::Catalogue::builtin().read_all(&folders).unwrap_or_else(|errors| {
         panic!("{}", errors.iter().map(|error| error.render(false)).collect::<String>())
     });
     let phases = ["isotropic = {}", "rayleigh = {}", "henyey-greenstein = { g = 0.6 }"];

@@ -1,0 +1,46 @@
+//! The average of two rays of ratio tracking.
+//!
+//! ```text
+//! X = (X₁ + X₂)/2,  Var X = Var X₁/2,  twice the lookups
+//! ```
+
+use trueflight::estimators::transmittance::ratio::Ratio;
+use trueflight::estimators::{Draw, Estimator, Inputs, Refusal, Setup};
+use trueflight::media::Lookups;
+use trueflight::problems::Transmittance;
+use trueflight::rng::Stream;
+use trueflight::theory::{CountLaw, Moments, Prediction};
+
+/// Two rays; σ̂ is their only input.
+#[derive(Debug, Clone)]
+pub struct TwoRays;
+
+impl Estimator<Transmittance> for TwoRays {
+    const INPUTS: Inputs = Inputs::SAMPLING;
+    const PLAIN: Option<Self> = Some(Self);
+
+    fn domain(&self, setup: &Setup<Transmittance>) -> Result<(), Refusal> {
+        Ratio.domain(setup)
+    }
+
+    fn predict(&self, setup: &Setup<Transmittance>) -> Prediction {
+        let mut one = Ratio.predict(setup);
+        let mut channel = one.channels.remove(0);
+        channel.moments = channel.moments.map(|of_one| {
+            // The fourth central moment of a sum has pairs of squares in it.
+            let [m2, m3, m4] = of_one.relative;
+            let relative = [m2 / 2.0, m3 / 4.0, (m4 + 3.0 * m2 * m2) / 8.0];
+            Moments { relative, ..of_one }
+        });
+        channel.losses = None;
+        let lookups = one.lookups.take().map(|law| CountLaw::poisson(2.0 * law.mean));
+        Prediction { channels: vec![channel], lookups, ..Prediction::default() }
+    }
+
+    #[inline(always)]
+    fn draw(&self, setup: &Setup<Transmittance>, medium: &Lookups, rng: &mut Stream) -> Draw {
+        let [first, second] = [0, 1].map(|_| Ratio.draw(setup, medium, rng));
+        let value = 0.5 * (first.value[0] + second.value[0]);
+        Draw::free([value], first.lookups + second.lookups)
+    }
+}

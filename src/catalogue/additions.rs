@@ -1,0 +1,54 @@
+//! Pages that a program adds to the built-in ones, before it reads case files.
+
+use std::any::Any;
+use std::fmt;
+use std::sync::Arc;
+
+use super::Page;
+
+/// A page of a program's own: where it belongs, its text, and what reads it.
+#[derive(Clone)]
+pub struct Addition {
+    /// The part of the catalogue, as in `trueflight list`: `media`, `estimators of transmittance`.
+    pub part: String,
+    /// Its name and text.
+    pub page: Page,
+    reader: Arc<dyn Any + Send + Sync>,
+}
+
+impl Addition {
+    /// A page that is read by an `R`, the type by which its part finds it.
+    pub fn new<R: Any + Send + Sync>(part: impl Into<String>, page: Page, reader: R) -> Self {
+        Self { part: part.into(), page, reader: Arc::new(reader) }
+    }
+}
+
+impl fmt::Debug for Addition {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "{} ({})", self.page.name(), self.part)
+    }
+}
+
+/// The pages of a program's own.
+#[derive(Debug, Clone, Default)]
+pub struct Additions(Vec<Addition>);
+
+/// What a case is read with that needs no pages of its own.
+pub static NONE: Additions = Additions(Vec::new());
+
+impl Additions {
+    /// One page more.
+    pub fn add(&mut self, addition: Addition) {
+        self.0.push(addition);
+    }
+
+    /// All of them, in the order in which they came.
+    pub fn all(&self) -> &[Addition] {
+        &self.0
+    }
+
+    /// Those that are read by an `R`, each with its page.
+    pub fn of<R: Any>(&self) -> impl Iterator<Item = (&Page, &R)> {
+        self.0.iter().filter_map(|own| Some((&own.page, own.reader.downcast_ref::<R>()?)))
+    }
+}
