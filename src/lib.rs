@@ -11,7 +11,7 @@
 //! ```text
 //! 8  cli            arguments, exit codes, progress, the only prints (in the binary)
 //! 7  report         record → artifacts: csv, json, svg, png, console, junit, markdown
-//! 6  baseline judge bench stress self_test render   programs that use the harness; they do not know each other
+//! 6  baseline judge bench stress self_test render export   programs that use the harness; they do not know each other
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
@@ -42,6 +42,8 @@ pub mod bench;
 pub mod catalogue;
 #[cfg(feature = "library")]
 pub mod estimators;
+#[cfg(feature = "library")]
+pub mod export;
 #[cfg(feature = "library")]
 pub mod files;
 #[cfg(feature = "library")]

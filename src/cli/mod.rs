@@ -13,6 +13,7 @@ mod check;
 mod completions;
 mod drawing;
 mod explain;
+mod export;
 mod judge;
 mod list;
 mod output;
@@ -78,6 +79,8 @@ enum Command {
     Explain(explain::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
     Judge(judge::Arguments),
+    /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
+    Export(export::Arguments),
     /// Shell completions
     Completions(completions::Arguments),
 }
@@ -98,6 +101,7 @@ pub fn main() -> ExitCode {
         Command::List(arguments) => list::main(arguments, console),
         Command::Explain(arguments) => explain::main(arguments, console),
         Command::Judge(arguments) => judge::main(arguments, console),
+        Command::Export(arguments) => export::main(arguments, console),
         Command::Completions(arguments) => completions::main(arguments),
     };
     match done {
