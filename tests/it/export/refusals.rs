@@ -1,0 +1,89 @@
+//! What is not exported, and what is said of it.
+
+use std::path::Path;
+use std::process::Output;
+
+use assert_cmd::Command;
+use trueflight::export::Target;
+
+use super::scene;
+
+/// Runs `trueflight export` in a folder.
+fn run(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::cargo_bin("trueflight").expect("the binary");
+    command.current_dir(folder).arg("export").args(arguments).output().expect("it runs")
+}
+
+fn stderr(output: &Output) -> String {
+    String::from_utf8(output.stderr.clone()).expect("text")
+}
+
+#[test]
+fn cases_that_no_renderer_can_show_are_refused_with_a_cure() {
+    let cases = [
+        ("rod/known-bugs", Target::Mitsuba, "asks"),
+        ("slab/known-bugs-diffuse", Target::Mitsuba, "incidence.collimated"),
+        ("slab/albedos", Target::Mitsuba, "leave `sweep` out"),
+        ("slab/known-bugs", Target::Pbrt, "0.9999"),
+        ("furnace/known-bugs", Target::Pbrt, "Rayleigh"),
+        ("single-scattering/homogeneous", Target::Mitsuba, "bounds.box"),
+        ("sphere/environment", Target::Mitsuba, "sphere/black-light"),
+        ("sphere/escape", Target::Mitsuba, "all directions"),
+        ("transmittance/negative-extinction-field", Target::Mitsuba, "σ_t"),
+        ("transmittance/eq21-missing", Target::Mitsuba, "misses"),
+        ("spectral-furnace/known-bugs", Target::Mitsuba, "spectral-furnace"),
+    ];
+    for (case, target, words) in cases {
+        let Err(error) = scene(case, target, None) else { panic!("{case} was exported") };
+        let error = error.to_string();
+        assert!(error.contains(case) && error.contains(words), "{case}: {error}");
+    }
+}
+
+#[test]
+fn nothing_is_left_where_nothing_can_be_exported() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = run(folder.path(), &["rod/known-bugs", "--to", "mitsuba", "--out", "scene"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).starts_with("error: rod/known-bugs cannot be exported to mitsuba"));
+    assert!(!folder.path().join("scene").exists());
+}
+
+#[test]
+fn cases_that_are_not_there_and_folders_that_cannot_be_written_are_errors() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let told = |arguments: &[&str], words: &str| {
+        let output = run(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+        assert!(stderr(&output).contains(words), "{}", stderr(&output));
+    };
+    told(&["nowhere", "--to", "mitsuba", "--out", "scene"], "nowhere: No such file");
+    std::fs::write(folder.path().join("bad.toml"), "title = 3\n").expect("a file");
+    told(&["bad.toml", "--to", "pbrt", "--out", "scene"], "bad.toml");
+    assert!(!folder.path().join("scene").exists());
+    let good = "transmittance/eq21-overview";
+    std::fs::write(folder.path().join("file"), "in the way").expect("a file");
+    told(&[good, "--to", "mitsuba", "--out", "file"], "give another folder with --out");
+    told(&[good, "--to", "mitsuba", "--out", "file/below"], "give another folder with --out");
+    told(&[good, "--to", "cycles", "--out", "scene"], "mitsuba");
+    told(&[good, "--to", "mitsuba"], "--out");
+    told(&[good, "--to", "mitsuba", "--out", "scene", "--cells", "1"], "--cells");
+    // A folder stands where a file belongs: nothing is moved.
+    std::fs::create_dir_all(folder.path().join("half/truth.json")).expect("a folder");
+    told(&[good, "--to", "mitsuba", "--out", "half"], "truth.json");
+    assert_eq!(std::fs::read_dir(folder.path().join("half")).expect("a folder").count(), 1);
+}
+
+#[test]
+fn an_export_tells_what_its_pixels_must_be() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let arguments = ["furnace/eq21", "--to", "mitsuba", "--out", "scene", "--cells", "8"];
+    let output = run(folder.path(), &arguments);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let told = String::from_utf8(output.stdout).expect("text");
+    assert!(
+        told.contains("radiance.xml: radiance 1 ±") && told.contains("4 files in scene"),
+        "{told}"
+    );
+    assert!(told.contains("note: the medium is white"), "{told}");
+}
