@@ -63,9 +63,9 @@ pub fn read(source: &Source, target: Target, cells: Option<usize>) -> Result<Sce
         if varies {
             return Err(("it sweeps its medium".into(), "leave `sweep` out of a copy of the case"));
         }
-        if let Some(grid) = scene.grid().filter(|grid| !grid.is_extinction()) {
-            let least = grid.values.iter().copied().fold(f32::INFINITY, f32::min);
-            return Err((format!("a sample of σ_t is {least}"), "renderers take σ_t ≥ 0 only"));
+        if !scene.grid().is_none_or(Sampled::is_extinction) {
+            let why = "a sample of σ_t is no number of single precision from 0 to 3e38";
+            return Err((why.into(), "take other units of length"));
         }
         if scene.peak() == 0.0 {
             return Err(("the sampled field is empty".into(), "take more --cells, or another ray"));

@@ -4,6 +4,7 @@
 //! version              1; it grows when a key changes its meaning
 //! case, problem        what was exported
 //! target               "mitsuba" or "pbrt"
+//! camera_in_medium     whether the ray begins within the medium
 //! field                file, size, low, high, interpolation, border and peak of the samples; null for a ball
 //! notes                what of the case is not in the scene, in sentences
 //! questions            one for each picture:
@@ -45,6 +46,8 @@ pub struct Truth {
     pub problem: String,
     /// The renderer.
     pub target: String,
+    /// Whether the camera is in the medium.
+    pub camera_in_medium: bool,
     /// The samples.
     pub field: Option<Samples>,
     /// What of the case is not in the scene.
@@ -157,6 +160,7 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
         case: scene.case.clone(),
         problem: scene.problem.to_owned(),
         target: scene.target.name().to_owned(),
+        camera_in_medium: scene.is_inside,
         field,
         notes: scene.notes.clone(),
         questions: questions.collect(),

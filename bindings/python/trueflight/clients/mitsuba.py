@@ -3,9 +3,11 @@
     trueflight export transmittance/eq21-overview --to mitsuba --out scene
     python -m trueflight.clients.mitsuba scene --integrator volpath
 
-Every pixel is one sample of one law, whose mean `truth.json` tells, and often its variance. All pixels of all passes
-are draws; `trueflight judge` says pass, fail or inconclusive, and so does the exit code: 0, 1 or 3, and 2 where
-something is wrong with what was given. Seconds are processor time of rendering on one thread.
+Every sample of the camera's only ray has one law, whose mean `truth.json` tells, and often its variance. Draws are
+the samples of the integrator with the numbers of one generator. With `--pixels` they are those of pictures: scalar
+variants seed each pixel by a consecutive number, and neighbours depend on each other, which the gate may find.
+`trueflight judge` says pass, fail or inconclusive, and so does the exit code: 0, 1 or 3, and 2 where something is wrong
+with what was given. Seconds are processor time of a picture, on one thread.
 
 Two bugs can be injected, to see that they are found:
 
@@ -45,6 +47,7 @@ class Row:
     question: str
     integrator: str
     emitter_sampling: bool
+    draws_are: str
     bug: str
     verdict: str
     truth: float
@@ -139,8 +142,6 @@ def scene(mitsuba, folder, truth, question, options):
     parameters = {
         "integrator": options.integrator,
         "sampling": "false" if options.no_emitter_sampling else "true",
-        "width": str(options.size),
-        "height": str(options.size),
     }
     mitsuba.file_resolver().prepend(str(Path(folder).resolve()))
     try:
@@ -149,18 +150,34 @@ def scene(mitsuba, folder, truth, question, options):
         raise Wrong(f"Mitsuba cannot load {path}: {error}") from None
 
 
-def render(mitsuba, folder, truth, question, options):
-    """All samples of a picture, pass after pass, and the seconds that they took."""
+def pixels(mitsuba, loaded, count, seed):
+    """The pixels of pictures of 2^20 samples, and the seconds that they took."""
     import numpy
 
-    loaded = scene(mitsuba, folder, truth, question, options)
-    passes, seconds = [], 0.0
-    for index in range(options.passes):
+    side, pictures, seconds = 1024, [], 0.0
+    for index in range(-(-count // side**2)):
         begin = time.process_time()
-        image = mitsuba.render(loaded, seed=options.seed * 100_003 + index, spp=1)
+        # Pixel i of a picture has the seed `seed + i`: pictures take seeds that are so far apart.
+        image = mitsuba.render(loaded, seed=(seed + index) * side**2, spp=1)
         seconds += time.process_time() - begin
-        passes.append(numpy.array(image)[:, :, 0].astype(float).ravel())
-    return numpy.concatenate(passes), seconds
+        pictures.append(numpy.array(image)[:, :, 0].astype(float).ravel())
+    return numpy.concatenate(pictures), seconds
+
+
+def samples(mitsuba, loaded, count, seed, is_inside):
+    """Samples of the integrator along the camera's ray, with the numbers of one generator, one after the other."""
+    import numpy
+
+    sampler = mitsuba.load_dict({"type": "independent"})
+    sampler.seed(seed)
+    integrator, middle = loaded.integrator(), [0.5, 0.5]
+    ray, _ = loaded.sensors()[0].sample_ray_differential(0, 0.5, middle, middle)
+    media = [shape.interior_medium() for shape in loaded.shapes()]
+    medium = next(filter(None, media)) if is_inside else None
+    draws = numpy.empty(count)
+    for index in range(count):
+        draws[index] = integrator.sample(loaded, sampler, ray, medium)[0][0]
+    return draws
 
 
 def measure(mitsuba, folder, truth, question, options):
@@ -169,7 +186,15 @@ def measure(mitsuba, folder, truth, question, options):
     law = question["with_emitter_sampling" if with_sampling else "without_emitter_sampling"]
     if law is None:
         raise Wrong("scattering alone does not find this light; leave --no-emitter-sampling out")
-    draws, seconds = render(mitsuba, folder, truth, question, options)
+    loaded = scene(mitsuba, folder, truth, question, options)
+    if options.pixels:
+        draws, seconds = pixels(mitsuba, loaded, options.draws, options.seed)
+        rate = len(draws) / seconds
+    else:
+        draws = samples(mitsuba, loaded, options.draws, options.seed, truth["camera_in_medium"])
+        # Not the calls from Python are timed, but a picture.
+        picture, seconds = pixels(mitsuba, loaded, 1, options.seed)
+        rate = len(picture) / seconds
     mean, error = question["mean"], question["error"]
     rounding = question["rounding"] + error / mean
     alpha = options.alpha / len(truth["questions"])
@@ -177,12 +202,12 @@ def measure(mitsuba, folder, truth, question, options):
     deviation = float(draws.std())
     standard_error = deviation / len(draws) ** 0.5
     off = float(draws.mean()) - mean
-    rate = len(draws) / seconds
     return Row(
         case=truth["case"],
         question=question["name"],
         integrator=options.integrator,
         emitter_sampling=with_sampling,
+        draws_are="pixels" if options.pixels else "samples",
         bug=options.bug or "",
         verdict=verdict,
         truth=mean,
@@ -221,9 +246,9 @@ def arguments(words):
     parser.add_argument("folder", metavar="DIR", help="what `trueflight export --to mitsuba` wrote")
     parser.add_argument("--integrator", default="volpath", help="volpath (default), volpathmis, …")
     parser.add_argument("--no-emitter-sampling", action="store_true", help="scattering finds lights")
-    parser.add_argument("--passes", type=whole, default=4, help="pictures of each scene (default 4)")
-    parser.add_argument("--size", type=whole, default=1024, help="pixels along each side (default 1024)")
-    parser.add_argument("--seed", type=whole, default=1, help="seed of the first pass (default 1)")
+    parser.add_argument("--draws", type=whole, default=1 << 20, help="samples (default 1048576)")
+    parser.add_argument("--pixels", action="store_true", help="take pixels of pictures of 1024 x 1024")
+    parser.add_argument("--seed", type=whole, default=1, help="seed (default 1)")
     parser.add_argument("--alpha", type=chance, default=1e-3, help="chance that a correct renderer fails")
     parser.add_argument("--variant", default="scalar_rgb", help="of Mitsuba (default scalar_rgb)")
     parser.add_argument("--bug", choices=["majorant", "emission"], help="a bug to be found")
