@@ -28,11 +28,9 @@ import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+# The version of `truth.json` that is read, and exit codes, the worst last.
 VERSION = 1
-"""The version of `truth.json` that is read."""
-
 CODES = {"pass": 0, "inconclusive": 3, "fail": 1}
-"""Exit codes, the worst last."""
 
 
 class Wrong(Exception):
@@ -112,7 +110,7 @@ def read(folder):
         truth = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise Wrong(f"{path}: {error.strerror}; write it by `trueflight export --to mitsuba`") from None
-    except json.JSONDecodeError as error:
+    except ValueError as error:
         raise Wrong(f"{path}: {error}; write it anew by `trueflight export`") from None
     if truth.get("version") != VERSION or truth.get("target") != "mitsuba":
         raise Wrong(f"{path} is not for Mitsuba, or not of version {VERSION}; export it anew")
@@ -139,9 +137,12 @@ def scene(mitsuba, folder, truth, question, options):
         count = 1
     if count == 0:
         raise Wrong(f"{path} has no place for the bug `{options.bug}`")
+    side = str(1024 if options.pixels else 256)
     parameters = {
         "integrator": options.integrator,
         "sampling": "false" if options.no_emitter_sampling else "true",
+        "width": side,
+        "height": side,
     }
     mitsuba.file_resolver().prepend(str(Path(folder).resolve()))
     try:
@@ -151,10 +152,11 @@ def scene(mitsuba, folder, truth, question, options):
 
 
 def pixels(mitsuba, loaded, count, seed):
-    """The pixels of pictures of 2^20 samples, and the seconds that they took."""
+    """The pixels of square pictures, and the seconds that they took."""
     import numpy
 
-    side, pictures, seconds = 1024, [], 0.0
+    side = loaded.sensors()[0].film().size()[0]
+    pictures, seconds = [], 0.0
     for index in range(-(-count // side**2)):
         begin = time.process_time()
         # Pixel i of a picture has the seed `seed + i`: pictures take seeds that are so far apart.
@@ -187,14 +189,11 @@ def measure(mitsuba, folder, truth, question, options):
     if law is None:
         raise Wrong("scattering alone does not find this light; leave --no-emitter-sampling out")
     loaded = scene(mitsuba, folder, truth, question, options)
-    if options.pixels:
-        draws, seconds = pixels(mitsuba, loaded, options.draws, options.seed)
-        rate = len(draws) / seconds
-    else:
+    # Not the calls from Python are timed, but a picture.
+    draws, seconds = pixels(mitsuba, loaded, options.draws if options.pixels else 1, options.seed)
+    rate = len(draws) / seconds
+    if not options.pixels:
         draws = samples(mitsuba, loaded, options.draws, options.seed, truth["camera_in_medium"])
-        # Not the calls from Python are timed, but a picture.
-        picture, seconds = pixels(mitsuba, loaded, 1, options.seed)
-        rate = len(picture) / seconds
     mean, error = question["mean"], question["error"]
     rounding = question["rounding"] + error / mean
     alpha = options.alpha / len(truth["questions"])
@@ -280,6 +279,7 @@ def main(words=None):
             raise Wrong(f"{error}; run `pip install mitsuba numpy`") from None
         try:
             mitsuba.set_variant(options.variant)
+            mitsuba.set_log_level(mitsuba.LogLevel.Error)
             drjit.set_thread_count(1)
         except (ImportError, AttributeError) as error:
             raise Wrong(f"--variant {options.variant}: {error}") from None
