@@ -82,6 +82,17 @@ pub fn export(
     out: &Path,
 ) -> Result<Exported, ExportError> {
     let scene = reading::read(source, target, cells)?;
+    let was_there = out.exists();
+    let written = write(&scene, out);
+    if written.is_err() && !was_there {
+        // What was made for the files goes with them; where that fails nothing worse has happened.
+        let _ = fs::remove_dir(out);
+    }
+    written
+}
+
+/// Writes a scene into a folder, all of it or nothing.
+fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
     let io = |path: &Path| {
         let path = path.to_owned();
         move |source| ExportError::Write { path, source }
@@ -97,12 +108,12 @@ pub fn export(
     if let Some(grid) = scene.grid() {
         put(sampled::FILE.into(), &grid.vol())?;
     }
-    put(theory::FILE.into(), theory::case(&scene).as_bytes())?;
-    let truth = truth::of(&scene, &theory::ask(&scene, stage.path())?);
+    put(theory::FILE.into(), theory::case(scene).as_bytes())?;
+    let truth = truth::of(scene, &theory::ask(scene, stage.path())?);
     for (question, view) in truth.questions.iter().zip(&scene.views) {
-        let text = match target {
-            Target::Mitsuba => mitsuba::text(&scene, view),
-            Target::Pbrt => pbrt::text(&scene, view),
+        let text = match scene.target {
+            Target::Mitsuba => mitsuba::text(scene, view),
+            Target::Pbrt => pbrt::text(scene, view),
         };
         put(question.scene.clone(), text.as_bytes())?;
     }

@@ -116,9 +116,5 @@ pub fn ask(scene: &Scene, folder: &Path) -> Result<Prediction, ExportError> {
     let case = Case::read(&Source::read(&folder.join(FILE))?)?;
     let ready = case.scenario.prepare(0, None, case.pilots(1, 0));
     let unknown = |why: String| ExportError::Unknown { case: scene.case.clone(), why };
-    let prediction = ready.map_err(|refusal| unknown(refusal.to_string()))?.prediction;
-    if prediction.channels.iter().any(|channel| channel.log_unit != 0.0) {
-        return Err(unknown("its transmittance is no double: take a thinner medium".into()));
-    }
-    Ok(prediction)
+    Ok(ready.map_err(|refusal| unknown(refusal.to_string()))?.prediction)
 }

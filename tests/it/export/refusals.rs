@@ -55,6 +55,12 @@ fn what_varies_or_is_no_number_of_single_precision_is_no_scene() {
     std::fs::write(folder.path().join("large.toml"), large).expect("a file");
     let output = export("large.toml");
     assert!(stderr(&output).contains("single precision"), "{}", stderr(&output));
+    let thick = text.replace("extinction = 1", "extinction = 400");
+    std::fs::write(folder.path().join("thick.toml"), thick).expect("a file");
+    let output = export("thick.toml");
+    assert_eq!(output.status.code(), Some(2));
+    assert!(stderr(&output).contains("needs τ ≤ 300"), "{}", stderr(&output));
+    assert!(!folder.path().join("scene").exists(), "a folder is left");
     assert_eq!(export("one.toml").status.code(), Some(0));
 }
 
