@@ -37,7 +37,7 @@
 //! 8  cli            arguments, exit codes, progress, the only prints
 //! 7  report         record → artifacts: csv, json, svg, png, console, junit, markdown
 //!    check          somebody's own estimator: closures and pushed draws against the gate
-//! 6  baseline judge bench stress self_test render   programs that use the harness; they do not know each other
+//! 6  baseline judge bench stress self_test render export   programs that use the harness; they do not know each other
 //! 5  harness        case → plan → run → verdict → record: the only place where names become types
 //! 4  estimators     draws, one page each; beside them their mutants, each with one known bug
 //! 3  theory         moments and costs in closed form; never draws a random number
@@ -71,6 +71,8 @@ pub mod check;
 pub mod cli;
 #[cfg(feature = "library")]
 pub mod estimators;
+#[cfg(feature = "library")]
+pub mod export;
 #[cfg(feature = "library")]
 pub mod files;
 #[cfg(feature = "library")]

@@ -16,6 +16,7 @@ mod check;
 mod completions;
 mod drawing;
 mod explain;
+mod export;
 mod judge;
 mod list;
 mod output;
@@ -84,6 +85,8 @@ enum Command {
     Explain(explain::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
     Judge(judge::Arguments),
+    /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
+    Export(export::Arguments),
     /// Shell completions
     Completions(completions::Arguments),
 }
@@ -120,6 +123,7 @@ fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
         Command::List(arguments) => list::main(arguments, catalogue, console),
         Command::Explain(arguments) => explain::main(arguments, catalogue, console),
         Command::Judge(arguments) => judge::main(arguments, catalogue, console),
+        Command::Export(arguments) => export::main(arguments, catalogue, console),
         Command::Completions(arguments) => completions::main(arguments),
     };
     match done {

@@ -15,6 +15,7 @@ mod coloured_pictures;
 mod common;
 mod equation14;
 mod equiangular;
+mod export;
 mod fuzz_corpus;
 mod golden;
 mod judge;

@@ -29,6 +29,7 @@ const FLOORS: &[(&str, u8)] = &[
     ("stress", 6),
     ("self_test", 6),
     ("render", 6),
+    ("export", 6),
     ("report", 7),
     ("check", 7),
     ("cli", 8),

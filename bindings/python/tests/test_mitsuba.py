@@ -1,0 +1,102 @@
+"""The client of Mitsuba: honest pictures pass, injected bugs fail, and what is wrong gets one clear error.
+
+It needs the packages mitsuba and numpy, and the command `trueflight` in PATH or its path in TRUEFLIGHT.
+"""
+
+import csv
+import os
+import shutil
+import subprocess
+
+import pytest
+
+pytest.importorskip("mitsuba")
+pytest.importorskip("numpy")
+
+from trueflight.clients import mitsuba as client  # noqa: E402
+
+PROGRAM = os.environ.get("TRUEFLIGHT", "trueflight")
+if shutil.which(PROGRAM) is None:
+    pytest.skip("the command `trueflight` is not there", allow_module_level=True)
+
+
+@pytest.fixture(scope="module")
+def export(tmp_path_factory):
+    """Exports a built-in case to a folder."""
+    folders = {}
+
+    def exported(case, target="mitsuba"):
+        if (case, target) not in folders:
+            out = tmp_path_factory.mktemp("scene")
+            command = [PROGRAM, "export", case, "--to", target, "--out", str(out), "--quiet"]
+            subprocess.run(command, check=True)
+            folders[case, target] = str(out)
+        return folders[case, target]
+
+    return exported
+
+
+SMALL = ["--draws", "500000", "--alpha", "1e-6"]
+
+
+@pytest.mark.parametrize("integrator", ["volpath", "volpathmis"])
+@pytest.mark.parametrize("case", ["transmittance/eq21-overview", "single-scattering/null-paths-layers"])
+def test_honest_pictures_pass(export, case, integrator):
+    assert client.main([export(case), "--integrator", integrator, *SMALL]) == 0
+
+
+def test_every_path_of_a_white_furnace_finds_light(export):
+    assert client.main([export("furnace/known-bugs"), "--no-emitter-sampling", "--draws", "5000"]) == 0
+
+
+@pytest.mark.parametrize("integrator", ["volpath", "volpathmis"])
+def test_lights_counted_twice_are_found(export, integrator):
+    for case in ["transmittance/eq21-overview", "single-scattering/null-paths-layers"]:
+        assert client.main([export(case), "--integrator", integrator, "--bug", "emission", *SMALL]) == 1
+
+
+def test_a_low_majorant_is_found(export):
+    words = ["--draws", "4000000", "--bug", "majorant"]
+    assert client.main([export("transmittance/eq21-overview"), *words]) == 1
+
+
+def test_rows_are_appended_to_a_table(export, tmp_path):
+    table = tmp_path / "table.csv"
+    for _ in range(2):
+        client.main([export("slab/known-bugs"), "--draws", "5000", "--csv", str(table)])
+    with open(table, encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert [row["question"] for row in rows] == ["reflectance", "transmittance"] * 2
+    assert rows[0]["mean"] == rows[2]["mean"], "a seed makes its draws again"
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["nowhere"], "truth.json"),
+        (["EXPORT", "--integrator", "nonsense"], "nonsense"),
+        (["EXPORT", "--variant", "nonsense"], "nonsense"),
+        (["BALL", "--bug", "majorant"], "no majorant"),
+        (["POINT", "--no-emitter-sampling"], "does not find this light"),
+        (["PBRT"], "not for Mitsuba"),
+        (["EXPORT", "--draws", "100", "--csv", "no/such/table.csv"], "no/such"),
+    ],
+)
+def test_what_is_wrong_is_told(export, capsys, words, told):
+    folders = {
+        "EXPORT": ("transmittance/eq21-overview", "mitsuba"),
+        "BALL": ("furnace/known-bugs", "mitsuba"),
+        "POINT": ("single-scattering/null-paths-layers", "mitsuba"),
+        "PBRT": ("transmittance/eq21-overview", "pbrt"),
+    }
+    words = [export(*folders[word]) if word in folders else word for word in words]
+    assert client.main(words) == 2
+    error = capsys.readouterr().err
+    assert error.startswith("error: ") and told in error
+
+
+def test_a_command_that_is_not_there_is_told(export, capsys, monkeypatch):
+    folder = export("transmittance/eq21-overview")
+    monkeypatch.setenv("TRUEFLIGHT", "no-such-command")
+    assert client.main([folder, "--draws", "100"]) == 2
+    assert "no-such-command" in capsys.readouterr().err

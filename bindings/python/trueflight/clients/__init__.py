@@ -1,0 +1,1 @@
+"""Renderers as clients: each renders scenes that `trueflight export` wrote, and has its pixels judged."""

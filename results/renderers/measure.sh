@@ -1,0 +1,66 @@
+#!/bin/sh
+# Renders exported cases with both integrators of Mitsuba and judges the samples: mitsuba.csv and bugs.csv.
+#
+#   TRUEFLIGHT=target/release/trueflight PYTHON=python3 results/renderers/measure.sh
+#
+# PYTHON has the packages mitsuba and numpy. About ten minutes of one core. PARTS chooses what is measured.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+: "${TRUEFLIGHT:=trueflight}" "${PYTHON:=python3}" "${DRAWS:=1000000}" "${TABLE:=$root/results/renderers/mitsuba.csv}"
+export TRUEFLIGHT PYTHONPATH="$root/bindings/python"
+scenes=$(mktemp -d)
+trap 'rm -r "$scenes"' EXIT
+rm -f "$TABLE"
+
+# Exports a case file and measures it with the given ways of finding lights.
+measure() {
+    case=$1
+    shift
+    out=$scenes/$(basename "$(dirname "$case")")-$(basename "$case" .toml)
+    "$TRUEFLIGHT" export "$case" --to mitsuba --out "$out" --quiet || exit 2
+    for integrator in volpath volpathmis; do
+        for way in "$@"; do
+            "$PYTHON" -m trueflight.clients.mitsuba "$out" --integrator "$integrator" $way --draws "$DRAWS" \
+                ${OURS---ours} --csv "$TABLE"
+            [ $? -ne 2 ] || exit 2
+        done
+    done
+}
+
+cases=$root/cases
+lights=--seed=1
+hits=--no-emitter-sampling
+parts=${PARTS:-transmittance furnace slab single-scattering sphere limits bugs}
+for part in $parts; do
+    case $part in
+    transmittance)
+        for case in eq21-overview layers-with-gap grid-trilinear-centres; do
+            measure "$cases/$part/$case.toml" $lights
+        done
+        ;;
+    furnace) for case in eq21 grid known-bugs; do measure "$cases/$part/$case.toml" $hits $lights; done ;;
+    slab) for case in known-bugs cloud; do measure "$cases/$part/$case.toml" $hits $lights; done ;;
+    single-scattering)
+        for case in known-bugs null-paths-layers grid; do measure "$cases/$part/$case.toml" $lights; done
+        ;;
+    sphere) measure "$cases/$part/black-light.toml" $hits $lights ;;
+    # What Mitsuba cannot do: a scene of a hundredth, pixels that depend on each other, a light deep in a medium.
+    limits)
+        measure "$root/results/renderers/small.toml" $lights --pixels
+        DRAWS=4000000
+        measure "$root/results/renderers/lamp.toml" $lights
+        ;;
+    # Bugs of the client, in a table of their own.
+    bugs)
+        TABLE=$(dirname "$TABLE")/bugs.csv OURS= DRAWS=4000000
+        rm -f "$TABLE"
+        measure "$cases/transmittance/eq21-overview.toml" --bug=majorant --bug=emission
+        DRAWS=1000000
+        for case in furnace/eq21 slab/known-bugs; do measure "$cases/$case.toml" --bug=majorant --bug=emission; done
+        ;;
+    *)
+        echo "PARTS: nothing is called $part" >&2
+        exit 2
+        ;;
+    esac
+done

@@ -1,0 +1,75 @@
+//! `trueflight export`: a case as a scene of another renderer, with what its pixels must be.
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use crate::export::{self, ExportError, Target};
+use crate::harness::{Catalogue, Source, suite};
+use clap::{Args, ValueEnum};
+
+use super::{Console, output};
+
+/// Arguments of `export`.
+#[derive(Debug, Args)]
+pub struct Arguments {
+    /// A case file, or the name of a built-in case
+    #[arg(value_name = "CASE")]
+    case: String,
+    /// Who renders it
+    #[arg(long, value_enum, value_name = "RENDERER")]
+    to: Renderer,
+    /// Folder for the scene, its field, truth.json and case.toml
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// Cells along the longest side of a field that is sampled [default: 32 in space, 256 along a line]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=512))]
+    cells: Option<u16>,
+}
+
+/// Whom scenes are written for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Renderer {
+    /// Mitsuba 3
+    Mitsuba,
+    /// pbrt-v4
+    Pbrt,
+}
+
+/// Writes the scene, prints what its pixels must be.
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    let name = &arguments.case;
+    let path = PathBuf::from(name);
+    let source = match suite::find(name) {
+        Some(source) if !path.exists() => Ok(source),
+        _ => Source::read(&path),
+    };
+    let target = match arguments.to {
+        Renderer::Mitsuba => Target::Mitsuba,
+        Renderer::Pbrt => Target::Pbrt,
+    };
+    let cells = arguments.cells.map(usize::from);
+    let exported = source
+        .map_err(ExportError::Case)
+        .and_then(|source| export::export(catalogue, &source, target, cells, &arguments.out));
+    let exported = match exported {
+        Ok(exported) => exported,
+        Err(ExportError::Case(error)) => {
+            return Err(output::mistakes(&[error], console, "case file(s); nothing was written"));
+        }
+        Err(error) => return Err(error.into()),
+    };
+    if console.quiet {
+        return Ok(0);
+    }
+    let mut text = String::new();
+    for question in &exported.truth.questions {
+        let export::truth::Question { name, scene, mean, error, .. } = question;
+        let _ = writeln!(text, "{scene}: {name} {mean} ± {error:.1e}");
+    }
+    for note in &exported.truth.notes {
+        let _ = writeln!(text, "note: {note}");
+    }
+    let _ = writeln!(text, "{} files in {}", exported.files.len(), arguments.out.display());
+    output::print(&text)?;
+    Ok(0)
+}

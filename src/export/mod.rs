@@ -1,0 +1,157 @@
+//! Cases as scenes of other renderers, with what their pixels must be on average. Floor 6.
+//!
+//! ```text
+//! case file → scene (what is rendered) → case.toml (the same field, for theory) → truth.json
+//!                                      → scene files of the renderer
+//! ```
+//!
+//! A renderer reads a field as samples in single precision. The truth that is written is that of these samples,
+//! read as the renderer reads them, and not of the field that they were taken from. All numbers of a scene
+//! are rounded to single precision before theory sees them.
+//!
+//! Files are made in a temporary folder and moved when all are there.
+
+pub mod error;
+pub mod mitsuba;
+pub mod pbrt;
+pub mod reading;
+pub mod sampled;
+pub mod scene;
+pub mod theory;
+pub mod truth;
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+pub use error::ExportError;
+use scene::Scene;
+use truth::Truth;
+
+use crate::files;
+use crate::harness::{Catalogue, Source};
+
+/// A renderer that scenes are written for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Target {
+    /// Mitsuba 3.
+    Mitsuba,
+    /// pbrt-v4.
+    Pbrt,
+}
+
+impl Target {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mitsuba => "mitsuba",
+            Self::Pbrt => "pbrt",
+        }
+    }
+
+    /// How its grids are read beyond their outermost samples, in words of `trueflight explain grid`.
+    pub fn border(self) -> &'static str {
+        match self {
+            Self::Mitsuba => "clamp",
+            Self::Pbrt => "zero",
+        }
+    }
+}
+
+/// What was written.
+#[derive(Debug)]
+pub struct Exported {
+    /// The files, in the folder asked for.
+    pub files: Vec<PathBuf>,
+    /// What `truth.json` says.
+    pub truth: Truth,
+}
+
+/// Writes a case of a catalogue as a scene into a folder, which is made if it is not there.
+///
+/// `cells` is the number of cells along the longest side of a field that is sampled; without it 32 in space and
+/// 256 along a line. A grid keeps its own.
+///
+/// # Errors
+///
+/// A case that is wrong, that the target cannot show, or whose answer theory does not know, and files that cannot be
+/// written. Nothing is left behind then.
+pub fn export(
+    catalogue: &Catalogue,
+    source: &Source,
+    target: Target,
+    cells: Option<usize>,
+    out: &Path,
+) -> Result<Exported, ExportError> {
+    let scene = reading::read(catalogue, source, target, cells)?;
+    let was_there = out.exists();
+    let written = write(&scene, out);
+    if written.is_err() && !was_there {
+        // What was made for the files goes with them; where that fails nothing worse has happened.
+        let _ = fs::remove_dir(out);
+    }
+    written
+}
+
+/// Writes a scene into a folder, all of it or nothing.
+fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
+    let io = |path: &Path| {
+        let path = path.to_owned();
+        move |source| ExportError::Write { path, source }
+    };
+    fs::create_dir_all(out).map_err(io(out))?;
+    let stage = tempfile::Builder::new().prefix(".trueflight-").tempdir_in(out).map_err(io(out))?;
+    let mut names = Vec::new();
+    let mut put = |name: String, bytes: &[u8]| {
+        let written = fs::write(stage.path().join(&name), bytes).map_err(io(&out.join(&name)));
+        names.push(name);
+        written
+    };
+    if let Some(grid) = scene.grid() {
+        put(sampled::FILE.into(), &grid.vol())?;
+    }
+    put(theory::FILE.into(), theory::case(scene).as_bytes())?;
+    let truth = truth::of(scene, &theory::ask(scene, stage.path())?);
+    for (question, view) in truth.questions.iter().zip(&scene.views) {
+        let text = match scene.target {
+            Target::Mitsuba => mitsuba::text(scene, view),
+            Target::Pbrt => pbrt::text(scene, view),
+        };
+        put(question.scene.clone(), text.as_bytes())?;
+    }
+    put(truth::FILE.into(), truth.json()?.as_bytes())?;
+    move_all(stage.path(), out, &names)?;
+    Ok(Exported { files: names.iter().map(|name| out.join(name)).collect(), truth })
+}
+
+/// Moves what is complete to where it belongs; `truth.json`, which a client reads first, comes last.
+fn move_all(stage: &Path, out: &Path, names: &[String]) -> Result<(), ExportError> {
+    let io = |name: &String| {
+        let path = out.join(name);
+        move |source| ExportError::Write { path, source }
+    };
+    for name in names {
+        files::writable(&out.join(name)).map_err(io(name))?;
+    }
+    for name in names {
+        let bytes = fs::read(stage.join(name)).map_err(io(name))?;
+        files::replace(&out.join(name), &bytes).map_err(io(name))?;
+    }
+    Ok(())
+}
+
+/// The nearest number of single precision, which is what renderers compute with.
+#[allow(clippy::cast_possible_truncation)] // that is what it is for
+pub fn single(x: f64) -> f64 {
+    f64::from(x as f32)
+}
+
+impl Scene {
+    /// The name of a scene file.
+    fn file(&self, view: &scene::View) -> String {
+        let ending = match self.target {
+            Target::Mitsuba => "xml",
+            Target::Pbrt => "pbrt",
+        };
+        format!("{}.{ending}", view.name)
+    }
+}

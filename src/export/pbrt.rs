@@ -1,0 +1,147 @@
+//! Scenes of pbrt-v4.
+//!
+//! Grids are `uniformgrid` media, which are zero beyond the box: between the outermost samples and its faces σ_t falls
+//! to half, and `truth.json` is of that. Lights have the colour (1, 1, 1). pbrt draws wavelengths for each sample, so
+//! that a sample has a colour and a law of its own: only its mean is known.
+//!
+//! Source: M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 4th edition (2023), and the description
+//! of its scene format.
+
+use std::fmt::Write;
+
+use super::mitsuba::number;
+use super::scene::{Body, Light, Scene, View};
+use crate::geometry::{Aabb, Point};
+use crate::phase::Phase;
+
+/// Scatterings of a path that is not meant to end.
+const DEEP: u32 = 1_000_000;
+
+/// The text of a scene file.
+pub fn text(scene: &Scene, view: &View) -> String {
+    let ([_, up, onward], half) = (scene.axes(), number(scene.aperture()));
+    let mut text = format!(
+        "LookAt {} {} {}\n\
+         Camera \"orthographic\" \"float screenwindow\" [ -{half} {half} -{half} {half} ]\n\
+         Film \"rgb\" \"string filename\" [ \"{}.exr\" ] \"integer xresolution\" [ 1024 ] \"integer yresolution\" \
+         [ 1024 ] \"bool savefp16\" [ false ]\n\
+         PixelFilter \"box\" \"float xradius\" [ 0.5 ] \"float yradius\" [ 0.5 ]\n\
+         Sampler \"independent\" \"integer pixelsamples\" [ 1 ] \"integer seed\" [ 1 ]\n\
+         Integrator \"volpath\" \"integer maxdepth\" [ {} ]\n",
+        triple(scene.eye),
+        triple(scene.eye + onward),
+        triple(up),
+        view.name,
+        scene.scatterings.unwrap_or(DEEP),
+    );
+    if scene.is_inside {
+        // A camera is in the medium that stands before it.
+        let first = format!("{}MediumInterface \"\" \"medium\"\n", medium(scene));
+        text = text.replacen("Camera ", &(first + "Camera "), 1);
+    }
+    text.push_str("WorldBegin\n");
+    if !scene.is_inside {
+        text.push_str(&medium(scene));
+    }
+    light(scene, view.light, &mut text);
+    text.push_str("AttributeBegin\nMaterial \"interface\"\nMediumInterface \"medium\" \"\"\n");
+    match &scene.body {
+        Body::Grid(grid) => text.push_str(&cuboid(grid.bounds)),
+        Body::Ball { centre, radius, .. } => text.push_str(&ball(*centre, *radius)),
+    }
+    text + "AttributeEnd\n"
+}
+
+fn triple(point: Point) -> String {
+    point.0.map(number).join(" ")
+}
+
+/// A spectrum that is the same everywhere.
+fn even(name: &str, x: f64) -> String {
+    format!("\"spectrum {name}\" [ 200 {0} 900 {0} ]", number(x))
+}
+
+fn medium(scene: &Scene) -> String {
+    let lobe = match scene.phase {
+        Phase::HenyeyGreenstein(lobe) => lobe.g(),
+        _ => 0.0,
+    };
+    let mut text = "MakeNamedMedium \"medium\" ".to_owned();
+    let a = scene.albedo;
+    let [absorbs, scatters] = match &scene.body {
+        Body::Grid(grid) => {
+            let [nx, ny, nz] = grid.size;
+            let Aabb { low, high } = grid.bounds;
+            let values: Vec<String> = grid.values.iter().map(|&x| number(f64::from(x))).collect();
+            let _ = write!(
+                text,
+                "\"string type\" \"uniformgrid\" \"integer nx\" [ {nx} ] \"integer ny\" [ {ny} ] \"integer nz\" \
+                 [ {nz} ]\n  \"point3 p0\" [ {} ] \"point3 p1\" [ {} ]\n  \"float density\" [ {} ]\n  ",
+                triple(low),
+                triple(high),
+                values.join(" "),
+            );
+            [1.0 - a, a]
+        }
+        Body::Ball { extinction, .. } => {
+            text.push_str("\"string type\" \"homogeneous\"\n  ");
+            [(1.0 - a) * extinction, a * extinction]
+        }
+    };
+    let (absorbs, scatters) = (even("sigma_a", absorbs), even("sigma_s", scatters));
+    let _ = writeln!(text, "{absorbs} {scatters} \"float g\" [ {} ]", number(lobe));
+    text
+}
+
+fn cuboid(Aabb { low, high }: Aabb) -> String {
+    let corner = |n: usize| Point(std::array::from_fn(|axis| [low, high][n >> axis & 1].0[axis]));
+    let corners: Vec<String> = (0..8).map(corner).map(triple).collect();
+    format!(
+        "Shape \"trianglemesh\" \"point3 P\" [ {} ]\n  \"integer indices\" [ 0 2 3 0 3 1  4 5 7 4 7 6  0 1 5 0 5 4  \
+         2 6 7 2 7 3  0 4 6 0 6 2  1 3 7 1 7 5 ]\n",
+        corners.join("  ")
+    )
+}
+
+fn ball(centre: Point, radius: f64) -> String {
+    format!(
+        "Translate {}\nShape \"sphere\" \"float radius\" [ {} ]\n",
+        triple(centre),
+        number(radius)
+    )
+}
+
+fn light(scene: &Scene, light: Light, text: &mut String) {
+    let lines = match light {
+        Light::Everywhere => "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n".to_owned(),
+        Light::Point { position, power } => {
+            let within = match &scene.body {
+                Body::Grid(_) => inside(scene.bounds(), position),
+                Body::Ball { centre, radius, .. } => (position - *centre).norm() <= *radius,
+            };
+            let medium = if within { "MediumInterface \"\" \"medium\"\n" } else { "" };
+            format!(
+                "AttributeBegin\n{medium}LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"float scale\" [ {} ] \"point3 from\" \
+                 [ {} ]\nAttributeEnd\n",
+                number(power / (4.0 * std::f64::consts::PI)),
+                triple(position),
+            )
+        }
+        Light::Core { radius } => {
+            let Body::Ball { centre, .. } = scene.body else { return };
+            format!(
+                "AttributeBegin\nMediumInterface \"\" \"medium\"\nMaterial \"diffuse\" {}\n\
+                 AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n{}AttributeEnd\n",
+                even("reflectance", 0.0),
+                ball(centre, radius)
+            )
+        }
+        // Slabs stand between mirrors, which pbrt has not: they are refused.
+        Light::Above | Light::Below => return,
+    };
+    text.push_str(&lines);
+}
+
+fn inside(Aabb { low, high }: Aabb, place: Point) -> bool {
+    (0..3).all(|axis| (low.0[axis]..=high.0[axis]).contains(&place.0[axis]))
+}

@@ -1,0 +1,188 @@
+//! `truth.json`: what the pixels of each picture must be.
+//!
+//! ```text
+//! version              1; it grows when a key changes its meaning
+//! case, problem        what was exported
+//! target               "mitsuba" or "pbrt"
+//! camera_in_medium     whether the ray begins within the medium
+//! field                file, size, low, high, interpolation, border and peak of the samples; null for a ball
+//! notes                what of the case is not in the scene, in sentences
+//! questions            one for each picture:
+//!   name, scene        what is sought, and the scene file
+//!   mean, error        the mean of one sample of any pixel, and a bound on the error of this number
+//!   rounding           what single precision may do to a sample, relative to the mean: an allowance, no bound
+//!   without_emitter_sampling, with_emitter_sampling
+//!                      the law of one sample, for integrators that find lights by scattering only, and for those
+//!                      that cast shadow rays: null where light cannot be found that way, and for pbrt, whose
+//!                      samples have wavelengths
+//!     low, high        where all samples lie; null for no end
+//!     variance, variance_error, kurtosis
+//!                      of an integrator that tracks through the largest sample, and weights by the albedo;
+//!                      variance_error is relative; null where theory does not know
+//! ```
+
+use serde::{Deserialize, Serialize};
+
+use super::Target;
+use super::error::ExportError;
+use super::scene::{Light, Scene};
+use crate::theory::Prediction;
+
+/// The name of the file.
+pub const FILE: &str = "truth.json";
+/// What its keys mean.
+pub const VERSION: u32 = 1;
+/// Rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
+const ROUNDINGS: f64 = 16.0;
+
+/// What pixels must be.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Truth {
+    /// What the keys mean.
+    pub version: u32,
+    /// The name of the case.
+    pub case: String,
+    /// The name of its problem.
+    pub problem: String,
+    /// The renderer.
+    pub target: String,
+    /// Whether the camera is in the medium.
+    pub camera_in_medium: bool,
+    /// The samples.
+    pub field: Option<Samples>,
+    /// What of the case is not in the scene.
+    pub notes: Vec<String>,
+    /// One for each picture.
+    pub questions: Vec<Question>,
+}
+
+/// The samples of a field.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Samples {
+    /// The file.
+    pub file: String,
+    /// How many along x, y and z.
+    pub size: [usize; 3],
+    /// A corner of the box.
+    pub low: [f64; 3],
+    /// The other corner.
+    pub high: [f64; 3],
+    /// `"trilinear"` or `"nearest"`.
+    pub interpolation: String,
+    /// `"clamp"` or `"zero"`: what is beyond the outermost samples.
+    pub border: String,
+    /// The largest, 1/length.
+    pub peak: f64,
+}
+
+/// What the samples of a picture are.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Question {
+    /// What is sought.
+    pub name: String,
+    /// The scene file.
+    pub scene: String,
+    /// The mean of one sample.
+    pub mean: f64,
+    /// A bound on the error of this number.
+    pub error: f64,
+    /// What single precision may do to a sample, relative to the mean.
+    pub rounding: f64,
+    /// Of integrators that find lights by scattering only.
+    pub without_emitter_sampling: Option<Law>,
+    /// Of integrators that cast shadow rays.
+    pub with_emitter_sampling: Option<Law>,
+}
+
+/// What is known of the law of one sample.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Law {
+    /// No sample is below.
+    pub low: Option<f64>,
+    /// No sample is above.
+    pub high: Option<f64>,
+    /// Its variance.
+    pub variance: Option<f64>,
+    /// A bound on the relative error of the variance.
+    pub variance_error: Option<f64>,
+    /// Its kurtosis.
+    pub kurtosis: Option<f64>,
+}
+
+impl Truth {
+    /// The text of the file.
+    ///
+    /// # Errors
+    ///
+    /// The encoder gave up.
+    pub fn json(&self) -> Result<String, ExportError> {
+        Ok(serde_json::to_string_pretty(self)? + "\n")
+    }
+}
+
+/// What theory's prediction of the exported case says of the pictures.
+pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
+    let diagonal = (scene.bounds().high - scene.bounds().low).norm();
+    let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
+    let questions = scene.views.iter().zip(&prediction.channels).map(|(view, channel)| {
+        let [without, with] = laws(scene, view.light);
+        let known = channel.moments.filter(|moments| moments.variance().is_finite());
+        let fill = |law: Law| Law {
+            variance: law.variance.or(known.map(|moments| moments.variance())),
+            variance_error: law.variance_error.or(known.and_then(|_| channel.moments_error())),
+            kurtosis: known.and_then(|moments| moments.kurtosis()).filter(|k| k.is_finite()),
+            ..law
+        };
+        let is_of = |law: Option<(Law, bool)>| {
+            law.map(|(law, is_known)| if is_known { fill(law) } else { law })
+        };
+        Question {
+            name: view.name.to_owned(),
+            scene: scene.file(view),
+            mean: channel.truth.value,
+            error: channel.truth.error,
+            rounding,
+            without_emitter_sampling: is_of(without),
+            with_emitter_sampling: is_of(with),
+        }
+    });
+    let field = scene.grid().map(|grid| Samples {
+        file: super::sampled::FILE.into(),
+        size: grid.size,
+        low: grid.bounds.low.0,
+        high: grid.bounds.high.0,
+        interpolation: if grid.nearest { "nearest" } else { "trilinear" }.into(),
+        border: scene.target.border().into(),
+        peak: grid.peak(),
+    });
+    Truth {
+        version: VERSION,
+        case: scene.case.clone(),
+        problem: scene.problem.to_owned(),
+        target: scene.target.name().to_owned(),
+        camera_in_medium: scene.is_inside,
+        field,
+        notes: scene.notes.clone(),
+        questions: questions.collect(),
+    }
+}
+
+/// Where samples lie without and with shadow rays, and whether theory's moments are theirs.
+///
+/// Without shadow rays a sample is `aⁿ` or nothing. With them and weights that add up to at most 1, every
+/// scattering brings at most `aⁿ`: `Σ aⁿ = 1/(1 − a)`.
+fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
+    let within = |high: Option<f64>| Law { low: Some(0.0), high, ..Law::default() };
+    let sure = Law { variance: Some(0.0), variance_error: Some(0.0), ..Law::default() };
+    let sum = (scene.albedo < 1.0).then(|| 1.0 / (1.0 - scene.albedo));
+    if scene.target == Target::Pbrt {
+        return [None, None];
+    }
+    match (scene.problem, light) {
+        ("transmittance", _) => [Some((within(Some(1.0)), true)); 2],
+        ("furnace", _) => [Some((sure, false)), Some((within(None), false))],
+        (_, Light::Point { .. }) => [None, Some((within(None), true))],
+        ("slab", _) => [Some((within(Some(1.0)), true)), Some((within(sum), false))],
+        _ => [Some((within(Some(1.0)), false)), Some((within(sum), false))],
+    }
+}

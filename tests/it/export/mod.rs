@@ -1,0 +1,60 @@
+//! Cases as scenes of other renderers: their files, their truth, and what cannot be exported.
+
+mod field;
+mod pbrt;
+mod refusals;
+mod scenes;
+
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+use trueflight::export::{self, ExportError, Exported, Target};
+use trueflight::harness::Source;
+
+/// A case of the repository.
+fn source(name: &str) -> Source {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases").join(format!("{name}.toml"));
+    Source::read(&path).expect("a case")
+}
+
+/// An exported case and its folder.
+struct Scene {
+    folder: TempDir,
+    exported: Exported,
+}
+
+impl Scene {
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn text(&self, name: &str) -> String {
+        std::fs::read_to_string(self.path(name)).expect("a text")
+    }
+}
+
+/// Exports a case of the repository.
+fn scene(name: &str, target: Target, cells: Option<usize>) -> Result<Scene, ExportError> {
+    let folder = tempfile::tempdir().expect("a folder");
+    let exported = export::export(
+        &trueflight::Catalogue::builtin(),
+        &source(name),
+        target,
+        cells,
+        folder.path(),
+    )?;
+    Ok(Scene { folder, exported })
+}
+
+/// One case of every kind that is exported.
+const CASES: &[&str] = &[
+    "transmittance/eq21-overview",
+    "transmittance/grid-trilinear-centres",
+    "furnace/eq21",
+    "furnace/grid",
+    "furnace/known-bugs",
+    "slab/known-bugs",
+    "single-scattering/grid",
+    "single-scattering/known-bugs",
+    "sphere/black-light",
+];
