@@ -223,11 +223,9 @@ impl Arguments {
     /// The exit code.
     fn code(&self, verdict: Verdict) -> u8 {
         match (verdict, self.inconclusive) {
-            (Verdict::Fail, _) => 1,
-            (Verdict::Pass, _) => 0,
-            (_, None) => 3,
-            (_, Some(Inconclusive::Fail)) => 1,
-            (_, Some(Inconclusive::Pass)) => 0,
+            (Verdict::Fail, _) | (_, Some(Inconclusive::Fail)) if verdict != Verdict::Pass => 1,
+            (Verdict::Pass, _) | (_, Some(Inconclusive::Pass)) => 0,
+            _ => 3,
         }
     }
 

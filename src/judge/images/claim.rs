@@ -105,7 +105,9 @@ impl Pixels {
         for pixel in truth.chunks_exact(size.channels) {
             units.iter_mut().zip(pixel).for_each(|(unit, x)| *unit += x.abs());
         }
-        units.iter_mut().for_each(|unit| *unit /= size.pixels() as f64);
+        for unit in &mut units {
+            *unit /= size.pixels() as f64;
+        }
         if units.iter().all(|&unit| unit == 0.0) && !has_tolerance {
             return Err(ImageError::NoUnit);
         }

@@ -22,7 +22,7 @@ pub struct Judgement {
     pub passes: usize,
     /// How large each is.
     pub size: Size,
-    /// Rows and columns of a tile; fewer at the right and at the foot.
+    /// Rows and columns of the smallest tiles; fewer at the right and at the foot.
     pub tile: usize,
     /// The first value that refutes the claim by itself.
     pub refuted_by: Option<Refuted>,
@@ -38,7 +38,7 @@ pub struct Judgement {
     pub variance: Option<Variance>,
     /// The whole picture, each channel.
     pub whole: Vec<Tile>,
-    /// Every tile, row after row from the top, each with all its channels.
+    /// Every tile, the smallest first, row after row from the top, each with all its channels.
     #[serde(skip)]
     pub tiles: Vec<Tile>,
     /// How many tiles there are, and how many of them pass, fail and are listed.
@@ -117,13 +117,15 @@ pub struct Variance {
 /// A rectangle of pixels in one channel.
 #[derive(Debug, Clone, serde::Serialize)]
 pub struct Tile {
+    /// Rows and columns of tiles of its kind.
+    pub size: usize,
     /// The first row, from 0 at the top.
     pub row: usize,
     /// The first column, from 0.
     pub column: usize,
-    /// How many rows.
+    /// How many rows it has.
     pub height: usize,
-    /// How many columns.
+    /// How many columns it has.
     pub width: usize,
     /// The channel, from 0.
     pub channel: usize,

@@ -7,7 +7,7 @@
 //! passes      independent of each other (`order`, `repeats`), at α_d/3 each:       else inconclusive
 //! pixels      of a pass independent of each other (`neighbours`), at α_d/3:        else averages of passes
 //! variance    not larger than claimed (`spread`), at α/5:                          else fail
-//! tiles       the mean of each, in each channel (`tiles`), by Holm at 3α/5:        else fail
+//! tiles       of N, 2N, 4N … pixels: the mean of each, in each channel (`tiles`), by Holm at 3α/5: else fail
 //! whole       the mean of the picture, in each channel, at α/5:                    else fail
 //! pass        the whole and every tile exclude a bias of ε, with chance β each; s²/V is 1.1 at most
 //! ```
@@ -71,7 +71,7 @@ const WORST: usize = 5;
 /// What is wanted of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Wanted {
-    /// Rows and columns of a tile; without it the least power of 2 that makes 2048 values of all passes.
+    /// Rows and columns of the smallest tiles; without it the least power of 2 that makes 2048 values of all passes.
     pub tile: Option<usize>,
     /// ε of the whole and of each tile, in units of the picture's mean truth; absolute where that is 0.
     /// Without it, what the passes can see, of the whole 5 % at most.
@@ -139,7 +139,14 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         count: parts.len(),
     };
     let whole: Vec<Part> = (0..size.channels)
-        .map(|channel| Part { row: 0, column: 0, height: size.rows, width: size.columns, channel })
+        .map(|channel| Part {
+            size: size.rows.max(size.columns),
+            row: 0,
+            column: 0,
+            height: size.rows,
+            width: size.columns,
+            channel,
+        })
         .collect();
     let whole_terms = Terms { is_capped: true, count: 1, ..terms };
     let (mut tiles, mut whole) = match refuting {
@@ -185,19 +192,17 @@ fn all(stack: &Stack, pixels: &Pixels, parts: &[Part], terms: Terms) -> Vec<Tile
     parallel::map(parts, |&part| tiles::tile(stack, pixels, part, terms))
 }
 
-/// The tiles row after row, each with all its channels.
-fn parts(size: Size, tile: usize) -> Vec<Part> {
+/// The tiles, the smallest first, row after row, each with all its channels. Larger ones find what is spread out.
+fn parts(Size { rows, columns, channels }: Size, tile: usize) -> Vec<Part> {
+    let sizes = std::iter::successors(Some(tile), |size| Some(2 * size));
     let mut parts = Vec::new();
-    for row in (0..size.rows).step_by(tile) {
-        for column in (0..size.columns).step_by(tile) {
-            let (height, width) = (tile.min(size.rows - row), tile.min(size.columns - column));
-            parts.extend((0..size.channels).map(|channel| Part {
-                row,
-                column,
-                height,
-                width,
-                channel,
-            }));
+    for size in sizes.take_while(|&size| size == tile || size < rows.max(columns)) {
+        for row in (0..rows).step_by(size) {
+            for column in (0..columns).step_by(size) {
+                let (height, width) = (size.min(rows - row), size.min(columns - column));
+                let part = |channel| Part { size, row, column, height, width, channel };
+                parts.extend((0..channels).map(part));
+            }
         }
     }
     parts
@@ -229,7 +234,7 @@ fn refuted(stack: &Stack, pixels: &Pixels) -> (Option<Refuted>, u64) {
     (first, count)
 }
 
-/// ln(3/α_d).
+/// `ln(3/α_d)`.
 fn limit(alpha: f64) -> f64 {
     (3.0 / alpha.max(LEAST)).ln()
 }

@@ -43,9 +43,10 @@ pub(super) fn neighbours(stack: &Stack) -> Neighbours {
             }
         }
     }
-    let stronger = if questions[0].ln_e() > questions[1].ln_e() { 0 } else { 1 };
+    let [row, column] = &questions;
+    let stronger = if row.ln_e() > column.ln_e() { row } else { column };
     let ln_e = ln_mean_exp(&questions.map(|signs| signs.ln_e()));
-    Neighbours { ln_e, correlation: questions[stronger].correlation() }
+    Neighbours { ln_e, correlation: stronger.correlation() }
 }
 
 #[cfg(test)]

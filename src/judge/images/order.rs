@@ -123,9 +123,13 @@ fn gram(stack: &Stack) -> Vec<f64> {
 fn standardise(values: &mut [f64]) -> bool {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
-    values.iter_mut().for_each(|x| *x -= mean);
+    for x in &mut *values {
+        *x -= mean;
+    }
     let deviation = (values.iter().map(|x| x * x).sum::<f64>() / n).sqrt();
-    values.iter_mut().for_each(|x| *x /= deviation);
+    for x in values {
+        *x /= deviation;
+    }
     deviation.is_finite() && deviation > 1e-14 * mean.abs()
 }
 

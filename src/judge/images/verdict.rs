@@ -32,11 +32,10 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
     }
     if judgement.counts.fail > 0 {
         let (fail, tiles) = (judgement.counts.fail, judgement.counts.tiles);
-        let what = if judgement.tile == 1 { "pixels" } else { "tiles" };
         let worst = judgement.worst.first().map_or(String::new(), |worst| {
             format!("; the worst, {}: {}", place(judgement, worst), off(judgement, worst))
         });
-        failing.push(format!("{fail} of {tiles} {what} are off{worst}"));
+        failing.push(format!("{fail} of {tiles} tiles are off{worst}"));
     }
     if !failing.is_empty() {
         return (Verdict::Fail, failing.join("; "));
@@ -75,28 +74,25 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     }
     let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
     if let Some(whole) = judgement.whole.iter().find(undecided) {
-        open.push(format!(
-            "the passes do not show the picture's mean to {}; render more of them",
-            percent(whole)
-        ));
+        open.push(format!("the picture may be off by {} or more; render more passes", bias(whole)));
     }
     let count = judgement.tiles.iter().filter(undecided).count();
     if let Some(tile) = judgement.tiles.iter().find(undecided) {
         open.push(format!(
-            "{count} of {} tiles of {} × {} pixels are not shown to {} of the picture's mean; give \
-             more passes, a larger --tile or a wider --tolerance",
+            "{count} of {} tiles may be off, the first, {}, by {} or more; render more passes, or give a larger \
+             --tile or a wider --tolerance",
             judgement.counts.tiles,
-            judgement.tile,
-            judgement.tile,
-            percent(tile)
+            place(judgement, tile),
+            bias(tile)
         ));
     }
     open
 }
 
-fn percent(tile: &Tile) -> String {
-    tile.tolerance.map_or("any tolerance".to_owned(), |tolerance| {
-        format!("within {:.2} %", 100.0 * tolerance)
+/// ε in words.
+fn bias(tile: &Tile) -> String {
+    tile.tolerance.map_or("anything".to_owned(), |tolerance| {
+        format!("{:.2} % of the picture's mean", 100.0 * tolerance)
     })
 }
 

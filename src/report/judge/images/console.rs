@@ -72,7 +72,7 @@ fn tiles(judgement: &Judgement) -> String {
     let (counts, size) = (judgement.counts, judgement.tile);
     let widest = judgement.tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
     format!(
-        "{} of {size} × {size} pixels: {} pass (ε up to {} of the picture's mean), {} fail, {} listed",
+        "{} of {size} × {size} pixels and larger: {} pass (ε up to {} of the picture's mean), {} fail, {} listed",
         counts.tiles,
         counts.pass,
         percent(widest),
@@ -82,8 +82,9 @@ fn tiles(judgement: &Judgement) -> String {
 }
 
 fn worst_line(judgement: &Judgement, tile: &Tile) -> String {
-    let (row, column, channel) = (tile.row, tile.column, channel(judgement, tile));
-    format!("row {row}, column {column}: {channel}{}: {}", numbers(tile), tile.verdict.word())
+    let Tile { row, column, height, width, .. } = tile;
+    let (channel, word) = (channel(judgement, tile), tile.verdict.word());
+    format!("{height} × {width} at row {row}, column {column}: {channel}{}: {word}", numbers(tile))
 }
 
 fn dependence(found: &Dependence, evidence: &str, untested: &str) -> String {

@@ -7,7 +7,8 @@ use crate::report::ReportError;
 use crate::report::columns::table;
 use crate::report::number::exact;
 
-const HEADER: [&str; 16] = [
+const HEADER: [&str; 17] = [
+    "size",
     "row",
     "column",
     "height",
@@ -35,10 +36,11 @@ pub fn csv(judgement: &Judgement) -> Result<String, ReportError> {
     table("tiles", HEADER, judgement.tiles.iter().map(row))
 }
 
-fn row(tile: &Tile) -> [String; 16] {
+fn row(tile: &Tile) -> [String; 17] {
     let optional = |x: Option<f64>| x.map(exact).unwrap_or_default();
     let is_failing = tile.verdict == Verdict::Fail;
     [
+        tile.size.to_string(),
         tile.row.to_string(),
         tile.column.to_string(),
         tile.height.to_string(),

@@ -76,7 +76,8 @@ fn facts(judgement: &Judgement) -> String {
         String::new()
     };
     format!(
-        "standard errors from the truth, {} passes, tiles of {tile} × {tile} pixels; {} of {} fail{dots}",
+        "standard errors from the truth, {} passes, tiles of {tile} × {tile} pixels; {} of {}, larger ones too, \
+         fail{dots}",
         judgement.passes, counts.fail, counts.tiles
     )
 }
@@ -93,7 +94,8 @@ fn map(judgement: &Judgement, channel: usize, at: [f64; 2], size: [f64; 2]) -> I
     let dot = dot(judgement);
     let columns = judgement.size.columns.div_ceil(dot);
     let mut shown = vec![0.0_f64; columns * judgement.size.rows.div_ceil(dot)];
-    for tile in judgement.tiles.iter().filter(|tile| tile.channel == channel) {
+    let is_shown = |tile: &&Tile| tile.channel == channel && tile.size == judgement.tile;
+    for tile in judgement.tiles.iter().filter(is_shown) {
         // What has no number differs where nothing should.
         let z = tile.z.unwrap_or(f64::INFINITY.copysign(tile.mean - tile.truth));
         for row in tile.row / dot..=(tile.row + tile.height - 1) / dot {
