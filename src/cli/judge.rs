@@ -222,10 +222,15 @@ impl Arguments {
 
     /// The exit code.
     fn code(&self, verdict: Verdict) -> u8 {
-        match (verdict, self.inconclusive) {
-            (Verdict::Fail, _) | (_, Some(Inconclusive::Fail)) if verdict != Verdict::Pass => 1,
-            (Verdict::Pass, _) | (_, Some(Inconclusive::Pass)) => 0,
-            _ => 3,
+        let open = match self.inconclusive {
+            None => 3,
+            Some(Inconclusive::Fail) => 1,
+            Some(Inconclusive::Pass) => 0,
+        };
+        match verdict {
+            Verdict::Fail => 1,
+            Verdict::Pass => 0,
+            _ => open,
         }
     }
 

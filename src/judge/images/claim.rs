@@ -75,7 +75,7 @@ impl Pixels {
     pub(super) fn new(
         claim: &Claim,
         stack: &Stack,
-        has_tolerance: bool,
+        tolerance: Option<f64>,
     ) -> Result<Self, ImageError> {
         let size = stack.size;
         if !(claim.rounding >= 0.0 && claim.rounding.is_finite()) {
@@ -108,12 +108,18 @@ impl Pixels {
         for unit in &mut units {
             *unit /= size.pixels() as f64;
         }
-        if units.iter().all(|&unit| unit == 0.0) && !has_tolerance {
+        if units.iter().all(|&unit| unit == 0.0) && tolerance.is_none() {
             return Err(ImageError::NoUnit);
         }
         units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
         let rounding = claim.rounding.max(stack.rounding).max(claim.truth.rounding());
-        Ok(Self { truth, variance, range: claim.range, rounding, units })
+        let found = Self { truth, variance, range: claim.range, rounding, units };
+        let of = |i: usize| found.floor(i) / found.units[i % size.channels];
+        let floor = (0..size.values()).map(of).fold(0.0, f64::max);
+        match tolerance.filter(|&tolerance| tolerance < 4.0 * floor) {
+            Some(tolerance) => Err(ImageError::Blurred { tolerance, floor }),
+            None => Ok(found),
+        }
     }
 
     /// What rounding may add to a value.

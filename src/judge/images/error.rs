@@ -102,6 +102,17 @@ pub enum ImageError {
         /// What it should be.
         wanted: &'static str,
     },
+    /// A tolerance that rounding would eat.
+    #[error(
+        "a tolerance of {tolerance:e} is below 4 times what rounding may add to a pixel, {floor:.1e} of the \
+         picture's mean; give a wider tolerance, a smaller rounding, or images of more digits"
+    )]
+    Blurred {
+        /// What was asked.
+        tolerance: f64,
+        /// The largest δ.
+        floor: f64,
+    },
     /// A truth of 0 everywhere without a tolerance.
     #[error(
         "a truth of 0 everywhere has no relative tolerance; give a tolerance, which is then absolute"

@@ -119,7 +119,7 @@ impl Wanted {
 /// What is claimed or wanted makes no sense, or is of another size than the passes.
 pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement, ImageError> {
     wanted.check()?;
-    let pixels = Pixels::new(claim, stack, wanted.tolerance.is_some())?;
+    let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
     let (size, alpha, tile) = (stack.size, wanted.alpha, wanted.tile(stack));
     let (refuted_by, refuting) = refuted(stack, &pixels);
     let neighbours = neighbours_of(stack, alpha);

@@ -55,6 +55,14 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
                 .to_owned(),
         ];
     }
+    let is_endless = claim.range.is_some_and(|[low, high]| !(high - low).is_finite());
+    if claim.variance.is_none() && is_endless {
+        return vec![
+            "nothing passes by a range with an infinite end: rare values that were not drawn may carry the \
+             mean; give both ends, --variance or --variance-image"
+                .to_owned(),
+        ];
+    }
     let mut open = Vec::new();
     if judgement.neighbours.is_refuted() && claim.range.is_none() {
         let rest = if judgement.tile == 1 { "" } else { ", or judge single pixels by --tile 1" };
@@ -74,12 +82,12 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     }
     let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
     if let Some(whole) = judgement.whole.iter().find(undecided) {
-        open.push(format!("the picture may be off by {} or more; render more passes", bias(whole)));
+        open.push(format!("the picture may be off {}; render more passes", bias(whole)));
     }
     let count = judgement.tiles.iter().filter(undecided).count();
     if let Some(tile) = judgement.tiles.iter().find(undecided) {
         open.push(format!(
-            "{count} of {} tiles may be off, the first, {}, by {} or more; render more passes, or give a larger \
+            "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger \
              --tile or a wider --tolerance",
             judgement.counts.tiles,
             place(judgement, tile),
@@ -91,8 +99,8 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
 
 /// ε in words.
 fn bias(tile: &Tile) -> String {
-    tile.tolerance.map_or("anything".to_owned(), |tolerance| {
-        format!("{:.2} % of the picture's mean", 100.0 * tolerance)
+    tile.tolerance.map_or("by any amount".to_owned(), |tolerance| {
+        format!("by {:.2} % of the picture's mean or more", 100.0 * tolerance)
     })
 }
 

@@ -122,6 +122,37 @@ fn all_formats_hold_the_same_numbers() {
     }
 }
 
+/// Whatever a byte becomes, and wherever a file ends, a picture is read or an error says why not.
+#[test]
+fn broken_files_are_errors() {
+    let place = Place::new(&[]);
+    let (whole, broken) = (place.path().join("whole.exr"), place.path().join("broken.exr"));
+    let (mut read, mut refused) = (0, 0);
+    for compression in [Compression::Uncompressed, Compression::ZIP16, Compression::PIZ] {
+        packed_exr(&whole, compression, Blocks::ScanLines);
+        let bytes = std::fs::read(&whole).expect("a file");
+        for index in 0..bytes.len() {
+            let flipped = [1, 0x80, 0xff].map(|bits| {
+                let mut flipped = bytes.clone();
+                flipped[index] ^= bits;
+                flipped
+            });
+            for bytes in flipped.into_iter().chain([bytes[..index].to_vec()]) {
+                std::fs::write(&broken, bytes).expect("written");
+                match picture(&broken) {
+                    Ok(_) => read += 1,
+                    Err(error) => {
+                        refused += 1;
+                        assert!(error.to_string().contains("broken.exr: "), "{error}");
+                    }
+                }
+            }
+        }
+    }
+    // Values, names and windows may be anything; sizes, kinds and ends may not.
+    assert!(read > 100 && refused > 1000, "{read} read, {refused} refused");
+}
+
 #[test]
 fn several_files_are_a_stack_as_one_array_is() {
     let values: Vec<f32> = (0..24_u8).map(f32::from).collect();
@@ -195,6 +226,10 @@ fn bad_input_is_2_with_one_clear_error() {
         (format!("{truth} --tile 0 x.npy"), "--tile"),
         (format!("{truth} --tolerance 0 x.npy"), "tolerance"),
         (format!("{truth} --rounding -1 x.npy"), "rounding"),
+        (
+            format!("{truth} --rounding 1e-3 --tolerance 2e-3 x.npy"),
+            "4 times what rounding may add",
+        ),
         (format!("{truth} --batch 2 x.npy"), "cannot be used with"),
         (format!("{truth} --junit x.npy x.npy"), "it holds images"),
         (format!("{truth} --out file x.npy"), "--out"),

@@ -192,6 +192,12 @@ fn without_grounds_nothing_is_decided_and_a_range_is_one() {
         let mut coin = |pixel| if unit(&mut rng) < p { 2.0 * truth(pixel) } else { 0.0 };
         (0..32).map(|_| (0..PIXELS).map(&mut coin).collect()).collect()
     };
+    // Values that are never negative may show that a mean is too large, and nothing else.
+    let endless = Claim { range: Some([0.0, f64::INFINITY]), ..alone.clone() };
+    assert_eq!(judged(&off, &endless, &Wanted::default()).verdict, Verdict::Fail);
+    let found = judged(&passes(9, 32, |_, _| 0.7), &endless, &Wanted::default());
+    assert_eq!(found.verdict, Verdict::Inconclusive);
+    assert!(found.reason.contains("infinite end"), "{}", found.reason);
     let ranged = Claim { range: Some([0.0, 2.5]), ..alone };
     let found = judged(&coins(1, 0.5), &ranged, &Wanted::default());
     assert_eq!(found.verdict, Verdict::Pass, "{}", found.reason);
