@@ -20,10 +20,12 @@
 //!
 //! // 64 passes of 32 × 32 pixels, each the mean of four fair coins.
 //! let size = Size { rows: 32, columns: 32, channels: 1 };
-//! let mut state = 1u64;
-//! let coins = (0..64 * size.pixels()).map(|_| {
-//!     state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-//!     f64::from((state >> 60).count_ones()) / 4.0
+//! let coins = (0..64 * size.pixels() as u64).map(|number| {
+//!     // SplitMix64.
+//!     let bits = number.wrapping_mul(0x9e37_79b9_7f4a_7c15);
+//!     let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+//!     let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+//!     f64::from((bits >> 60).count_ones()) / 4.0
 //! });
 //! let stack = Stack::new(64, size, coins.collect())?;
 //! let claim = Claim { range: Some([0.0, 1.0]), ..Claim::of_truth(Level::All(0.5)) };

@@ -56,7 +56,7 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
         ];
     }
     let is_endless = claim.range.is_some_and(|[low, high]| !(high - low).is_finite());
-    if claim.variance.is_none() && is_endless {
+    if claim.variance.is_none() && is_endless && has_spread {
         return vec![
             "nothing passes by a range with an infinite end: rare values that were not drawn may carry the \
              mean; give both ends, --variance or --variance-image"
