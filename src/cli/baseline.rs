@@ -2,12 +2,13 @@
 
 use std::path::{Path, PathBuf};
 
+use anyhow::anyhow;
+use clap::Args;
+
 use crate::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
 use crate::harness::record::Verdict;
 use crate::harness::{Case, Record};
 use crate::report::diff;
-use anyhow::anyhow;
-use clap::Args;
 
 /// Options that all commands which draw share.
 #[derive(Debug, Clone, Args)]

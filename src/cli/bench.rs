@@ -2,6 +2,14 @@
 
 use std::path::PathBuf;
 
+use anyhow::bail;
+use clap::Args;
+use fearless_simd::Level;
+
+use super::Console;
+use super::baseline::{self, Files};
+use super::output::{self, Errors, Format};
+use super::selection::{self, Experiments};
 use crate::bench::compare::compare;
 use crate::bench::comparison::Comparison;
 use crate::bench::record::Bench;
@@ -11,14 +19,6 @@ use crate::harness::Catalogue;
 use crate::harness::{Amount, Plan};
 use crate::numeric::pack;
 use crate::report::bench as page;
-use anyhow::bail;
-use clap::Args;
-use fearless_simd::Level;
-
-use super::Console;
-use super::baseline::{self, Files};
-use super::output::{self, Errors, Format};
-use super::selection::{self, Experiments};
 
 /// Arguments of `bench`.
 #[derive(Debug, Args)]

@@ -7,10 +7,6 @@ use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use crate::files;
-use crate::harness::Catalogue;
-use crate::harness::{Case, Options, Record};
-use crate::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
 use anyhow::Context;
 use clap::Args;
 
@@ -20,6 +16,10 @@ use super::output::Errors;
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
 use super::{Console, output};
+use crate::files;
+use crate::harness::Catalogue;
+use crate::harness::{Case, Options, Record};
+use crate::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
 
 /// So many draws per experiment where neither an argument nor the case says.
 const DRAWS: u64 = 400_000;

@@ -5,15 +5,15 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::Instant;
 
+use anyhow::Context;
+use indicatif::ProgressBar;
+
+use super::{Console, output};
 use crate::baseline::fingerprint;
 use crate::files;
 use crate::harness::cache::Cache;
 use crate::harness::record::Record;
 use crate::harness::{Plan, run, verdict};
-use anyhow::Context;
-use indicatif::ProgressBar;
-
-use super::{Console, output};
 
 /// The file beside the results that keeps what was drawn.
 const CACHE: &str = "draws.bin";

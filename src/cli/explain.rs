@@ -1,12 +1,12 @@
 //! `trueflight explain`: the manual page of anything in the catalogue.
 
-use crate::harness::{Catalogue, suite};
-use crate::render::gallery;
 use clap::Args;
 
 use super::Console;
 use super::list::pages;
 use super::output;
+use crate::harness::{Catalogue, suite};
+use crate::render::gallery;
 
 /// Arguments of `explain`.
 #[derive(Debug, Args)]

@@ -3,11 +3,11 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::export::{self, ExportError, Target};
-use crate::harness::{Catalogue, Source, suite};
 use clap::{Args, ValueEnum};
 
 use super::{Console, output};
+use crate::export::{self, ExportError, Target};
+use crate::harness::{Catalogue, Source, suite};
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]

@@ -1,7 +1,14 @@
-//! `trueflight judge`: the gate over the draws of another renderer.
+//! `trueflight judge`: the gate over the draws of another renderer, or over its images.
+
+mod images;
 
 use std::path::{Path, PathBuf};
 
+use anyhow::Context;
+use clap::{Args, ValueEnum};
+
+use super::verdict::Inconclusive;
+use super::{Console, USAGE, output, selection};
 use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::case::Case;
@@ -12,11 +19,7 @@ use crate::judge::judgement::Judgement;
 use crate::judge::trial::{Trial, Wanted};
 use crate::judge::{self, Choice, Column, Draws, Format};
 use crate::report::judge as report;
-use anyhow::Context;
-use clap::{Args, ValueEnum};
-
-use super::verdict::Inconclusive;
-use super::{Console, USAGE, output, selection};
+use crate::report::judge::junit::Told;
 
 /// How many draws are read of a pipe, which need not end.
 const OF_A_PIPE: u64 = 1 << 26;
@@ -25,12 +28,12 @@ const OF_A_PIPE: u64 = 1 << 26;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Files of independent draws (.csv or .txt, .npy, .f64 or .bin or .raw), or `-` for a pipe with
-    /// --input. Several files share --alpha
+    /// --input. Several files share --alpha. With --images a stack (.npy), or a pass in each (.npy, .pfm, .exr)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
     /// What the mean should be
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
-    #[arg(required_unless_present = "case")]
+    #[arg(required_unless_present_any = ["case", "truth_image"])]
     truth: Option<f64>,
     /// The variance of one draw, or of one average with --batch; without it, it is not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true)]
@@ -109,6 +112,8 @@ pub struct Arguments {
     /// How the verdict is printed
     #[arg(long, value_enum, default_value_t)]
     format: Shown,
+    #[command(flatten)]
+    images: images::Arguments,
 }
 
 /// The two ends of a range.
@@ -143,6 +148,9 @@ enum Shown {
 
 /// Reads, judges, prints.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    if arguments.images.images {
+        return images::main(arguments, console);
+    }
     let claim = arguments.claim(catalogue)?;
     let wanted = Wanted {
         tolerance: arguments.tolerance,
@@ -157,13 +165,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
         anyhow::bail!("there is one pipe; give `-` once");
     }
-    if let Some(path) = &arguments.junit {
-        let wrong = || format!("cannot write {}; give another file with --junit", path.display());
-        if arguments.files.iter().any(|file| file == path) {
-            return Err(anyhow::anyhow!("it holds draws").context(wrong()));
-        }
-        files::writable(path).with_context(wrong)?;
-    }
+    arguments.check_junit("draws")?;
     let (mut judged, mut errors) = (Vec::new(), Vec::new());
     for file in &arguments.files {
         match arguments.judge(file, claim, wanted) {
@@ -172,29 +174,17 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         }
     }
     show(&judged, arguments, console)?;
-    if let Some(path) = &arguments.junit {
-        let unread: Vec<(String, String)> =
-            errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
-        let inconclusive = Inconclusive::in_junit(arguments.inconclusive);
-        let text = report::junit::text(&judged, &unread, arguments.alpha, inconclusive)?;
-        files::replace(path, text.as_bytes())
-            .with_context(|| format!("cannot write {} (--junit)", path.display()))?;
-    }
+    let told: Vec<Told> = judged.iter().map(|(name, found)| Told::of_draws(name, found)).collect();
+    let unread: Vec<(String, String)> =
+        errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
+    arguments.write_junit(&told, &unread)?;
     for (_, error) in &errors {
         output::complain(error);
     }
     if !errors.is_empty() {
         return Ok(USAGE);
     }
-    Ok(match worst(&judged) {
-        Verdict::Fail => 1,
-        Verdict::Pass => 0,
-        _ => match arguments.inconclusive {
-            None => 3,
-            Some(Inconclusive::Fail) => 1,
-            Some(Inconclusive::Pass) => 0,
-        },
-    })
+    Ok(arguments.code(worst(&judged)))
 }
 
 fn is_pipe(file: &Path) -> bool {
@@ -213,6 +203,38 @@ fn worst(judged: &[(String, Judgement)]) -> Verdict {
 }
 
 impl Arguments {
+    /// Fails now rather than after the reading if the JUnit report cannot be written.
+    fn check_junit(&self, what: &str) -> anyhow::Result<()> {
+        let Some(path) = &self.junit else { return Ok(()) };
+        let wrong = || format!("cannot write {}; give another file with --junit", path.display());
+        if self.files.iter().any(|file| file == path) {
+            return Err(anyhow::anyhow!("it holds {what}").context(wrong()));
+        }
+        files::writable(path).with_context(wrong)
+    }
+
+    fn write_junit(&self, told: &[Told], unread: &[(String, String)]) -> anyhow::Result<()> {
+        let Some(path) = &self.junit else { return Ok(()) };
+        let inconclusive = Inconclusive::in_junit(self.inconclusive);
+        let text = report::junit::text(told, unread, self.alpha, inconclusive)?;
+        files::replace(path, text.as_bytes())
+            .with_context(|| format!("cannot write {} (--junit)", path.display()))
+    }
+
+    /// The exit code.
+    fn code(&self, verdict: Verdict) -> u8 {
+        let open = match self.inconclusive {
+            None => 3,
+            Some(Inconclusive::Fail) => 1,
+            Some(Inconclusive::Pass) => 0,
+        };
+        match verdict {
+            Verdict::Fail => 1,
+            Verdict::Pass => 0,
+            _ => open,
+        }
+    }
+
     /// Reads a file and judges it.
     fn judge(&self, file: &Path, claim: Claim, wanted: Wanted) -> anyhow::Result<Judgement> {
         let format = self.input_format(file)?;

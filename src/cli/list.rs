@@ -3,6 +3,10 @@
 use std::fmt::Write;
 use std::io::IsTerminal;
 
+use clap::{Args, ValueEnum};
+
+use super::Console;
+use super::output::{self, Format};
 use crate::catalogue::{Page, PageList};
 use crate::estimators::Estimated;
 use crate::harness::catalogue::{Catalogue, built_in};
@@ -11,10 +15,6 @@ use crate::problems::{self, MultipleScattering};
 use crate::recipes::{controls, sampling};
 use crate::render::{self, Picture, gallery};
 use crate::{phase, report};
-use clap::{Args, ValueEnum};
-
-use super::Console;
-use super::output::{self, Format};
 
 /// Arguments of `list`.
 #[derive(Debug, Args)]

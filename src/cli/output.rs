@@ -4,14 +4,14 @@ use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::Path;
 use std::time::Duration;
 
-use crate::harness::{CaseError, Record};
-use crate::report::console::{self, View, layout::Pen};
-use crate::report::{self, Artifact, ReportError, rows};
 use anyhow::Context;
 use clap::ValueEnum;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
 use super::{Console, USAGE};
+use crate::harness::{CaseError, Record};
+use crate::report::console::{self, View, layout::Pen};
+use crate::report::{self, Artifact, ReportError, rows};
 
 /// When to use colours.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, ValueEnum)]

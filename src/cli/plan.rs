@@ -2,14 +2,14 @@
 
 use std::path::PathBuf;
 
-use crate::harness::Catalogue;
-use crate::harness::{options::DRAWS, verdict};
-use crate::report::console::View;
 use clap::Args;
 
 use super::output::{self, Format};
 use super::selection::Selection;
 use super::{Console, drawing};
+use crate::harness::Catalogue;
+use crate::harness::{options::DRAWS, verdict};
+use crate::report::console::View;
 
 /// Arguments of `plan`.
 #[derive(Debug, Args)]

@@ -1,13 +1,13 @@
 //! `trueflight predict`: theory only, no draws.
 
-use crate::harness::Catalogue;
-use crate::harness::{options::DRAWS, verdict};
-use crate::report::console::View;
 use clap::Args;
 
 use super::Console;
 use super::output::{self, Format};
 use super::selection::Selection;
+use crate::harness::Catalogue;
+use crate::harness::{options::DRAWS, verdict};
+use crate::report::console::View;
 
 /// Arguments of `predict`.
 #[derive(Debug, Args)]

@@ -4,15 +4,15 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use anyhow::bail;
+use clap::Args;
+
+use super::{Console, output, selection};
 use crate::catalogue::Additions;
 use crate::harness::Catalogue;
 use crate::harness::source::CaseError;
 use crate::render::{Picture, PictureRecord, gallery as built_in};
 use crate::report::{self, Artifact};
-use anyhow::bail;
-use clap::Args;
-
-use super::{Console, output, selection};
 
 /// Arguments of `render`.
 #[derive(Debug, Args)]

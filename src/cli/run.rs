@@ -3,10 +3,6 @@
 use std::fmt::Write;
 use std::path::PathBuf;
 
-use crate::harness::Catalogue;
-use crate::harness::Options;
-use crate::harness::options::DRAWS;
-use crate::report::{self, console::View};
 use clap::Args;
 
 use super::baseline::BaselineArguments;
@@ -14,6 +10,10 @@ use super::output::{self, Errors, Format};
 use super::selection::Selection;
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing};
+use crate::harness::Catalogue;
+use crate::harness::Options;
+use crate::harness::options::DRAWS;
+use crate::report::{self, console::View};
 
 /// Arguments of `run`.
 #[derive(Debug, Args)]

@@ -1,12 +1,12 @@
 //! Which cases, and how they are drawn.
 
-use crate::estimators::Order;
-use crate::harness::case::Case;
-use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
 use anyhow::Context;
 use clap::Args;
 
 use super::{Console, output};
+use crate::estimators::Order;
+use crate::harness::case::Case;
+use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
 
 /// Which experiments, and where their random numbers begin.
 #[derive(Debug, Clone, Args)]

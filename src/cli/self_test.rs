@@ -3,12 +3,12 @@
 use std::path::PathBuf;
 use std::time::Instant;
 
-use crate::report::{self, self_test as page};
-use crate::self_test::{SelfTest, calibration, mutation, streams};
 use clap::Args;
 
 use super::Console;
 use super::output;
+use crate::report::{self, self_test as page};
+use crate::self_test::{SelfTest, calibration, mutation, streams};
 
 /// Independent runs of the long calibration.
 const LONG: u64 = 10_000;

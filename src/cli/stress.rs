@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use crate::report::{self, stress as page};
-use crate::stress::{self, Effort, PAGES};
 use clap::Args;
 
 use super::Console;
 use super::output;
+use crate::report::{self, stress as page};
+use crate::stress::{self, Effort, PAGES};
 
 /// Arguments of `stress`.
 #[derive(Debug, Args)]

@@ -1,12 +1,12 @@
 //! From verdicts to an exit code.
 
-use crate::baseline::Comparison;
-use crate::harness::record::{Record, Verdict};
-use crate::report::junit;
 use clap::ValueEnum;
 
 use super::USAGE;
 use super::output::{self, Errors};
+use crate::baseline::Comparison;
+use crate::harness::record::{Record, Verdict};
+use crate::report::junit;
 
 /// What an inconclusive experiment does to the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

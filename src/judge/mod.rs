@@ -30,6 +30,8 @@ mod dependence;
 pub mod files;
 mod finding;
 mod grounds;
+#[cfg(feature = "library")]
+pub mod images;
 pub mod judgement;
 #[cfg(feature = "library")]
 mod of_case;

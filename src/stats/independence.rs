@@ -47,7 +47,7 @@ pub struct Independence {
 
 /// Signs of one question.
 #[derive(Debug, Clone, Copy, Default)]
-struct Signs {
+pub(crate) struct Signs {
     positive: u64,
     negative: u64,
     products: f64,
@@ -68,8 +68,9 @@ pub struct Dependence {
 }
 
 impl Signs {
+    /// Adds the sign of ab.
     #[inline(always)]
-    fn add(&mut self, a: f64, b: f64) {
+    pub(crate) fn add(&mut self, a: f64, b: f64) {
         self.positive += u64::from(a > 0.0 && b > 0.0) + u64::from(a < 0.0 && b < 0.0);
         self.negative += u64::from(a > 0.0 && b < 0.0) + u64::from(a < 0.0 && b > 0.0);
         self.products += a * b;
@@ -77,13 +78,14 @@ impl Signs {
     }
 
     /// ln e.
-    fn ln_e(&self) -> f64 {
+    pub(crate) fn ln_e(&self) -> f64 {
         let (k, m) = (self.positive as f64, (self.positive + self.negative) as f64);
         let ln_beta = libm::lgamma(k + 0.5) + libm::lgamma(m - k + 0.5) - libm::lgamma(m + 1.0);
         m * std::f64::consts::LN_2 + ln_beta - std::f64::consts::PI.ln()
     }
 
-    fn correlation(&self) -> f64 {
+    /// An estimate of the correlation.
+    pub(crate) fn correlation(&self) -> f64 {
         if self.squares > 0.0 { 2.0 * self.products / self.squares } else { 0.0 }
     }
 

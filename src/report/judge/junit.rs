@@ -1,4 +1,5 @@
-//! Verdicts on foreign draws as JUnit XML: one test suite, a test for each file.
+//! Verdicts on foreign draws as JUnit XML: one test suite, a test for each file or stack of
+//! images.
 //!
 //! A fail is a `failure`; what is inconclusive is an `error`, a `failure` or `skipped`, as asked for. A file
 //! that could not be read is an `error`.
@@ -7,18 +8,67 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 use crate::catalogue::digits::exact;
 use crate::harness::record::Verdict;
+use crate::judge::images;
 use crate::judge::judgement::Judgement;
 use crate::report::ReportError;
 use crate::report::junit::Inconclusive;
 
-/// The verdicts on files of these names, at the level `alpha` together; `unread` are files that could not be
-/// read, each with the reason.
+/// A verdict on a file or a stack of images.
+#[derive(Debug, Clone)]
+pub struct Told {
+    name: String,
+    verdict: Verdict,
+    reason: String,
+    /// Numbers and promises.
+    lines: Vec<String>,
+}
+
+impl Told {
+    /// The verdict on draws of this name.
+    pub fn of_draws(name: &str, judgement: &Judgement) -> Self {
+        let numbers = [
+            ("draws", Some(judgement.draws as f64)),
+            ("mean", judgement.mean),
+            ("truth", Some(judgement.truth)),
+            ("z", judgement.z),
+            ("variance", judgement.variance),
+            ("predicted variance", judgement.predicted_variance),
+        ];
+        let known = numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", exact((*x)?))));
+        Self {
+            name: name.to_owned(),
+            verdict: judgement.verdict,
+            reason: judgement.reason.clone(),
+            lines: known.chain(judgement.guarantees.iter().cloned()).collect(),
+        }
+    }
+
+    /// The verdict on images of this name.
+    pub fn of_images(name: &str, judgement: &images::Judgement) -> Self {
+        let counts = judgement.counts;
+        let numbers = [
+            ("passes", judgement.passes),
+            ("tiles", counts.tiles),
+            ("failing tiles", counts.fail),
+            ("listed tiles", counts.listed),
+        ];
+        let numbers = numbers.iter().map(|(what, count)| format!("{what} {count}"));
+        Self {
+            name: name.to_owned(),
+            verdict: judgement.verdict,
+            reason: judgement.reason.clone(),
+            lines: numbers.chain(judgement.guarantees.iter().cloned()).collect(),
+        }
+    }
+}
+
+/// The verdicts, at the level `alpha` together; `unread` are files that could not be read, each with the reason.
 ///
 /// # Errors
 ///
 /// Where the encoder gives up.
 pub fn text(
-    judgements: &[(String, Judgement)],
+    told: &[Told],
     unread: &[(String, String)],
     alpha: f64,
     inconclusive: Inconclusive,
@@ -26,8 +76,8 @@ pub fn text(
     let mut report = Report::new("trueflight");
     let mut suite = TestSuite::new("judge");
     suite.add_property(("alpha", &*exact(alpha)));
-    for (name, judgement) in judgements {
-        suite.add_test_case(test(name, judgement, inconclusive));
+    for told in told {
+        suite.add_test_case(test(told, inconclusive));
     }
     for (name, reason) in unread {
         let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
@@ -42,8 +92,8 @@ pub fn text(
     Ok(report.to_string()?.replacen(&skipped, "", 1))
 }
 
-fn test(name: &str, judgement: &Judgement, inconclusive: Inconclusive) -> TestCase {
-    let mut status = match (judgement.verdict, inconclusive) {
+fn test(told: &Told, inconclusive: Inconclusive) -> TestCase {
+    let mut status = match (told.verdict, inconclusive) {
         (Verdict::Pass, _) => TestCaseStatus::success(),
         (Verdict::Fail, _) | (_, Inconclusive::Failure) => {
             TestCaseStatus::non_success(NonSuccessKind::Failure)
@@ -51,24 +101,14 @@ fn test(name: &str, judgement: &Judgement, inconclusive: Inconclusive) -> TestCa
         (_, Inconclusive::Error) => TestCaseStatus::non_success(NonSuccessKind::Error),
         (_, Inconclusive::Skipped) => TestCaseStatus::skipped(),
     };
-    if judgement.verdict != Verdict::Pass {
-        status.set_type(judgement.verdict.word());
-        status.set_message(&*judgement.reason);
+    if told.verdict != Verdict::Pass {
+        status.set_type(told.verdict.word());
+        status.set_message(&*told.reason);
     }
-    if matches!(judgement.verdict, Verdict::Fail | Verdict::Inconclusive) {
-        let numbers = [
-            ("draws", Some(judgement.draws as f64)),
-            ("mean", judgement.mean),
-            ("truth", Some(judgement.truth)),
-            ("z", judgement.z),
-            ("variance", judgement.variance),
-            ("predicted variance", judgement.predicted_variance),
-        ];
-        let known = numbers.iter().filter_map(|(what, x)| Some(format!("{what} {}", exact((*x)?))));
-        let lines: Vec<String> = known.chain(judgement.guarantees.iter().cloned()).collect();
-        status.set_description(lines.join("\n"));
+    if matches!(told.verdict, Verdict::Fail | Verdict::Inconclusive) {
+        status.set_description(told.lines.join("\n"));
     }
-    let mut test = TestCase::new(name, status);
+    let mut test = TestCase::new(&*told.name, status);
     test.set_classname("judge");
     test
 }

@@ -1,6 +1,8 @@
 //! `trueflight judge`: the gate over draws from a file or a pipe.
 
 mod grounds;
+mod image_files;
+mod images;
 mod order;
 
 use std::path::Path;

@@ -1,0 +1,164 @@
+//! What is claimed of the pixels of a pass.
+
+use super::error::ImageError;
+use super::picture::{Picture, Size, Stack};
+use crate::judge::claim::ROUNDING;
+use crate::stats::verdict::FURTHEST;
+
+/// A number for all pixels, or one for each.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Level {
+    /// The same for all.
+    All(f64),
+    /// One for each value of a pass. A picture of one channel stands for all channels.
+    Each(Picture),
+}
+
+impl Level {
+    fn spread(&self, what: &str, size: Size) -> Result<Vec<f64>, ImageError> {
+        match self {
+            Self::All(value) => Ok(vec![*value; size.values()]),
+            Self::Each(picture) => {
+                let found = picture.size;
+                if found == size {
+                    return Ok(picture.values.clone());
+                }
+                if found != (Size { channels: 1, ..size }) {
+                    let (file, other) = (format!("the picture of the {what}"), "a pass".to_owned());
+                    return Err(ImageError::Differ { file, found, other, expected: size });
+                }
+                let pixels = picture.values.iter();
+                Ok(pixels.flat_map(|&x| std::iter::repeat_n(x, size.channels)).collect())
+            }
+        }
+    }
+
+    fn rounding(&self) -> f64 {
+        match self {
+            Self::All(_) => 0.0,
+            Self::Each(picture) => picture.rounding,
+        }
+    }
+}
+
+/// What correct pixels are like.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Claim {
+    /// Their means.
+    pub truth: Level,
+    /// The variance of a pixel of one pass, if it is known.
+    pub variance: Option<Level>,
+    /// Where all values lie, if it is known; either end may be infinite.
+    pub range: Option<[f64; 2]>,
+    /// What rounding may add to a value, relative to its truth; at least that of the files.
+    pub rounding: f64,
+}
+
+impl Claim {
+    /// A claim of the truth alone: nothing follows from it unless a variance or a range is added.
+    pub fn of_truth(truth: Level) -> Self {
+        Self { truth, variance: None, range: None, rounding: ROUNDING }
+    }
+}
+
+/// A claim for every value of a pass.
+pub(super) struct Pixels {
+    pub truth: Vec<f64>,
+    pub variance: Option<Vec<f64>>,
+    pub range: Option<[f64; 2]>,
+    pub rounding: f64,
+    /// The mean |truth| of each channel; 1 where that is 0.
+    pub units: Vec<f64>,
+}
+
+impl Pixels {
+    pub(super) fn new(
+        claim: &Claim,
+        stack: &Stack,
+        tolerance: Option<f64>,
+    ) -> Result<Self, ImageError> {
+        let size = stack.size;
+        if !(claim.rounding >= 0.0 && claim.rounding.is_finite()) {
+            let (what, value) = ("rounding", claim.rounding);
+            return Err(ImageError::Number { what, value, wanted: "a finite number, 0 or more" });
+        }
+        let truth = claim.truth.spread("truth", size)?;
+        let is_inside = |x: f64| match claim.range {
+            Some([low, high]) => x.is_finite() && low <= x && x <= high,
+            None => x.is_finite(),
+        };
+        let wanted = match claim.range {
+            Some([low, high]) => format!("a number from {low} to {high}"),
+            None => "a finite number".to_owned(),
+        };
+        check("truth", size, &truth, &is_inside, &wanted)?;
+        let variance = claim
+            .variance
+            .as_ref()
+            .map(|variance| variance.spread("variance", size))
+            .transpose()?;
+        if let Some(variance) = &variance {
+            let is_fine = |x: f64| x.is_finite() && x >= 0.0;
+            check("variance", size, variance, &is_fine, "a finite number, 0 or more")?;
+        }
+        let mut units = vec![0.0; size.channels];
+        for pixel in truth.chunks_exact(size.channels) {
+            units.iter_mut().zip(pixel).for_each(|(unit, x)| *unit += x.abs());
+        }
+        for unit in &mut units {
+            *unit /= size.pixels() as f64;
+        }
+        if units.iter().all(|&unit| unit == 0.0) && tolerance.is_none() {
+            return Err(ImageError::NoUnit);
+        }
+        units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
+        let rounding = claim.rounding.max(stack.rounding).max(claim.truth.rounding());
+        let found = Self { truth, variance, range: claim.range, rounding, units };
+        let of = |i: usize| found.floor(i) / found.units[i % size.channels];
+        let floor = (0..size.values()).map(of).fold(0.0, f64::max);
+        match tolerance.filter(|&tolerance| tolerance < 4.0 * floor) {
+            Some(tolerance) => Err(ImageError::Blurred { tolerance, floor }),
+            None => Ok(found),
+        }
+    }
+
+    /// What rounding may add to a value.
+    pub(super) fn floor(&self, index: usize) -> f64 {
+        self.rounding * self.truth[index].abs()
+    }
+
+    /// Whether a value has no spread: by its variance, or because its truth is an end of the range.
+    pub(super) fn is_certain(&self, index: usize) -> bool {
+        let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
+        let variance = self.variance.as_ref().map(|variance| variance[index]);
+        is_end || variance.is_some_and(|v| FURTHEST * v.sqrt() <= self.floor(index))
+    }
+
+    /// How far a value without spread may be from its truth.
+    pub(super) fn bound(&self, index: usize) -> f64 {
+        let variance = self.variance.as_ref().map_or(0.0, |variance| variance[index]);
+        let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
+        self.floor(index) + if is_end { 0.0 } else { FURTHEST * variance.sqrt() }
+    }
+
+    /// The range with what rounding may add at each end.
+    pub(super) fn widened(&self) -> Option<[f64; 2]> {
+        let [low, high] = self.range?;
+        let finite = [low, high].map(|end| if end.is_finite() { end.abs() } else { 0.0 });
+        let slack = self.rounding * finite[0].max(finite[1]);
+        Some([low - slack, high + slack])
+    }
+}
+
+fn check(
+    what: &'static str,
+    size: Size,
+    values: &[f64],
+    is_fine: &dyn Fn(f64) -> bool,
+    wanted: &str,
+) -> Result<(), ImageError> {
+    let Some(index) = values.iter().position(|&x| !is_fine(x)) else { return Ok(()) };
+    let (pixel, channel) = (index / size.channels, index % size.channels);
+    let (row, column, value) = (pixel / size.columns, pixel % size.columns, values[index]);
+    Err(ImageError::Pixel { what, row, column, channel, value, wanted: wanted.to_owned() })
+}

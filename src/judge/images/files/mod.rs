@@ -1,0 +1,76 @@
+//! Pictures and stacks in files.
+//!
+//! ```text
+//! npy   float32 or float64 of either byte order, in C order:
+//!       a stack (passes, height, width[, channels]), or a picture (height, width[, channels])
+//! pfm   a picture of 1 or 3 channels, of either byte order
+//! exr   the first layer of a picture: R, G, B, else Y, else its first channel; alpha is left out
+//! ```
+//!
+//! One file is a stack, several are one pass each.
+
+mod exr;
+mod npy;
+mod pfm;
+
+use std::path::Path;
+
+use super::error::ImageError;
+use super::picture::{Picture, Stack};
+
+/// The relative rounding of numbers of 24 bits.
+const SINGLE: f64 = 0.5 * f32::EPSILON as f64;
+
+/// Reads a picture.
+///
+/// # Errors
+///
+/// The file cannot be read, or is no picture.
+pub fn picture(path: &Path) -> Result<Picture, ImageError> {
+    let file = path.display().to_string();
+    match ending(path).as_deref() {
+        Some("npy") => npy::picture(path, &file),
+        Some("pfm") => pfm::picture(&bytes(path, &file)?, &file),
+        Some("exr") => exr::picture(bytes(path, &file)?, &file),
+        _ => Err(ImageError::Format { file }),
+    }
+}
+
+/// Reads a stack of one file, or of several with a pass each.
+///
+/// # Errors
+///
+/// A file cannot be read or is no picture, they are of different sizes, or there is one pass alone.
+pub fn stack(paths: &[impl AsRef<Path>]) -> Result<Stack, ImageError> {
+    let [first, others @ ..] = paths else { return Err(ImageError::OnePass) };
+    let first = first.as_ref();
+    if others.is_empty() {
+        return match ending(first).as_deref() {
+            Some("npy") => npy::stack(first, &first.display().to_string()),
+            _ => picture(first).and(Err(ImageError::OnePass)),
+        };
+    }
+    let Picture { size, mut values, mut rounding } = picture(first)?;
+    for path in others {
+        let other = picture(path.as_ref())?;
+        if other.size != size {
+            return Err(ImageError::Differ {
+                file: path.as_ref().display().to_string(),
+                found: other.size,
+                other: first.display().to_string(),
+                expected: size,
+            });
+        }
+        values.extend(other.values);
+        rounding = rounding.max(other.rounding);
+    }
+    Ok(Stack { rounding, ..Stack::new(paths.len(), size, values)? })
+}
+
+fn ending(path: &Path) -> Option<String> {
+    Some(path.extension()?.to_str()?.to_ascii_lowercase())
+}
+
+fn bytes(path: &Path, file: &str) -> Result<Vec<u8>, ImageError> {
+    std::fs::read(path).map_err(|cause| ImageError::Unreadable { file: file.to_owned(), cause })
+}

@@ -1,0 +1,113 @@
+//! Portable float maps.
+//!
+//! ```text
+//! Pf or PF, columns, rows, scale    words apart from each other by white space; one such byte after the last
+//! 4 bytes a value                   little-endian where the scale is negative; rows from the BOTTOM
+//! ```
+//!
+//! The size of the scale has no agreed meaning; values are read as they stand.
+//!
+//! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
+
+use super::SINGLE;
+use crate::files::npy::Word;
+use crate::judge::images::error::ImageError;
+use crate::judge::images::picture::{Picture, Size};
+
+/// Reads a picture.
+pub(super) fn picture(bytes: &[u8], file: &str) -> Result<Picture, ImageError> {
+    let faulty = |cause: String| ImageError::Faulty {
+        file: file.to_owned(),
+        what: "a pfm file",
+        cause,
+        cure: "write Pf or PF, columns, rows, -1 and all values as float32",
+    };
+    let mut at = 0;
+    let mut word = || {
+        let word = word(bytes, &mut at);
+        word.ok_or_else(|| faulty("its header is not of 4 words".to_owned()))
+    };
+    let channels = match word()? {
+        "Pf" => 1,
+        "PF" => 3,
+        other => return Err(faulty(format!("it begins with `{other}`"))),
+    };
+    let mut number = || {
+        let word = word()?;
+        word.parse::<f64>().map_err(|_| faulty(format!("`{word}` in its header is not a number")))
+    };
+    let [columns, rows, scale] = [number()?, number()?, number()?];
+    let length = |x: f64| {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked first
+        let length =
+            (x >= 1.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0).then_some(x as usize);
+        length.ok_or_else(|| faulty(format!("{x} is no number of rows or columns")))
+    };
+    let size = Size { rows: length(rows)?, columns: length(columns)?, channels };
+    if scale == 0.0 || !scale.is_finite() {
+        return Err(faulty(format!("its scale is {scale}, whose sign tells no byte order")));
+    }
+    let values = bytes.get(at..).unwrap_or_default();
+    let count =
+        size.rows.checked_mul(size.columns).and_then(|pixels| pixels.checked_mul(4 * channels));
+    if Some(values.len()) != count {
+        let (found, Size { rows, columns, .. }) = (values.len(), size);
+        let cause = format!(
+            "{found} bytes follow its header, not 4 for each of {channels} value(s) of {columns} × {rows} pixels"
+        );
+        return Err(faulty(cause));
+    }
+    let word = if scale < 0.0 { Word::LittleSingle } else { Word::BigSingle };
+    let mut numbers = Vec::with_capacity(size.values());
+    for row in values.chunks_exact(4 * size.columns * channels).rev() {
+        word.convert(row, &mut numbers);
+    }
+    Ok(Picture { rounding: SINGLE, ..Picture::new(size, numbers)? })
+}
+
+/// The next word of the header, of which no program writes longer ones than 64 bytes.
+fn word<'a>(bytes: &'a [u8], at: &mut usize) -> Option<&'a str> {
+    let rest = bytes.get(*at..)?;
+    let begin = rest.iter().take(64).position(|byte| !byte.is_ascii_whitespace())?;
+    let length = rest[begin..].iter().take(64).position(u8::is_ascii_whitespace)?;
+    *at += begin + length + 1;
+    std::str::from_utf8(&rest[begin..begin + length]).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_byte_orders_and_the_lowest_row_first() {
+        let (low, high) = ([1.0_f32, 2.0], [3.0_f32, -0.5]);
+        let little = low.iter().chain(&high).flat_map(|x| x.to_le_bytes());
+        let big = low.iter().chain(&high).flat_map(|x| x.to_be_bytes());
+        let little: Vec<u8> = b"Pf\n2 2\n-1.0\n".iter().copied().chain(little).collect();
+        let big: Vec<u8> = b"Pf 2 2 1e0\n".iter().copied().chain(big).collect();
+        for bytes in [little, big] {
+            let picture = picture(&bytes, "x.pfm").expect("a picture");
+            assert_eq!(picture.values(), [3.0, -0.5, 1.0, 2.0]);
+            assert_eq!(picture.size(), Size { rows: 2, columns: 2, channels: 1 });
+        }
+    }
+
+    #[test]
+    fn what_is_no_map_is_refused_with_what_is_wrong() {
+        for (bytes, words) in [
+            (&b""[..], "header is not of 4 words"),
+            (b"P6\n2 2\n255\n", "begins with `P6`"),
+            (b"Pf\n2\n", "header is not of 4 words"),
+            (b"Pf\nx 2\n-1\n", "`x` in its header"),
+            (b"Pf\n0 2\n-1\n", "0 is no number of rows"),
+            (b"Pf\n2.5 2\n-1\n", "2.5 is no number"),
+            (b"Pf\n1 1\n0\n1234", "scale is 0"),
+            (b"Pf\n1 1\n-1\n123", "3 bytes follow"),
+            (b"Pf\n1 1\n-1\n12345", "5 bytes follow"),
+            (b"PF\n4000000000 4000000000\n-1\n1234", "4 bytes follow"),
+        ] {
+            let error = picture(bytes, "x.pfm").expect_err("no picture").to_string();
+            assert!(error.starts_with("x.pfm: ") && error.contains(words), "{error}");
+        }
+    }
+}

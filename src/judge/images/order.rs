@@ -1,0 +1,184 @@
+//! Whether passes depend on those shortly before them: their order against random orders.
+//!
+//! ```text
+//! G_pq = Σ_i (x_pi − x̄_i)(x_qi − x̄_i)/s_i²                              over the pixels i that vary
+//! T    = max over l = 1 … 4 of |mean of G_{p,p+l} over p − mean of G_pq over p ≠ q| √(n − l)
+//! p    = (1 + how many of B random orders of the passes have a T as large)/(1 + B)
+//! ```
+//!
+//! Independent passes of one law are as likely in one order as in any other, whatever the pixels of a pass have to
+//! do with each other: p is exact. Passes that resemble their neighbours (a chain that goes on, a render that
+//! gets brighter) or avoid them (a sampler that fills gaps) have a large T. Fewer than 8 passes have too few
+//! orders to tell.
+//!
+//! Source: J. Besag, P. Clifford, *Sequential Monte Carlo p-values*, Biometrika 78 (1991), for stopping
+//! after 20 orders with a T as large.
+
+use super::picture::Stack;
+use crate::numeric::parallel;
+use crate::rng::{Address, unit};
+
+/// The largest lag.
+const LAGS: usize = 4;
+/// How many orders are compared at most.
+const ORDERS: u32 = 100_000;
+/// Comparing ends when so many have a T as large.
+const ENOUGH: u32 = 20;
+/// About how many products are made at most; beyond, every k-th pixel is looked at.
+const PRODUCTS: usize = 1 << 32;
+/// How many parts of the pixels are summed up apart.
+const PARTS: usize = 32;
+
+/// What was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Order {
+    pub p: f64,
+    /// The lag of the strongest correlation, and that.
+    pub lag: usize,
+    pub correlation: f64,
+}
+
+/// The fewest passes whose orders can tell at that level.
+pub(super) fn fewest(level: f64) -> usize {
+    let (mut passes, mut orders) = (2_usize, 1.0);
+    while 1.0 / orders > level {
+        passes += 1;
+        // An order and its reverse have the same T.
+        orders *= passes as f64;
+    }
+    passes
+}
+
+/// Compares the order of the passes with others; `None` where no pixel varies.
+pub(super) fn order(stack: &Stack) -> Option<Order> {
+    let n = stack.passes;
+    let gram = gram(stack);
+    let diagonal: f64 = (0..n).map(|p| gram[p * n + p]).sum();
+    if diagonal <= 0.0 {
+        return None;
+    }
+    let apart = (gram.iter().sum::<f64>() - diagonal) / (n * (n - 1)) as f64;
+    let statistic = |order: &[usize]| {
+        let mut most = (0.0, 1, 0.0);
+        for lag in 1..=LAGS.min(n - 1) {
+            let pairs = order.iter().zip(&order[lag..]);
+            let sum: f64 = pairs.map(|(p, q)| gram[p * n + q]).sum();
+            let excess = sum / (n - lag) as f64 - apart;
+            let scaled = excess.abs() * ((n - lag) as f64).sqrt();
+            if scaled > most.0 {
+                most = (scaled, lag, excess);
+            }
+        }
+        most
+    };
+    let mut order: Vec<usize> = (0..n).collect();
+    let (found, lag, excess) = statistic(&order);
+    let mut rng = Address { seed: 1, experiment: 0, block: 0, lane: 0 }.stream();
+    let (mut drawn, mut above) = (0, 0);
+    // Reversed orders add up in another order.
+    let limit = found * (1.0 - 1e-9);
+    while drawn < ORDERS && above < ENOUGH {
+        for last in (1..n).rev() {
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // up to `last`
+            let other = (unit(&mut rng) * (last + 1) as f64) as usize;
+            order.swap(last, other.min(last));
+        }
+        drawn += 1;
+        above += u32::from(statistic(&order).0 >= limit);
+    }
+    let p = if above == ENOUGH {
+        f64::from(ENOUGH) / f64::from(drawn)
+    } else {
+        f64::from(1 + above) / f64::from(1 + drawn)
+    };
+    Some(Order { p, lag, correlation: excess * n as f64 / diagonal })
+}
+
+/// G, row after row.
+fn gram(stack: &Stack) -> Vec<f64> {
+    let (n, pixels) = (stack.passes, stack.size.pixels());
+    let step = (n * n).saturating_mul(pixels).div_ceil(PRODUCTS).max(1);
+    let parts = parallel::range(PARTS, |part| {
+        let (mut sums, mut values) = (vec![0.0; n * n], Vec::new());
+        for pixel in (part * step..pixels).step_by(PARTS * step) {
+            values.clear();
+            values.extend((0..n).map(|pass| stack.grey(pass, pixel)));
+            if standardise(&mut values) {
+                for (p, x) in values.iter().enumerate() {
+                    let row = &mut sums[p * n..(p + 1) * n];
+                    row.iter_mut().zip(&values).for_each(|(sum, y)| *sum += x * y);
+                }
+            }
+        }
+        sums
+    });
+    let mut gram = vec![0.0; n * n];
+    for part in parts {
+        gram.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+    }
+    gram
+}
+
+/// Mean 0 and mean square 1; `false` for values that do not vary, or are no numbers.
+fn standardise(values: &mut [f64]) -> bool {
+    let n = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / n;
+    for x in &mut *values {
+        *x -= mean;
+    }
+    let deviation = (values.iter().map(|x| x * x).sum::<f64>() / n).sqrt();
+    for x in values {
+        *x /= deviation;
+    }
+    deviation.is_finite() && deviation > 1e-14 * mean.abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::picture::Size;
+    use super::*;
+
+    /// Passes of 16 pixels, each pass the last one times `keep` and noise that all pixels share or none.
+    fn stack(seed: u64, n: usize, keep: f64, is_shared: bool) -> Stack {
+        let mut rng = Address { seed, experiment: 7, block: 0, lane: 0 }.stream();
+        let mut state = [0.0; 16];
+        let mut values = Vec::new();
+        for _ in 0..n {
+            let shared = unit(&mut rng);
+            for x in &mut state {
+                let noise = if is_shared { shared } else { unit(&mut rng) };
+                *x = keep * *x + noise;
+            }
+            values.extend(state);
+        }
+        Stack::new(n, Size { rows: 4, columns: 4, channels: 1 }, values).expect("a stack")
+    }
+
+    #[test]
+    fn chains_are_found_and_independent_passes_have_even_p_values() {
+        for is_shared in [false, true] {
+            let small = (0..200).filter(|&seed| {
+                order(&stack(seed, 12, 0.0, is_shared)).expect("it varies").p <= 0.1
+            });
+            // Binomial(200, 0.1): 20 ± 4.2.
+            let small = small.count();
+            assert!((3..=37).contains(&small), "{small}");
+        }
+        let found = order(&stack(1, 24, 0.8, false)).expect("it varies");
+        assert!(found.p < 1e-4 && found.lag == 1, "{found:?}");
+        assert!((0.3..0.9).contains(&found.correlation), "{found:?}");
+    }
+
+    #[test]
+    fn eight_passes_have_enough_orders() {
+        assert_eq!(fewest(3.3e-4), 8);
+        assert_eq!(fewest(1.0), 2);
+        assert_eq!(order(&stack(1, 2, 0.0, false)).map(|found| found.p), Some(1.0));
+    }
+
+    #[test]
+    fn what_does_not_vary_says_nothing() {
+        let size = Size { rows: 1, columns: 2, channels: 1 };
+        assert_eq!(order(&Stack::new(3, size, vec![0.1; 6]).expect("a stack")), None);
+    }
+}

@@ -1,0 +1,117 @@
+//! Whether passes repeat each other: one seed for two passes, or for parts of them.
+//!
+//! ```text
+//! places   of each pixel: the passes in which a value stands that 2 or more of the n passes have, but not all
+//! repeat   of t pixels with a value in k passes, c have it in the same k:   p ≤ C(t, c) C(n, k)^{1−c}
+//! ```
+//!
+//! Where passes are independent and of one law, any k passes are as likely to share a pixel's value as any
+//! others, whatever that law. The bound is for pixels of a pass that are independent of each other; all k from 2
+//! to n − 1 share the level. Zeros, the commonest atom, are left out.
+
+use std::collections::BTreeMap;
+
+use super::picture::Stack;
+
+/// About how many pixels are looked at.
+const PIXELS: usize = 1 << 16;
+
+/// A repetition.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Repeat {
+    /// The passes that share values.
+    pub passes: Vec<u32>,
+    /// ln of a bound on the chance of that.
+    pub ln_p: f64,
+}
+
+/// The most surprising repetition; `None` where no value comes twice.
+pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
+    let (n, pixels) = (stack.passes, stack.size.pixels());
+    let mut places: BTreeMap<Vec<u32>, u64> = BTreeMap::new();
+    let mut values: Vec<(u64, u32)> = Vec::with_capacity(n);
+    for pixel in (0..pixels).step_by(pixels.div_ceil(PIXELS)) {
+        values.clear();
+        values.extend((0_u32..).zip(0..n).map(|(p, pass)| (stack.grey(pass, pixel).to_bits(), p)));
+        values.sort_unstable();
+        for same in values.chunk_by(|a, b| a.0 == b.0) {
+            if (2..n).contains(&same.len()) && f64::from_bits(same[0].0) != 0.0 {
+                *places.entry(same.iter().map(|place| place.1).collect()).or_default() += 1;
+            }
+        }
+    }
+    let mut all: BTreeMap<usize, u64> = BTreeMap::new();
+    for (passes, count) in &places {
+        *all.entry(passes.len()).or_default() += count;
+    }
+    let found = places.into_iter().map(|(passes, count)| {
+        let (t, c) = (all[&passes.len()] as f64, count as f64);
+        let ways = ln_choose(t, c) - (c - 1.0) * ln_choose(n as f64, passes.len() as f64);
+        let ln_p = (ways + (n as f64 - 2.0).ln()).min(0.0);
+        Repeat { passes, ln_p }
+    });
+    found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+}
+
+/// Whether all passes are one image.
+pub(super) fn is_one_image(stack: &Stack) -> bool {
+    let first = stack.pass(0);
+    (1..stack.passes).all(|pass| stack.pass(pass).iter().zip(first).all(|(x, y)| x == y))
+}
+
+/// `ln C(n, k)`.
+fn ln_choose(n: f64, k: f64) -> f64 {
+    libm::lgamma(n + 1.0) - libm::lgamma(k + 1.0) - libm::lgamma(n - k + 1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::picture::Size;
+    use super::*;
+    use crate::rng::{Address, unit};
+
+    const SIZE: Size = Size { rows: 30, columns: 40, channels: 1 };
+
+    fn passes(seed: u64, n: usize, of: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
+        let mut rng = Address { seed, experiment: 8, block: 0, lane: 0 }.stream();
+        (0..n).map(|_| (0..SIZE.pixels()).map(|_| of(unit(&mut rng))).collect()).collect()
+    }
+
+    fn found(passes: &[Vec<f64>]) -> Option<Repeat> {
+        repeat(&Stack::new(passes.len(), SIZE, passes.concat()).expect("a stack"))
+    }
+
+    #[test]
+    fn equal_passes_are_named() {
+        let mut passes = passes(1, 6, |u| u);
+        assert_eq!(found(&passes), None);
+        passes[4] = passes[1].clone();
+        let repeat = found(&passes).expect("one");
+        assert_eq!(repeat.passes, [1, 4]);
+        assert!(repeat.ln_p < -1000.0, "{repeat:?}");
+        // All but one.
+        for pass in 0..5 {
+            passes[pass] = passes[1].clone();
+        }
+        assert_eq!(found(&passes).expect("one").passes, [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn a_tenth_of_a_pass_is_enough() {
+        let mut passes = passes(2, 5, |u| u);
+        let (before, after) = passes.split_at_mut(3);
+        after[0][..120].copy_from_slice(&before[0][..120]);
+        let repeat = found(&passes).expect("one");
+        assert!(repeat.passes == [0, 3] && repeat.ln_p < -100.0, "{repeat:?}");
+    }
+
+    #[test]
+    fn coarse_values_are_no_repetition() {
+        for seed in 0..20 {
+            for steps in [1.0, 3.0, 30.0] {
+                let coarse = found(&passes(seed, 7, |u| (u * steps).ceil().min(steps) + 1.0));
+                assert!(coarse.is_none_or(|found| found.ln_p > -9.0), "{steps}");
+            }
+        }
+    }
+}

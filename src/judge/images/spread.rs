@@ -1,0 +1,88 @@
+//! Whether the claimed variance is too small: squares over all pixels.
+//!
+//! ```text
+//! y = (x − T)²/V − 1 ≥ −1      in the mean over a pixel's channels; blocks of passes as for tiles
+//! E    bets against a mean of y above 0: squares need no kurtosis to be refuted as too large
+//! s²/V the mean over pixels of what their passes show about their own mean
+//! ```
+//!
+//! Where the pixels of a pass depend on each other a draw is the average of y over a pass.
+
+use super::claim::Pixels;
+use super::picture::Stack;
+use super::tiles::{AT_THE_END, doubling};
+use crate::judge::asks::VARIANCE_CAP;
+use crate::judge::scalar::{Ask, Scalar};
+
+/// What was found of the variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Squares {
+    /// ln E.
+    pub ln_e: f64,
+    /// 1 + the mean of y.
+    pub about_truth: f64,
+    /// s²/V.
+    pub about_mean: f64,
+}
+
+/// Compares squares with the variance; `None` where none is claimed, or all are certain.
+pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<Squares> {
+    let variance = pixels.variance.as_ref()?;
+    let channels = stack.size.channels;
+    let judged: Vec<usize> = (0..stack.size.pixels())
+        .filter(|pixel| (0..channels).all(|c| !pixels.is_certain(pixel * channels + c)))
+        .collect();
+    if judged.is_empty() {
+        return None;
+    }
+    let of_pixel = |pixel: usize, of: &dyn Fn(usize) -> f64| {
+        let first = pixel * channels;
+        (first..first + channels).map(|i| of(i) / variance[i]).sum::<f64>() / channels as f64
+    };
+    let ask = Ask {
+        check: "variance",
+        what: "variance",
+        spread: None,
+        is_hard: true,
+        range: Some([-1.0, f64::INFINITY]),
+        tolerance: None,
+        usual: VARIANCE_CAP,
+        cap: VARIANCE_CAP,
+        floor: 0.0,
+        must_pass: false,
+    };
+    let n = stack.passes as f64;
+    let mut scalar = Scalar::new(ask, None, AT_THE_END);
+    let (mut y, mut sum) = (Vec::new(), 0.0);
+    for (first, last) in doubling(stack.passes) {
+        y.clear();
+        for pass in first..last {
+            let values = stack.pass(pass);
+            let before = y.len();
+            y.extend(
+                judged.iter().map(|&pixel| {
+                    of_pixel(pixel, &|i| (values[i] - pixels.truth[i]).powi(2)) - 1.0
+                }),
+            );
+            let all: f64 = y[before..].iter().sum();
+            sum += all;
+            if !is_free {
+                y.truncate(before);
+                y.push(all / judged.len() as f64);
+            }
+        }
+        scalar.absorb(&y);
+    }
+    scalar.decide();
+    let shown = |i: usize| {
+        let values = || (0..stack.passes).map(|pass| stack.pass(pass)[i]);
+        let mean = values().sum::<f64>() / n;
+        values().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0)
+    };
+    let about_mean = judged.iter().map(|&pixel| of_pixel(pixel, &shown)).sum::<f64>();
+    Some(Squares {
+        ln_e: scalar.evidence.ln_e,
+        about_truth: 1.0 + sum / (n * judged.len() as f64),
+        about_mean: about_mean / judged.len() as f64,
+    })
+}

@@ -1,0 +1,188 @@
+//! The evidence on the average of a tile of pixels, in one channel.
+//!
+//! ```text
+//! y     = (x − T)/u     for every pixel of every pass;  u the picture's mean |T| in that channel
+//! V     the mean of the pixels' V/u²:  Σ ln(1 + λ²V_i/2) ≤ n ln(1 + λ²V/2)
+//! range from low less the largest T of the tile to high less its smallest
+//! E, P± as of any scalar of foreign draws (`judge::scalar`), at the end of all passes
+//! ε     as asked; else √(s²V/n), s² such that a correct picture passes in all of its K tiles with chance 0.95:
+//!       0.402 s² − 0.6 z s = ln(1/β),   z the normal quantile of 1 − 0.025/K;   27 for K = 1
+//! ```
+//!
+//! Where the pixels of a pass depend on each other, what is drawn is one average a pass, which has no known
+//! variance: a range alone is a ground then. Single pixels are free of that.
+
+use super::claim::Pixels;
+use super::judgement::Tile;
+use super::picture::Stack;
+use crate::judge::grounds::Spread;
+use crate::judge::scalar::{Ask, Levels, Scalar};
+use crate::judge::trial::MEAN_CAP;
+use crate::stats::gate::PLANNED;
+use crate::stats::normal::upper_quantile;
+use crate::stats::verdict::{MISS, Verdict};
+
+/// A rectangle of pixels, in one channel.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part {
+    pub size: usize,
+    pub row: usize,
+    pub column: usize,
+    pub height: usize,
+    pub width: usize,
+    pub channel: usize,
+}
+
+/// What evidence may rest on, and what is wanted of it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Terms {
+    /// Whether the pixels of a pass count as independent.
+    pub is_free: bool,
+    /// Whether the variance may be relied on.
+    pub has_variance: bool,
+    /// ε in units of u.
+    pub tolerance: Option<f64>,
+    /// Whether ε has the cap of a mean where nobody asked for one.
+    pub is_capped: bool,
+    /// K.
+    pub count: usize,
+}
+
+/// s²: how many V/ε² a part is planned for, so that all `count` of them pass.
+pub(super) fn planned_units(count: usize) -> f64 {
+    let z = upper_quantile(0.025 / count.max(1) as f64);
+    // The mean and the spread of ln P± of n normal draws, in units of s: κ − κ²ρ/2 and κ, κ = 0.6, ρ = 1.1.
+    let (gain, noise, needed) = (0.402, 0.6 * z, -MISS.ln());
+    let s = (noise + (noise * noise + 4.0 * gain * needed).sqrt()) / (2.0 * gain);
+    (s * s).max(PLANNED)
+}
+
+impl Part {
+    /// The places of its values in a pass, row after row.
+    pub(super) fn places(self, stack: &Stack) -> impl Iterator<Item = usize> + Clone + use<> {
+        let (columns, channels) = (stack.size.columns, stack.size.channels);
+        let Self { row, column, height, width, channel, .. } = self;
+        (row..row + height).flat_map(move |row| {
+            (column..column + width)
+                .map(move |column| (row * columns + column) * channels + channel)
+        })
+    }
+}
+
+/// What the passes say of a part. All of its values are finite.
+pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> Tile {
+    let places: Vec<usize> = part.places(stack).collect();
+    let count = places.len() as f64;
+    let unit = pixels.units[part.channel];
+    let mean_of = |of: &dyn Fn(usize) -> f64| places.iter().map(|&i| of(i)).sum::<f64>() / count;
+    let truth = mean_of(&|i| pixels.truth[i]);
+    let is_single = places.len() == 1;
+    let is_free = terms.is_free || is_single;
+    let variance = pixels.variance.as_ref().filter(|_| terms.has_variance && is_free);
+    let variance = variance.map(|variance| mean_of(&|i| variance[i]));
+    let averages: Vec<f64> = (0..stack.passes)
+        .map(|pass| {
+            let values = stack.pass(pass);
+            mean_of(&|i| values[i])
+        })
+        .collect();
+    let n = stack.passes as f64;
+    let mean = averages.iter().sum::<f64>() / n;
+    let shown = averages.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
+    let standard_error = (variance.map_or(shown, |variance| variance / count) / n).sqrt();
+    let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
+    let mut found = Tile {
+        size: part.size,
+        row: part.row,
+        column: part.column,
+        height: part.height,
+        width: part.width,
+        channel: part.channel,
+        truth,
+        mean,
+        standard_error,
+        z: Some(z).filter(|z| z.is_finite()),
+        ln_e: 0.0,
+        ln_p: [f64::NEG_INFINITY; 2],
+        tolerance: None,
+        is_listed: false,
+        verdict: Verdict::Inconclusive,
+    };
+    if places.iter().all(|&i| pixels.is_certain(i)) {
+        // What has no spread was compared with its truth, value by value.
+        (found.tolerance, found.ln_p) = (Some(0.0), [f64::INFINITY; 2]);
+        return found;
+    }
+    let draws = if is_free { n * count } else { n };
+    let limits =
+        |x: f64, of: fn(f64, f64) -> f64| places.iter().map(|&i| pixels.truth[i]).fold(x, of);
+    let [least, most] = if is_free {
+        [limits(f64::INFINITY, f64::min), limits(f64::NEG_INFINITY, f64::max)]
+    } else {
+        [truth; 2]
+    };
+    let ask = Ask {
+        check: "mean",
+        what: "mean",
+        spread: variance.map(|variance| Spread::Known(variance / (unit * unit))),
+        is_hard: true,
+        range: pixels.widened().map(|[low, high]| [(low - most) / unit, (high - least) / unit]),
+        tolerance: terms.tolerance,
+        usual: MEAN_CAP,
+        cap: if terms.is_capped { MEAN_CAP } else { 1e3 },
+        floor: mean_of(&|i| pixels.floor(i)) / unit,
+        must_pass: true,
+    };
+    let planned = Some(draws * PLANNED / planned_units(terms.count));
+    let mut scalar = Scalar::new(ask, planned, AT_THE_END);
+    let mut y = Vec::new();
+    // Stakes on a range learn from the passes before; a block has as many passes as all before it.
+    for (first, last) in doubling(stack.passes) {
+        y.clear();
+        if is_free {
+            for pass in first..last {
+                let values = stack.pass(pass);
+                y.extend(places.iter().map(|&i| (values[i] - pixels.truth[i]) / unit));
+            }
+        } else {
+            y.extend(averages[first..last].iter().map(|x| (x - truth) / unit));
+        }
+        scalar.absorb(&y);
+    }
+    scalar.decide();
+    (found.ln_e, found.ln_p) = (scalar.evidence.ln_e, scalar.evidence.ln_pass);
+    found.tolerance = scalar.design.map(|design| design.tolerance);
+    found
+}
+
+/// Levels that nothing reaches before the end.
+pub(super) const AT_THE_END: Levels = Levels { ln_fail: f64::INFINITY, ln_pass: f64::INFINITY };
+
+/// The passes in blocks: 1, 1, 2, 4, 8, …
+pub(super) fn doubling(passes: usize) -> impl Iterator<Item = (usize, usize)> {
+    let begins = std::iter::successors(Some(0_usize), |&at| Some((2 * at).max(1)));
+    begins.take_while(move |&at| at < passes).map(move |at| (at, (2 * at).max(1).min(passes)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn more_tiles_are_planned_for_more_passes() {
+        assert_eq!(planned_units(1), 27.0);
+        // z = 4.33 and 4.95 for 0.025/K: 0.402 s² − 0.6 z s − 4.605 = 0.
+        for (count, s) in [(4096, 7.966), (65_536, 8.697)] {
+            let found = planned_units(count).sqrt();
+            let z = upper_quantile(0.025 / count as f64);
+            assert!((0.402 * found * found - 0.6 * z * found - 4.605_17).abs() < 1e-4);
+            assert!((found - s).abs() < 1e-3, "{count}: {found}");
+        }
+    }
+
+    #[test]
+    fn blocks_double_and_cover_all_passes() {
+        let blocks: Vec<_> = doubling(11).collect();
+        assert_eq!(blocks, [(0, 1), (1, 2), (2, 4), (4, 8), (8, 11)]);
+    }
+}

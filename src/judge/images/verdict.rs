@@ -1,0 +1,198 @@
+//! What is said of a stack, and in which order.
+
+use super::claim::{Claim, Pixels};
+use super::judgement::{Judgement, Refuted, Tile};
+use crate::stats::gate::VARIANCE_MARGIN;
+use crate::stats::verdict::Verdict;
+
+/// The verdict of the whole, and what it promises.
+pub(super) fn decide(judgement: &mut Judgement, pixels: &Pixels, claim: &Claim) {
+    let (verdict, reason) = said(judgement, pixels, claim);
+    (judgement.verdict, judgement.reason) = (verdict, reason);
+    judgement.guarantees = guarantees(judgement, claim);
+}
+
+fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, String) {
+    if let Some(refuted) = judgement.refuted_by {
+        return (Verdict::Fail, fault(judgement, refuted, pixels));
+    }
+    if judgement.order.is_refuted() {
+        let reason = format!("{}; the means are not judged", judgement.order.reason);
+        return (Verdict::Inconclusive, reason);
+    }
+    let mut failing = Vec::new();
+    if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
+        failing.push(format!(
+            "the variance is too small: values spread {:.3} times as wide (ln E = {:.1} ≥ {:.1})",
+            variance.about_mean, variance.ln_e, variance.limit
+        ));
+    }
+    for whole in judgement.whole.iter().filter(|whole| whole.verdict == Verdict::Fail) {
+        failing.push(format!("the picture is off: {}", off(judgement, whole)));
+    }
+    if judgement.counts.fail > 0 {
+        let (fail, tiles) = (judgement.counts.fail, judgement.counts.tiles);
+        let worst = judgement.worst.first().map_or(String::new(), |worst| {
+            format!("; the worst, {}: {}", place(judgement, worst), off(judgement, worst))
+        });
+        failing.push(format!("{fail} of {tiles} tiles are off{worst}"));
+    }
+    if !failing.is_empty() {
+        return (Verdict::Fail, failing.join("; "));
+    }
+    let open = open(judgement, claim);
+    let verdict = if open.is_empty() { Verdict::Pass } else { Verdict::Inconclusive };
+    (verdict, open.join("; "))
+}
+
+/// What keeps a picture that does not fail from passing.
+fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
+    let has_spread = judgement.whole.iter().any(|whole| whole.tolerance != Some(0.0));
+    if claim.variance.is_none() && claim.range.is_none() && has_spread {
+        return vec![
+            "what a pixel's values may be is not known: rare ones that were not drawn may carry the \
+             mean; give --variance, --variance-image or --range LOW,HIGH"
+                .to_owned(),
+        ];
+    }
+    let is_endless = claim.range.is_some_and(|[low, high]| !(high - low).is_finite());
+    if claim.variance.is_none() && is_endless && has_spread {
+        return vec![
+            "nothing passes by a range with an infinite end: rare values that were not drawn may carry the \
+             mean; give both ends, --variance or --variance-image"
+                .to_owned(),
+        ];
+    }
+    let mut open = Vec::new();
+    if judgement.neighbours.is_refuted() && claim.range.is_none() {
+        let rest = if judgement.tile == 1 { "" } else { ", or judge single pixels by --tile 1" };
+        open.push(format!(
+            "{}, so that averages of pixels have no known variance; render without a filter that \
+             blends pixels, give --range LOW,HIGH{rest}",
+            judgement.neighbours.reason
+        ));
+    }
+    if let Some(variance) =
+        judgement.variance.filter(|variance| variance.about_mean > VARIANCE_MARGIN)
+    {
+        open.push(format!(
+            "the values spread {:.3} times as wide as the variance says",
+            variance.about_mean
+        ));
+    }
+    let undecided = |tile: &&Tile| tile.verdict != Verdict::Pass;
+    if let Some(whole) = judgement.whole.iter().find(undecided) {
+        open.push(format!("the picture may be off {}; render more passes", bias(whole)));
+    }
+    let count = judgement.tiles.iter().filter(undecided).count();
+    if let Some(tile) = judgement.tiles.iter().find(undecided) {
+        open.push(format!(
+            "{count} of {} tiles may be off, the first, {}, {}; render more passes, or give a larger \
+             --tile or a wider --tolerance",
+            judgement.counts.tiles,
+            place(judgement, tile),
+            bias(tile)
+        ));
+    }
+    open
+}
+
+/// ε in words.
+fn bias(tile: &Tile) -> String {
+    tile.tolerance.map_or("by any amount".to_owned(), |tolerance| {
+        format!("by {:.2} % of the picture's mean or more", 100.0 * tolerance)
+    })
+}
+
+/// Where a tile is.
+pub(super) fn place(judgement: &Judgement, tile: &Tile) -> String {
+    let span = |what: &str, first: usize, count: usize| match count {
+        1 => format!("{what} {first}"),
+        _ => format!("{what}s {first} to {}", first + count - 1),
+    };
+    let rows = span("row", tile.row, tile.height);
+    let columns = span("column", tile.column, tile.width);
+    format!("{rows}, {columns}{}", channel(judgement, tile.channel))
+}
+
+fn channel(judgement: &Judgement, channel: usize) -> String {
+    if judgement.size.channels > 1 { format!(", channel {channel}") } else { String::new() }
+}
+
+fn off(judgement: &Judgement, tile: &Tile) -> String {
+    let z = tile.z.map_or(String::new(), |z| format!(", z = {z:+.2}"));
+    let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
+    let channel = if is_whole {
+        channel(judgement, tile.channel).replacen(", ", " in ", 1)
+    } else {
+        String::new()
+    };
+    format!(
+        "mean {:.6e}{channel}, truth {:.6e}{z} (ln E = {:.1})",
+        tile.mean, tile.truth, tile.ln_e
+    )
+}
+
+/// What is wrong with a value.
+fn fault(judgement: &Judgement, refuted: Refuted, pixels: &Pixels) -> String {
+    let Refuted { pass, row, column, channel: c, value } = refuted;
+    let place = format!("pass {pass}, row {row}, column {column}{}", channel(judgement, c));
+    let size = judgement.size;
+    let truth = pixels.truth[(row * size.columns + column) * size.channels + c];
+    let said = match pixels.range {
+        _ if !value.is_finite() => format!("numeric: {place} is {value}, all counted from 0"),
+        Some([low, high]) if !(low..=high).contains(&value) => {
+            format!("range: {place} is {value:e}, outside of {low} to {high}")
+        }
+        _ => format!("{place} is {value:e}, not {truth:e}, and there should be no spread"),
+    };
+    match judgement.refuting {
+        1 => said,
+        count => format!("{said}; {count} values are like that"),
+    }
+}
+
+fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
+    let mut said = Vec::new();
+    let has_grounds = claim.variance.is_some() || claim.range.is_some();
+    let whose = if claim.variance.is_some() { " of that variance" } else { "" };
+    if has_grounds {
+        said.push(format!(
+            "independent passes{whose} fail with chance {} at most, all tiles and channels together",
+            judgement.alpha
+        ));
+        let condition = if claim.variance.is_some() { " if the variance is right" } else { "" };
+        said.push(format!(
+            "a picture, or a tile, that is off by its tolerance passes with chance {} at most{condition}",
+            judgement.beta
+        ));
+    } else {
+        said.push("nothing fails or passes without a variance or a range".to_owned());
+    }
+    if !judgement.neighbours.is_tested {
+        said.push("there are no neighbours".to_owned());
+    } else if judgement.neighbours.is_refuted() {
+        said.push(format!(
+            "{}: averages of whole passes are judged, by the range alone",
+            judgement.neighbours.reason
+        ));
+    } else {
+        said.push(
+            "the pixels of a pass count as independent of each other; neighbours show nothing else"
+                .to_owned(),
+        );
+    }
+    if !judgement.order.is_tested {
+        said.push(format!(
+            "{} passes are too few to see whether each depends on the one before",
+            judgement.passes
+        ));
+    }
+    if judgement.counts.listed > 0 {
+        said.push(format!(
+            "of the {} tiles on the list, a share of {} at most is right, on average",
+            judgement.counts.listed, judgement.listed_rate
+        ));
+    }
+    said
+}

@@ -1,0 +1,101 @@
+//! What is said of a stack of images, on the screen: a small block of lines.
+
+use std::fmt::Write;
+
+use crate::catalogue::digits::{fixed, percent, short, signed};
+use crate::judge::images::Judgement;
+use crate::judge::images::judgement::{Dependence, Tile};
+use crate::report::console::layout::wrapped;
+
+/// The widest word at the left.
+const INDENT: usize = 10;
+
+/// The block, `width` columns wide.
+pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
+    let mut text = String::new();
+    let mut line = |word: &str, what: &str| {
+        for (i, part) in wrapped(what, width.max(40) - INDENT).iter().enumerate() {
+            let word = if i == 0 { word } else { "" };
+            let _ = writeln!(text, "{word:INDENT$}{part}");
+        }
+    };
+    line("images", &format!("{} passes of {} in {name}", judgement.passes, judgement.size));
+    for whole in &judgement.whole {
+        line("whole", &whole_line(judgement, whole));
+    }
+    if let Some(variance) = judgement.variance {
+        line(
+            "variance",
+            &format!(
+                "s²/V = {}, ln E = {:.1} of {:.1} against V as the largest",
+                fixed(variance.about_mean, 5),
+                variance.ln_e,
+                variance.limit
+            ),
+        );
+    }
+    if judgement.counts.tiles > 0 {
+        line("tiles", &tiles(judgement));
+    }
+    for worst in &judgement.worst {
+        line("worst", &worst_line(judgement, worst));
+    }
+    line("passes", &dependence(&judgement.order, "ln 1/p", "there are too few to tell"));
+    line("pixels", &dependence(&judgement.neighbours, "ln E", "there is one"));
+    for promise in &judgement.guarantees {
+        line("promise", promise);
+    }
+    let why =
+        if judgement.reason.is_empty() { String::new() } else { format!(": {}", judgement.reason) };
+    line("verdict", &format!("{}{why}", judgement.verdict.word()));
+    text
+}
+
+fn channel(judgement: &Judgement, tile: &Tile) -> String {
+    if judgement.size.channels > 1 { format!("channel {}: ", tile.channel) } else { String::new() }
+}
+
+/// Mean, error, truth and z.
+fn numbers(tile: &Tile) -> String {
+    let z = tile.z.map_or(String::new(), |z| format!(", z = {}", signed(z)));
+    let (mean, error) = (fixed(tile.mean, 8), short(tile.standard_error, 3));
+    format!("{mean} ± {error}, truth {}{z}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
+}
+
+fn whole_line(judgement: &Judgement, whole: &Tile) -> String {
+    let tolerance = whole.tolerance.map_or(String::new(), |x| format!(", ε = {}", percent(x)));
+    let channel = channel(judgement, whole);
+    format!("{channel}{}{tolerance}: {}", numbers(whole), whole.verdict.word())
+}
+
+fn tiles(judgement: &Judgement) -> String {
+    let (counts, size) = (judgement.counts, judgement.tile);
+    let widest = judgement.tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
+    format!(
+        "{} of {size} × {size} pixels and larger: {} pass (ε up to {} of the picture's mean), {} fail, {} listed",
+        counts.tiles,
+        counts.pass,
+        percent(widest),
+        counts.fail,
+        counts.listed
+    )
+}
+
+fn worst_line(judgement: &Judgement, tile: &Tile) -> String {
+    let Tile { row, column, height, width, .. } = tile;
+    let (channel, word) = (channel(judgement, tile), tile.verdict.word());
+    format!("{height} × {width} at row {row}, column {column}: {channel}{}: {word}", numbers(tile))
+}
+
+fn dependence(found: &Dependence, evidence: &str, untested: &str) -> String {
+    if found.is_refuted() {
+        return found.reason.clone();
+    }
+    if !found.is_tested {
+        return format!("not tested for dependence: {untested}");
+    }
+    format!(
+        "{evidence} = {:.1} of {:.1} against independence: nothing found",
+        found.evidence, found.limit
+    )
+}
