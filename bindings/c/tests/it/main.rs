@@ -1,0 +1,8 @@
+//! Programs in C and C++ against the library, compiled by the system's compilers.
+#![cfg(unix)]
+
+mod border;
+mod build;
+mod examples;
+mod header;
+mod packages;
