@@ -13,7 +13,7 @@ use crate::status::{Error, Status, c_text};
 /// How far a check is.
 enum Stage {
     /// It is being set up.
-    SetUp(trueflight::Check<()>),
+    SetUp(Box<trueflight::Check<()>>),
     /// It waits for draws.
     Open(Box<Pushed>),
     /// It is judged.
@@ -41,7 +41,7 @@ impl Check {
     pub(crate) fn new(name: &str) -> Self {
         Self {
             name: name.to_owned(),
-            stage: Stage::SetUp(trueflight::claim(name)),
+            stage: Stage::SetUp(Box::new(trueflight::claim(name))),
             draws: None,
             seed: 1,
             block: 0,
@@ -75,7 +75,7 @@ impl Check {
     ) -> Result<(), Error> {
         match mem::replace(&mut self.stage, Stage::Ended) {
             Stage::SetUp(check) => {
-                self.stage = Stage::SetUp(what(check));
+                self.stage = Stage::SetUp(Box::new(what(*check)));
                 Ok(())
             }
             _ => Err(self.error(Status::Order, "say what is known before the first draw")),

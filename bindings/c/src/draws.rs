@@ -83,7 +83,9 @@ pub unsafe extern "C" fn tf_check_run(
             let draw = draw.ok_or_else(no_callback)?;
             check.of_one_value()?;
             check.run(|out, draws, rng| {
-                out.iter_mut().for_each(|x| *x = draw(rng, user));
+                for x in out {
+                    *x = draw(rng, user);
+                }
                 draws
             })
         })

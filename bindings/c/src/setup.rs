@@ -113,7 +113,7 @@ pub unsafe extern "C" fn tf_check_rounding(check: *mut Check, rounding: f64) -> 
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_mean_only(check: *mut Check) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.mean_only())) }
+    unsafe { change(check, |check| check.say(trueflight::Check::mean_only)) }
 }
 
 /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or with

@@ -5,4 +5,5 @@ mod border;
 mod build;
 mod examples;
 mod header;
+mod manual;
 mod packages;

@@ -68,7 +68,7 @@ fn cmake_and_pkg_config_find_it_where_it_is_installed() {
                 format!("-B{}", built.display()),
                 format!("-DTRUEFLIGHT_LIBRARY_DIR={}", libraries().display()),
                 format!("-DCMAKE_INSTALL_PREFIX={}", prefix.display()),
-                format!("-DCMAKE_INSTALL_LIBDIR=lib"),
+                "-DCMAKE_INSTALL_LIBDIR=lib".into(),
                 format!("-DBUILD_SHARED_LIBS={shared}"),
             ],
         );
