@@ -65,6 +65,16 @@ fn exceptions_come_through() {
 }
 
 #[test]
+fn an_exception_that_leaves_a_c_callback_ends_the_process() {
+    let (code, text) = run("thrown.cpp");
+    assert_eq!(code, None, "{text}");
+    assert!(
+        text.contains("cannot catch foreign exceptions") && !text.contains("it went on"),
+        "{text}"
+    );
+}
+
+#[test]
 fn eight_threads_agree() {
     let (code, text) = run("threads.cpp");
     assert_eq!((code, text.as_str()), (Some(0), "eight threads agree\n"));
