@@ -1,8 +1,8 @@
 // A confusion table: honest and buggy estimators of one problem, each with what is known of the honest one. Exit code 0
 // if all honest ones pass and no buggy one does.
 //
-// The medium is σ_t(t) = exp(−t) on [0, 3]: τ = 1 − exp(−3), ∫σ² = (1 − exp(−6))/2. Ratio tracking by a constant σ̂ with a
-// control of c has E[w²] = exp(−2τ + ∫(σ − c)²/σ̂), and σ̂ L lookups that are Poisson distributed.
+// The medium is σ_t(t) = exp(−t) on [0, 3]: τ = 1 − exp(−3), ∫σ² = (1 − exp(−6))/2. Ratio tracking by a constant σ̂
+// with a control of c has E[w²] = exp(−2τ + ∫(σ − c)²/σ̂), and σ̂ L lookups that are Poisson distributed.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -35,6 +35,8 @@ template <class Keep> double track(rng &rng, double sampling, double length, Kee
     return weight;
 }
 
+static double collide(double weight, double t) { return weight * (1 - sigma(t)); }
+
 static double ratio(rng &rng, double sampling = 1)
 {
     return track(rng, sampling, L, [=](double w, double t) { return w * (1 - sigma(t) / sampling); });
@@ -59,6 +61,25 @@ static double roulette(rng &rng, double survivor)
     });
 }
 
+/** Ratio tracking in two densities by the same walk. */
+static std::array<double, 2> densities(rng &rng)
+{
+    double thin = 1;
+    const double full = track(rng, 1, L, [&](double w, double t) {
+        thin *= 1 - sigma(t) / 2;
+        return collide(w, t);
+    });
+    return {full, thin};
+}
+
+/** What is known: the mean and the range; the mean and a variance; all three. */
+static const auto unit = [](auto &c) { c.truth(T).range(0, 1); };
+static auto varied(double variance)
+{
+    return [=](auto &c) { c.truth(T).variance(variance); };
+}
+static const auto known = [](auto &c) { c.truth(T).variance(spread(1)).range(0, 1); };
+
 static int wrong = 0, rows = 0;
 
 static void tell(bool honest, const char *name, const trueflight::outcome &found)
@@ -67,8 +88,9 @@ static void tell(bool honest, const char *name, const trueflight::outcome &found
     const bool is_right = found.passed() == honest;
     wrong += !is_right;
     const char *words[] = {"pass", "fail", "inconclusive"};
-    std::printf("%-6s  %-50s  %-12s  %9llu  %s%s\n", honest ? "honest" : "buggy", name, words[found.verdict],
-                static_cast<unsigned long long>(found.values[0].draws), is_right ? "" : "WRONG ", found.reason.c_str());
+    const auto draws = static_cast<unsigned long long>(found.values[0].draws);
+    std::printf("%-6s  %-50s  %-12s  %9llu  %s%s\n", honest ? "honest" : "buggy", name, words[found.verdict], draws,
+                is_right ? "" : "WRONG ", found.reason.c_str());
 }
 
 /** Judged by truth, variance and range where the check says so; `say` says what is known. */
@@ -81,28 +103,27 @@ template <class Draw, class Say> void judge(bool honest, const char *name, Draw 
 
 static void honest_ones()
 {
-    const auto unit = [](auto &c) { c.truth(T).range(0, 1); };
-    judge(true, "delta tracking", [](rng &r) { return delta(r, 1); }, [](auto &c) { c.truth(T).variance(T * (1 - T)).range(0, 1); });
+    const auto depth = [](auto &c) { c.truth(tau).range(0, std::nextafter(L, 4)); };
+    judge(true, "delta tracking", [](rng &r) { return delta(r, 1); }, varied(T * (1 - T)));
     judge(true, "delta tracking, majorant 2", [](rng &r) { return delta(r, 2); }, unit);
-    judge(true, "ratio tracking", [](rng &r) { return ratio(r); }, [](auto &c) { c.truth(T).variance(spread(1)).range(0, 1); });
-    judge(true, "ratio tracking, majorant 2", [](rng &r) { return ratio(r, 2); }, [](auto &c) { c.truth(T).variance(spread(2)).range(0, 1); });
+    judge(true, "ratio tracking", [](rng &r) { return ratio(r); }, known);
+    judge(true, "ratio tracking, majorant 2", [](rng &r) { return ratio(r, 2); }, varied(spread(2)));
     judge(true, "residual ratio tracking", [](rng &r) {
-        return std::exp(-0.3 * L) * track(r, 0.7, L, [](double w, double t) { return w * (1 - (sigma(t) - 0.3) / 0.7); });
-    }, [](auto &c) { c.truth(T).variance(spread(0.7, 0.3)); });
+        const auto keep = [](double w, double t) { return w * (1 - (sigma(t) - 0.3) / 0.7); };
+        return std::exp(-0.3 * L) * track(r, 0.7, L, keep);
+    }, varied(spread(0.7, 0.3)));
     judge(true, "ratio tracking with roulette", [](rng &r) { return roulette(r, 1); }, unit);
-    judge(true, "ratio tracking in single precision", [](rng &r) { return static_cast<float>(ratio(r)); }, [](auto &c) { c.truth(T).range(0, 1).rounding(1e-6); });
-    judge(true, "ratio tracking below the majorant, signed", [](rng &r) { return ratio(r, 0.8); }, [](auto &c) { c.truth(T).variance(spread(0.8)); });
-    judge(true, "two densities at once", [](rng &r) {
-        double thin = 1;
-        const double full = track(r, 1, L, [&](double w, double t) { thin *= 1 - sigma(t) / 2; return w * (1 - sigma(t)); });
-        return std::array<double, 2>{full, thin};
-    }, [](auto &c) { c.truth({T, std::sqrt(T)}).range(0, 1); });
-    judge(true, "optical depth, uniform", [](rng &r) { return L * sigma(L * r.uniform()); }, [](auto &c) { c.truth(tau).variance(L * squares - tau * tau).range(0, L); });
+    judge(true, "ratio tracking in single precision", [](rng &r) { return static_cast<float>(ratio(r)); },
+          [](auto &c) { c.truth(T).range(0, 1).rounding(1e-6); });
+    judge(true, "ratio tracking below the majorant, signed", [](rng &r) { return ratio(r, 0.8); }, varied(spread(0.8)));
+    judge(true, "two densities at once", densities, [](auto &c) { c.truth({T, std::sqrt(T)}).range(0, 1); });
+    judge(true, "optical depth, uniform", [](rng &r) { return L * sigma(L * r.uniform()); },
+          [](auto &c) { c.truth(tau).variance(L * squares - tau * tau).range(0, L); });
     judge(true, "optical depth, antithetic", [](rng &r) {
         const double u = r.uniform();
         return L * (sigma(L * u) + sigma(L * (1 - u))) / 2;
-    }, [](auto &c) { c.truth(tau).range(0, L); });
-    judge(true, "clipped free flight", [](rng &r) { return std::min(flight(r), L); }, [](auto &c) { c.truth(tau).range(0, std::nextafter(L, 4)); });
+    }, depth);
+    judge(true, "clipped free flight", [](rng &r) { return std::min(flight(r), L); }, depth);
     std::exponential_distribution<double> exponential;
     judge(true, "flights of <random>", [=](rng &r) mutable { return exponential(r) > tau ? 1 : 0; }, unit);
 }
@@ -118,7 +139,10 @@ static void pushed(bool honest, const char *name, double factor)
         std::vector<double> draws, lookups;
         for (int i = 0; i < 1000; ++i) {
             int count = 0;
-            draws.push_back(track(random, 1, L, [&](double w, double t) { ++count; return w * (1 - sigma(t)); }));
+            draws.push_back(track(random, 1, L, [&](double w, double t) {
+                ++count;
+                return collide(w, t);
+            }));
             lookups.push_back(factor * count);
         }
         made.absorb(draws, lookups);
@@ -129,12 +153,11 @@ static void pushed(bool honest, const char *name, double factor)
 /** Bugs of the walk. */
 static void buggy_walks()
 {
-    const auto unit = [](auto &c) { c.truth(T).range(0, 1); };
     const auto keeps = [&](const char *name, auto keep) {
         judge(false, name, [=](rng &r) { return track(r, 1, L, keep); }, unit);
     };
     judge(false, "majorant 20 % low in delta tracking", [](rng &r) { return delta(r, 0.8); }, unit);
-    judge(false, "majorant of the steps is not that of the weights", [](rng &r) { return track(r, 1.1, L, [](double w, double t) { return w * (1 - sigma(t)); }); }, unit);
+    judge(false, "majorant of the steps is not that of the weights", [](rng &r) { return track(r, 1.1, L, collide); }, unit);
     judge(false, "looks up where the step began", [](rng &r) {
         double w = 1, before = 0;
         for (double t = flight(r); t < L; before = t, t += flight(r)) w *= 1 - sigma(before);
@@ -145,10 +168,10 @@ static void buggy_walks()
         for (double s = flight(r); flown + s < L; flown += s, s = flight(r)) w *= 1 - sigma(s);
         return w;
     }, unit);
-    judge(false, "ends at 2.5 instead of 3", [](rng &r) { return track(r, 1, 2.5, [](double w, double t) { return w * (1 - sigma(t)); }); }, unit);
+    judge(false, "ends at 2.5 instead of 3", [](rng &r) { return track(r, 1, 2.5, collide); }, unit);
     judge(false, "ends at the third collision", [](rng &r) {
         int left = 3;
-        return track(r, 1, L, [&](double w, double t) { return left-- > 0 ? w * (1 - sigma(t)) : w; });
+        return track(r, 1, L, [&](double w, double t) { return left-- > 0 ? collide(w, t) : w; });
     }, unit);
     keeps("multiplies by what is absorbed", [](double w, double t) { return w * sigma(t); });
     keeps("density 3 % thin", [](double w, double t) { return w * (1 - 0.97 * sigma(t)); });
@@ -176,10 +199,10 @@ static void buggy_walks()
         return w;
     }, unit);
     judge(false, "larger of two tries", [](rng &r) { return std::max(ratio(r), ratio(r)); }, unit);
-    judge(false, "optical depth without the length", [](rng &r) { return sigma(L * r.uniform()); }, [](auto &c) { c.truth(tau).range(0, L); });
+    judge(false, "optical depth without the length", [](rng &r) { return sigma(L * r.uniform()); },
+          [](auto &c) { c.truth(tau).range(0, L); });
     judge(false, "channels swapped", [](rng &r) {
-        double thin = 1;
-        const double full = track(r, 1, L, [&](double w, double t) { thin *= 1 - sigma(t) / 2; return w * (1 - sigma(t)); });
+        const auto [full, thin] = densities(r);
         return std::array<double, 2>{thin, full};
     }, [](auto &c) { c.truth({T, std::sqrt(T)}).range(0, 1); });
 }
@@ -187,11 +210,11 @@ static void buggy_walks()
 /** Bugs of the spread, of the order, and of single draws. */
 static void buggy_draws()
 {
-    const auto known = [](auto &c) { c.truth(T).variance(spread(1)).range(0, 1); };
     judge(false, "another majorant than said", [](rng &r) { return ratio(r, 1.1); }, known);
     judge(false, "mean of two as one draw", [](rng &r) { return (ratio(r) + ratio(r)) / 2; }, known);
     judge(false, "the truth itself", [](rng &) { return T; }, known);
-    judge(false, "a tenth of the last draw", [last = T](rng &r) mutable { return last = 0.9 * ratio(r) + 0.1 * last; }, known);
+    judge(false, "a tenth of the last draw",
+          [last = T](rng &r) mutable { return last = 0.9 * ratio(r) + 0.1 * last; }, known);
     judge(false, "every draw twice", [last = 0.0, old = false](rng &r) mutable {
         old = !old;
         return old ? last = ratio(r) : last;
@@ -201,11 +224,16 @@ static void buggy_draws()
         for (int i = 0; i < 20; ++i) tf_rng_word(&seeded);
         rng own(&seeded);
         return ratio(own);
-    }, [](auto &c) { c.truth(T).range(0, 1); });
-    judge(false, "5 % brighter from draw 300000 on", [n = 0](rng &r) mutable { return ratio(r) * (++n > 300000 ? 1.05 : 1); }, [](auto &c) { c.truth(T).variance(spread(1)).draws(1 << 20); });
-    judge(false, "not a number once in 10000", [](rng &r) { return r.uniform() < 1e-4 ? std::nan("") : ratio(r); }, known);
-    judge(false, "infinite once in 10000", [](rng &r) { return r.uniform() < 1e-4 ? std::numeric_limits<double>::infinity() : ratio(r); }, known);
-    judge(false, "negative weights below the majorant", [](rng &r) { return ratio(r, 0.8); }, [](auto &c) { c.truth(T).range(0, 1); });
+    }, unit);
+    judge(false, "5 % brighter from draw 300000 on",
+          [n = 0](rng &r) mutable { return ratio(r) * (++n > 300000 ? 1.05 : 1); },
+          [](auto &c) { c.truth(T).variance(spread(1)).draws(1 << 20); });
+    const auto rarely = [](double what) {
+        return [=](rng &r) { return r.uniform() < 1e-4 ? what : ratio(r); };
+    };
+    judge(false, "not a number once in 10000", rarely(std::nan("")), known);
+    judge(false, "infinite once in 10000", rarely(std::numeric_limits<double>::infinity()), known);
+    judge(false, "negative weights below the majorant", [](rng &r) { return ratio(r, 0.8); }, unit);
     pushed(false, "lookups counted twice", 2);
 }
 
