@@ -43,7 +43,9 @@ pub(crate) unsafe fn change(
     let Some(check) = (unsafe { check.as_mut() }) else { return remember(&null("the check")) };
     let done = match check.fault() {
         Some(error) => Err(error.clone()),
-        None => settled(|| act(check)).inspect_err(|error| check.spoil(error)),
+        None => settled(|| act(check))
+            .map_err(|error| check.placed(error))
+            .inspect_err(|error| check.spoil(error)),
     };
     done.map_or_else(|error| remember(&error), |()| Status::Ok)
 }
@@ -61,7 +63,7 @@ pub(crate) unsafe fn ask<T>(
     let Some(check) = (unsafe { check.as_mut() }) else {
         return Err(remember(&null("the check")));
     };
-    answer(|| act(check))
+    settled(|| act(check)).map_err(|error| remember(&check.placed(error)))
 }
 
 /// The text that C points to.

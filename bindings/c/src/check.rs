@@ -55,6 +55,18 @@ impl Check {
         Error::new(status, format!("check `{}`: {what}", self.name))
     }
 
+    /// An error of the border, with the check's name; all others have it.
+    pub(crate) fn placed(&self, error: Error) -> Error {
+        match error.status {
+            Status::NullPointer | Status::Text | Status::Internal
+                if !error.message.starts_with("check `") =>
+            {
+                self.error(error.status, &error.message)
+            }
+            _ => error,
+        }
+    }
+
     /// The first error.
     pub(crate) fn fault(&self) -> Option<&Error> {
         self.fault.as_ref()

@@ -1,5 +1,6 @@
 //! Compiles programs and runs them.
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -70,10 +71,17 @@ impl Program {
 
     /// The same with arguments.
     pub fn run_with(&self, arguments: &[&str]) -> (Option<i32>, String) {
-        let mut command = Command::new(self.folder.path().join("program"));
+        let mut command = command(self.folder.path().join("program"));
         let output = command.args(arguments).output().expect("it runs");
         (output.status.code(), said(&output))
     }
+}
+
+/// A command that finds libraries where it was linked: Cargo names folders with older ones for its tests.
+pub fn command(program: impl AsRef<OsStr>) -> Command {
+    let mut command = Command::new(program);
+    command.env_remove("LD_LIBRARY_PATH").env_remove("DYLD_FALLBACK_LIBRARY_PATH");
+    command
 }
 
 /// What a command wrote.

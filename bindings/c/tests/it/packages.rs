@@ -8,7 +8,7 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
-use crate::build::{here, libraries, said};
+use crate::build::{command, here, libraries, said};
 
 /// A tool by the environment or its usual name, if it is there.
 fn tool(variable: &str, usual: &str) -> Option<String> {
@@ -25,7 +25,7 @@ fn run<I: IntoIterator<Item = A>, A: AsRef<OsStr>>(
     program: impl AsRef<OsStr>,
     arguments: I,
 ) -> String {
-    let mut command = Command::new(program);
+    let mut command = command(program);
     let output = command.args(arguments).output().expect("it runs");
     let text = said(&output);
     assert!(output.status.success(), "{command:?}: {text}");
