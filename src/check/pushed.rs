@@ -105,6 +105,11 @@ impl Pushed {
         self.readings.iter().any(Reading::is_open)
     }
 
+    /// How many values a draw has.
+    pub fn values(&self) -> usize {
+        self.columns.len()
+    }
+
     /// How many draws there were.
     pub fn draws(&self) -> u64 {
         self.readings[0].draws() + self.columns[0].len() as u64

@@ -94,6 +94,12 @@ impl<W: Words> Xoshiro<W> {
         Self { state }
     }
 
+    /// Where it stands: [`Self::at`] goes on from there.
+    #[inline(always)]
+    pub fn state(&self) -> [W; 4] {
+        self.state
+    }
+
     /// The next word.
     #[inline(always)]
     pub fn word(&mut self) -> W {

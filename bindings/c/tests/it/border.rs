@@ -1,0 +1,113 @@
+//! What crosses the border: errors, exceptions, threads, memory; and draws, which are those of Rust.
+
+use std::process::Command;
+
+use crate::build::{Link, Program};
+
+fn run(source: &str) -> (Option<i32>, String) {
+    Program::new(&format!("tests/programs/{source}"), Link::Shared, &[]).run()
+}
+
+#[test]
+fn bad_input_gets_one_clear_error() {
+    let (code, text) = run("errors.c");
+    assert_eq!(code, Some(0), "{text}");
+    let case = if cfg!(feature = "theory") { "no/such-case" } else { "built without theory" };
+    let wanted = [
+        ("no name", "1 the check's name is null"),
+        ("bad name", "1 the check's name is not UTF-8"),
+        ("no check", "1 the check is null"),
+        ("text of no check", "the check is null"),
+        ("no check passes", "0"),
+        ("no draws pointer", "1 check `half`: the list of draws is null"),
+        ("it stays", "1 check `half`: the list of draws is null"),
+        ("and is the text", "check `half`: the list of draws is null"),
+        ("passed", "0, open: 0"),
+        ("no callback", "1 check `half`: the callback is null"),
+        ("too many", "6 check `half`: the callback tells 16385 draws, but was asked for 16384"),
+        ("no draws", "5 check `half`: there are no draws; make one at least"),
+        ("no truth", "3 check `nothing said`: the truth is not known; give it by tf_check_truth"),
+        ("range", "3 check `half`: "),
+        ("no such case", "4 check `half`: "),
+        ("no such case", case),
+        ("ragged", "5 check `pairs`: 3 numbers are no whole number of draws of 2 values"),
+        ("one of two", "5 check `pairs`: a draw has 2 values; make them by tf_check_run_batches"),
+        (
+            "lookups",
+            "5 check `half`: lookups are claimed; push them by tf_check_absorb_with_lookups",
+        ),
+        ("too late", "7 check `half`: say what is known before the first draw"),
+        ("no place", "1 check `half`: the place of the verdict is null"),
+        ("no harm", "0 "),
+        ("no such value", "8 check `half`: a draw has 1 values, there is no number 1"),
+        ("after the verdict", "7 check `half`: the verdict was given; make a new check"),
+        ("nan", "1 numeric: draw 0"),
+    ];
+    for (what, said) in wanted {
+        // A message on a case has several lines.
+        let start = text.find(&format!("{what}: ")).unwrap_or_else(|| panic!("no {what}: {text}"));
+        let found = &text[start + what.len() + 2..];
+        let end = if what == "no such case" { found.find("\nragged") } else { found.find('\n') };
+        let found = &found[..end.expect("an end")];
+        assert!(found.contains(said), "{what}: {found}\n  does not say\n{said}");
+    }
+}
+
+#[test]
+fn exceptions_come_through() {
+    let (code, text) = run("exceptions.cpp");
+    assert_eq!(code, Some(0), "{text}");
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines[0], "no scene after 20001");
+    assert!(lines[1].starts_with("3 check `no truth`: the truth is not known"), "{text}");
+    assert!(lines[2].starts_with("`off`: fail: the mean is off by"), "{text}");
+    assert_eq!(lines[lines.len() - 2..], ["1 1", "3"]);
+}
+
+#[test]
+fn an_exception_that_leaves_a_c_callback_ends_the_process() {
+    let (code, text) = run("thrown.cpp");
+    assert_eq!(code, None, "{text}");
+    assert!(
+        text.contains("cannot catch foreign exceptions") && !text.contains("it went on"),
+        "{text}"
+    );
+}
+
+#[test]
+fn eight_threads_agree() {
+    let (code, text) = run("threads.cpp");
+    assert_eq!((code, text.as_str()), (Some(0), "eight threads agree\n"));
+}
+
+#[test]
+fn draws_are_those_of_rust() {
+    let check = trueflight::check("the same draws", |rng| rng.uniform() * rng.positive_uniform());
+    let check = check.truth(0.25).variance(1.0 / 9.0 - 1.0 / 16.0).seed(7).draws(100_001);
+    let outcome = check.verdict().expect("a verdict");
+    assert_eq!(run("same.c"), (Some(0), format!("{outcome}\n")));
+}
+
+/// No write beyond its place, no use after it is freed, nothing undefined, and every handle is freed.
+#[test]
+fn sanitizers_find_nothing() {
+    let flags = ["-g", "-fsanitize=address,undefined", "-fno-sanitize-recover=all"];
+    let probe = ["-x", "c", "-", "-o", "/dev/null", "-fsanitize=address,undefined"];
+    let compiler = std::env::var("CC").unwrap_or_else(|_| "cc".into());
+    let probed = Command::new(compiler).args(probe).output().expect("a C compiler");
+    let said = String::from_utf8_lossy(&probed.stderr);
+    // Nothing on its input: all that fails is a missing `main`.
+    if said.contains("cannot find") || said.contains("unrecognized") || said.contains("unsupported")
+    {
+        println!("skipped: this compiler has no sanitizers");
+        return;
+    }
+    for source in ["errors.c", "exceptions.cpp", "threads.cpp", "same.c"] {
+        let (code, text) =
+            Program::new(&format!("tests/programs/{source}"), Link::Static, &flags).run();
+        assert_eq!(code, Some(0), "{source}: {text}");
+    }
+    // They would have found a check that is not freed.
+    let (code, text) = Program::new("tests/programs/leak.c", Link::Static, &flags).run();
+    assert!(code != Some(0) && text.contains("LeakSanitizer"), "{text}");
+}

@@ -1,0 +1,71 @@
+//! The examples do what they say.
+
+use crate::build::{Link, Program, here};
+
+fn run(source: &str, link: Link) -> (Option<i32>, String) {
+    Program::new(&format!("examples/{source}"), link, &[]).run()
+}
+
+#[test]
+fn honest_draws_pass_and_biased_ones_fail() {
+    for link in [Link::Static, Link::Shared] {
+        let (code, text) = run("analogue.c", link);
+        assert_eq!(code, Some(0), "{text}");
+        assert!(text.starts_with("`analogue`: pass\n"), "{text}");
+        let (code, text) = run("pushed.c", link);
+        assert_eq!(code, Some(1), "{text}");
+        assert!(text.contains("the mean is off by +1.99e-2"), "{text}");
+    }
+}
+
+#[test]
+fn a_lambda_is_judged() {
+    let (code, text) = run("lambda.cpp", Link::Shared);
+    assert_eq!(code, Some(0), "{text}");
+    assert!(text.starts_with("`wrong`: fail: value 2: the mean is off by"), "{text}");
+}
+
+#[test]
+fn theory_is_asked_where_it_is_there() {
+    let (code, text) = run("case.cpp", Link::Static);
+    let (wanted, said) = if cfg!(feature = "theory") {
+        (0, "`too thin`: fail")
+    } else {
+        (2, "built without theory; build it with the feature `theory`")
+    };
+    assert_eq!(code, Some(wanted), "{text}");
+    assert!(text.contains(said), "{text}");
+}
+
+/// The table in the results is what the program prints now.
+#[test]
+fn no_honest_estimator_fails_and_no_buggy_one_passes() {
+    let (code, text) = run("confusion.cpp", Link::Static);
+    assert_eq!(code, Some(0), "{text}");
+    let rows = |kind: &str| text.lines().filter(|line| line.starts_with(kind)).count();
+    assert!(rows("honest ") >= 12 && rows("buggy ") >= 30, "{text}");
+    let kept = here().join("../../results/bindings/confusion-c.txt");
+    // Logarithms and exponentials of another C library may move last digits: names and verdicts stay.
+    let verdicts = |text: &str| -> Vec<String> {
+        text.lines().map(|line| line.chars().take(72).collect()).collect()
+    };
+    let kept = std::fs::read_to_string(kept).expect("the table");
+    assert_eq!(verdicts(&kept), verdicts(&text));
+}
+
+#[test]
+fn costs_are_measured() {
+    let (code, text) = Program::new("examples/cost.c", Link::Static, &[]).run_with(&["262144"]);
+    assert_eq!(code, Some(0), "{text}");
+    let numbers = |line: &str| -> Vec<f64> {
+        line.split_whitespace().skip(1).map(|word| word.parse().expect("a number")).collect()
+    };
+    let rows: Vec<_> = text.lines().skip(2).map(numbers).collect();
+    assert_eq!(rows.len(), 2, "{text}");
+    for row in rows {
+        let [draw, callback, batch, by_range, by_variance] = row[..] else { panic!("{text}") };
+        assert!(draw > 0.0 && by_range > 0.0 && by_variance > 0.0, "{text}");
+        // Measured 1 and 0 for the cheap one, 4 and 1 for the usual one, which are differences of 60.
+        assert!(callback < 10.0 && batch < 10.0, "{text}");
+    }
+}

@@ -1,0 +1,9 @@
+//! Programs in C and C++ against the library, compiled by the system's compilers.
+#![cfg(unix)]
+
+mod border;
+mod build;
+mod examples;
+mod header;
+mod manual;
+mod packages;
