@@ -178,13 +178,11 @@ impl Judging {
         let asked: Asked = asked.extract()?;
         asked.fits()?;
         let (values, counts) = (asked.values, asked.counts);
-        let pushed = work(py, 0, None, move |_| {
-            let check = match &asked.case {
-                None => asked.check(),
-                Some(case) => asked.with_theory(case)?,
-            };
-            Ok(check.open()?)
-        })?;
+        let check = match asked.case.clone() {
+            None => asked.check(),
+            Some(case) => work(py, 0, None, move |_| asked.with_theory(&case))?,
+        };
+        let pushed = check.open().map_err(Trouble::from)?;
         Ok(Self { pushed: Some(pushed), values, counts })
     }
 

@@ -8,8 +8,6 @@ import functools
 import sys
 
 import numpy as np
-
-import trueflight as tf
 from estimators import (
     ALBEDO,
     CONTROL,
@@ -30,6 +28,8 @@ from estimators import (
     scattered_once,
     woodcock,
 )
+
+import trueflight as tf
 
 # Draws of each check, and the error rate of all of them together.
 DRAWS = 2**19
@@ -123,7 +123,12 @@ def table():
         called = f"{name}: {bug}" if bug else name
         verdict = tf.check(
             # A partial function's signature is the function's, in which `bug` comes third.
-            lambda n, rng, make=make: make(n, rng), **law, name=called, draws=DRAWS, alpha=ALPHA / len(listed), seed=1
+            lambda n, rng, make=make: make(n, rng),
+            **law,
+            name=called,
+            draws=DRAWS,
+            alpha=ALPHA / len(listed),
+            seed=1,
         )
         failed = [f["check"] for value in verdict.values for f in value["findings"] if f["verdict"] == "fail"]
         yield {

@@ -25,7 +25,10 @@ def same(one, other):
     timed = ("seconds", "ns_per_lookup")
     assert one.keys() == other.keys()
     for name in one.keys() - set(timed):
-        np.testing.assert_array_equal(one[name], other[name])
+        if isinstance(one[name], list):
+            assert one[name] == other[name]
+        else:
+            np.testing.assert_array_equal(one[name], other[name])
 
 
 def test_theory_in_columns():
@@ -64,7 +67,7 @@ def test_cases_as_text_path_dict_and_name(tmp_path):
 def test_a_sweep_takes_the_place_of_the_cases_own():
     found = tf.sweep(LONG, sampling=np.array([1.5, 2.5]), filter="ratio")
     assert found["swept"].tolist() == [1.5, 2.5] and np.isnan(found["mean"]).all()
-    drawn = tf.sweep(CASE.replace("sampling.constant.value = 1.0", ""), sampling=[1.0, 2.0], draws=2e4)
+    drawn = tf.sweep(CASE.replace("sampling.constant.value = 1.0", ""), sampling=[1.0, 2.0], draws=4e5)
     assert drawn["swept"].tolist() == [1.0, 2.0, 1.0, 2.0] and set(drawn["verdict"]) == {"pass"}
     dense = tf.sweep(CASE, density=[1.0, 3.0], filter="ratio")
     np.testing.assert_allclose(dense["truth"], np.exp([-2.0, -6.0]), rtol=1e-13)

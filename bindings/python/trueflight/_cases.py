@@ -134,9 +134,7 @@ def _plain(value: Any) -> Any:
     return os.fspath(value)
 
 
-def _wanted(
-    draws: int | None, seed: int, alpha: float, filter: str | None, threads: int | None
-) -> dict[str, Any]:
+def _wanted(draws: int | None, seed: int, alpha: float, filter: str | None, threads: int | None) -> dict[str, Any]:
     if not 0.0 < alpha < 1.0:
         raise Error(f"alpha = {alpha!r}; give a probability above 0 and below 1, such as 1e-3")
     return {

@@ -90,9 +90,9 @@ def check(
     >>> print(check(halves, truth=0.5, range=(0, 1)).verdict)
     pass
     """
-    called = name if name is not None else getattr(source, "__name__", "draws")
+    called = name if name is not None else getattr(source, "__name__", "draws").replace("<lambda>", "draws")
     count = None if draws is None else whole("draws", draws, 1, 2**63 - 1)
-    asked = {
+    asked: dict[str, Any] = {
         "name": called,
         "truth": _numbers("truth", truth),
         "variance": _numbers("variance", variance),

@@ -72,6 +72,7 @@ def pytest_report_header(config: pytest.Config) -> str:
     return f"trueflight: --tf-alpha={config.getoption('tf_alpha'):g} --tf-seed={config.getoption('tf_seed')}"
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_finish(session: pytest.Session) -> None:
     """Counts who shares alpha, before the first test runs."""
     session.config.stash[_USERS] = sum(map(_asks, session.items))
