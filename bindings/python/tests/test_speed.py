@@ -56,4 +56,4 @@ def test_other_threads_run_while_an_array_is_judged():
     seconds = time.monotonic() - begin
     stop.set()
     thread.join()
-    assert counted[0] > 20.0 * seconds, f"{counted[0]} turns in {seconds:.2f} s"
+    assert counted[0] > max(5.0, 20.0 * seconds), f"{counted[0]} turns in {seconds:.2f} s"
