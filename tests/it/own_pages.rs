@@ -46,7 +46,7 @@ fn the_example_of_a_program_draws_judges_and_plots() {
     assert_eq!(rows, 5, "{csv}");
     let files = walk(&path);
     assert!(files.iter().any(|file| file.contains(".png")), "{files:?}");
-    let code = command(&["bench", CASE, "--rounds", "1"]);
+    let code = command(&["bench", CASE, "--rounds", "1", "--out", folder]);
     assert_eq!(format!("{code:?}"), format!("{:?}", std::process::ExitCode::SUCCESS));
 }
 

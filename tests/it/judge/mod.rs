@@ -179,7 +179,7 @@ fn the_variance_is_tested_and_can_be_done_without() {
     // squares that were not drawn, unless a range forbids them.
     place.expect(1, "--truth 1 --variance 0.0173 x.f64", &["the variance is off"]);
     let large = "--truth 1 --variance 0.025";
-    place.expect(3, &format!("{large} x.f64"), &["looks off", "--kurtosis or --range"]);
+    place.expect(3, &format!("{large} x.f64"), &["looks off", "the kurtosis or the range"]);
     place.expect(1, &format!("{large} --range 0.75,1.25 x.f64"), &["the variance is off"]);
     let known = format!("--truth 1 --variance {} x.f64", 1.0 / 48.0);
     place.expect(0, &known, &["kurtosis estimated"]);
@@ -195,7 +195,7 @@ fn an_estimated_variance_waits_for_rare_events() {
     rare[5] = 1e4;
     rare[80_000] = 1e4;
     let place = Place::new(&[("x.f64", &raw(&rare)), ("short.f64", &raw(&uniform(10_000)))]);
-    let missing = ["is not known", "--variance, --range LOW,HIGH or --kurtosis"];
+    let missing = ["is not known", "the variance, the range or the largest kurtosis"];
     place.expect(3, "--truth 0.2 x.f64", &missing);
     place.expect(3, "--truth 1 short.f64", &missing);
     place.expect(0, "--truth 1 --kurtosis 1.8 short.f64", &["a kurtosis of 1.8 at most"]);

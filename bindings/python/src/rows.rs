@@ -1,0 +1,99 @@
+//! Predictions and runs, as rows in JSON: the columns of `summary.csv`.
+
+use std::time::Instant;
+
+use pyo3::prelude::*;
+use trueflight::harness::options::DRAWS;
+use trueflight::harness::{Amount, Case, Filter, Options, Plan, Record, run as drawing, verdict};
+use trueflight::report::rows;
+
+use crate::background::{Progress, work};
+use crate::cases::Asked;
+use crate::trouble::Trouble;
+
+/// How a plan is made and drawn.
+#[derive(Debug, Clone, FromPyObject)]
+#[pyo3(from_item_all)]
+struct Wanted {
+    draws: Option<u64>,
+    seed: u64,
+    alpha: f64,
+    filter: Option<String>,
+    threads: usize,
+}
+
+impl Wanted {
+    fn options(&self) -> Result<Options, Trouble> {
+        let wrong = |error| {
+            let cure = "a filter is a pattern such as \"*eq21*:single\"";
+            Trouble::Wrong(format!("{error}; {cure}"))
+        };
+        let filter = self.filter.as_deref().map(Filter::new).transpose().map_err(wrong)?;
+        let draws = self.draws.map_or(Amount::CaseOr(DRAWS), Amount::Exactly);
+        Ok(Options { draws, seed: self.seed, alpha: self.alpha, filter, ..Options::default() })
+    }
+
+    fn plan<'a>(&self, cases: &'a [Case]) -> Result<Plan<'a>, Trouble> {
+        let plan = Plan::new(cases, &self.options()?);
+        if plan.cases.is_empty() {
+            let filter = self.filter.as_deref().unwrap_or_default();
+            let text = format!(
+                "filter=\"{filter}\" keeps none of the experiments; predict(case) lists what there is"
+            );
+            return Err(Trouble::Wrong(text));
+        }
+        Ok(plan)
+    }
+}
+
+/// What theory says of every experiment; with the best constant σ̂ if asked.
+///
+/// # Errors
+///
+/// A case that is none, or a filter that keeps nothing.
+#[pyfunction]
+pub fn predict(
+    py: Python<'_>,
+    cases: Asked,
+    wanted: &Bound<'_, PyAny>,
+    optimum: bool,
+) -> PyResult<String> {
+    let wanted: Wanted = wanted.extract()?;
+    let predicted = if optimum { verdict::predicted_with_optima } else { verdict::predicted };
+    work(py, wanted.threads, None, move |_| {
+        let cases = cases.read()?;
+        json(&predicted(&wanted.plan(&cases)?))
+    })
+}
+
+/// Draws every experiment and judges it.
+///
+/// # Errors
+///
+/// A case that is none, a filter that keeps nothing, `KeyboardInterrupt`, or an exception of `tell`.
+#[pyfunction]
+pub fn run(
+    py: Python<'_>,
+    cases: Asked,
+    wanted: &Bound<'_, PyAny>,
+    tell: Option<&Bound<'_, PyAny>>,
+) -> PyResult<String> {
+    let wanted: Wanted = wanted.extract()?;
+    work(py, wanted.threads, tell, move |progress| {
+        let cases = cases.read()?;
+        let plan = wanted.plan(&cases)?;
+        json(&drawn(&plan, progress))
+    })
+}
+
+fn drawn(plan: &Plan, progress: &Progress) -> Record {
+    let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
+    progress.expect(ready.map(|(_, planned)| planned.draws).sum());
+    let begin = Instant::now();
+    let draws = drawing::draw(plan, &|draws| progress.add(draws));
+    verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
+}
+
+fn json(record: &Record) -> Result<String, Trouble> {
+    rows::json(record).map_err(|error| Trouble::Wrong(error.to_string()))
+}

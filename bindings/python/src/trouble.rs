@@ -1,0 +1,67 @@
+//! Why there is no answer.
+
+use pyo3::import_exception;
+use pyo3::prelude::*;
+use trueflight::check::CheckError;
+use trueflight::harness::CaseError;
+
+import_exception!(trueflight._errors, Error);
+import_exception!(trueflight._errors, CaseNotFound);
+
+/// Why there is no answer, on its way to Python.
+#[derive(Debug)]
+pub enum Trouble {
+    /// No such case.
+    NotFound(String),
+    /// What was asked makes no sense.
+    Wrong(String),
+}
+
+impl From<Trouble> for PyErr {
+    fn from(trouble: Trouble) -> Self {
+        match trouble {
+            Trouble::NotFound(text) => CaseNotFound::new_err(text),
+            Trouble::Wrong(text) => Error::new_err(text),
+        }
+    }
+}
+
+impl From<Vec<CaseError>> for Trouble {
+    fn from(errors: Vec<CaseError>) -> Self {
+        let text = errors.iter().map(CaseError::in_full).collect::<Vec<_>>().join("\n\n");
+        let is_missing = |error: &CaseError| match error {
+            CaseError::Unreadable { cause, .. } => cause.kind() == std::io::ErrorKind::NotFound,
+            _ => false,
+        };
+        if errors.iter().any(is_missing) { Self::NotFound(text) } else { Self::Wrong(text) }
+    }
+}
+
+impl From<CaseError> for Trouble {
+    fn from(error: CaseError) -> Self {
+        vec![error].into()
+    }
+}
+
+/// The library's words, with the cures as Python spells them.
+impl From<CheckError> for Trouble {
+    fn from(error: CheckError) -> Self {
+        Self::Wrong(match &error {
+            CheckError::NoTruth { name } => format!(
+                "check `{name}`: the truth is not known; give it by truth=…, or by case=… and estimator=…"
+            ),
+            CheckError::Twice { name, what } => format!(
+                "check `{name}`: the {what} is given twice, by a number and by case=…; leave one of them out, or \
+                 add mean_only=True"
+            ),
+            CheckError::NoLookups { name } => format!(
+                "check `{name}`: a draw does not tell its lookups; give the pair (draws, lookups), or leave \
+                 lookups=… out"
+            ),
+            CheckError::NoLookupsWanted { name } => format!(
+                "check `{name}`: nothing is known of the lookups; give lookups=(mean, variance), or draws alone"
+            ),
+            other => other.to_string(),
+        })
+    }
+}

@@ -1,0 +1,59 @@
+"""Arrays are judged fast, in place, and while other threads run."""
+
+import threading
+import time
+import tracemalloc
+
+import numpy as np
+import pytest
+import speed
+
+import trueflight as tf
+
+
+@pytest.mark.parametrize("words", ["truth alone", "truth and variance"])
+def test_an_array_is_judged_at_200_mb_a_second_of_a_processor(words):
+    array = np.random.default_rng(1).random(speed.COUNT)
+    times = []
+    for _ in range(3):
+        begin = time.process_time()
+        tf.check(array, **speed.KNOWN[words])
+        times.append(time.process_time() - begin)
+    assert array.nbytes / min(times) > 200e6
+
+
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+def test_an_array_is_not_copied(dtype):
+    array = np.random.default_rng(1).random(4_000_000).astype(dtype)
+    assert allocated(array) < 1e5
+    # Numbers that do not lie side by side are copied 2^20 at a time.
+    piece = 2**20 * array.itemsize
+    assert piece <= allocated(array[::2]) < piece + 1e5
+
+
+def allocated(array):
+    """The most bytes that NumPy has beside the array while it is judged."""
+    tracemalloc.start()
+    tf.check(array, truth=0.5, range=(0, 1))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    return peak
+
+
+def test_other_threads_run_while_an_array_is_judged():
+    counted, stop = [0], threading.Event()
+
+    def count():
+        while not stop.is_set():
+            counted[0] += 1
+            time.sleep(0.001)
+
+    array = np.random.default_rng(1).random(speed.COUNT)
+    thread = threading.Thread(target=count)
+    thread.start()
+    begin = time.monotonic()
+    tf.check(array, truth=0.5, range=(0, 1))
+    seconds = time.monotonic() - begin
+    stop.set()
+    thread.join()
+    assert counted[0] > max(5.0, 20.0 * seconds), f"{counted[0]} turns in {seconds:.2f} s"

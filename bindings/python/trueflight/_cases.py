@@ -1,0 +1,179 @@
+"""What theory says of a case, and what its draws are."""
+
+import json
+import os
+import sys
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _trueflight
+from ._errors import Error
+
+Case = str | os.PathLike[str] | dict[str, Any]
+Columns = dict[str, Any]
+Progress = bool | Callable[[int, int], object]
+
+_WORDS = ("case", "problem", "medium", "estimator", "control", "channel", "verdict", "reason", "sampling_kind")
+_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal"))
+_COUNTS = frozenset(("seed", "draws", "drawn", "sharing"))
+_SWEEPS = ("sampling", "sampling_scale", "albedo", "control", "points", "density", "albedo_scale", "contrast")
+
+
+def cases() -> list[str]:
+    """The names of the built-in cases."""
+    return _trueflight.built_in()
+
+
+def predict(
+    case: Case, *, optimum: bool = False, filter: str | None = None, seed: int = 1, threads: int | None = None
+) -> Columns:
+    """What theory says of each experiment of a case: truth, variance, cost, figure of merit. Nothing is drawn.
+
+    ``case`` is a built-in name, a path of a file or folder, the text of a case file (what has a line break), or a dict with
+    its keys. ``optimum`` searches the best constant sampling extinction too: a hundred predictions for each estimator.
+    ``filter`` keeps experiments that match a pattern such as ``"*eq21*:single"``. ``seed`` is that of pilot rays, where the
+    sampling extinction is learned. ``threads`` is one per processor without it.
+
+    Answers a dict of columns, one row for each estimator, value of the sweep and channel, named as those of
+    ``summary.csv``: texts in lists, numbers in arrays of float64 with NaN for what is not known, counts in arrays of int64
+    where all are known. ``pandas.DataFrame(…)`` and ``polars.DataFrame(…)`` take it. Extinctions are in 1/length.
+
+    Raises ``trueflight.Error`` with every mistake in the case shown in place, ``CaseNotFound``, ``KeyboardInterrupt``.
+    """
+    wanted = _wanted(None, seed, 1e-3, filter, threads)
+    return _columns(_trueflight.predict(as_case(case), wanted, bool(optimum)))
+
+
+def run(
+    case: Case,
+    *,
+    draws: int | None = None,
+    seed: int = 1,
+    alpha: float = 1e-3,
+    filter: str | None = None,
+    threads: int | None = None,
+    progress: Progress = False,
+) -> Columns:
+    """Draws every experiment of a case and judges it; without the GIL.
+
+    ``draws`` are planned for each experiment, 2 to 1e12 (without it what the case says, or 4e6); the gate may stop earlier, or
+    go on. ``alpha`` is the chance that any of them fails where all are correct. Results do not depend on ``threads``.
+    ``progress`` is a callable of the draws made and those planned, or ``True`` for a line on stderr. Ctrl-C ends the drawing
+    within a tenth of a second. The rest is as for ``predict``, with the columns ``mean``, ``z_mean``, ``verdict``, … filled.
+    """
+    wanted = _wanted(draws, seed, alpha, filter, threads)
+    return _drawn(as_case(case), wanted, progress)
+
+
+def sweep(
+    case: Case,
+    *,
+    draws: int | None = None,
+    seed: int = 1,
+    alpha: float = 1e-3,
+    filter: str | None = None,
+    threads: int | None = None,
+    progress: Progress = False,
+    **values: Sequence[float] | npt.NDArray[Any],
+) -> Columns:
+    """A single case along values of one quantity, in place of its own sweep; the column ``swept`` has the value.
+
+    The quantity is one of ``sampling`` and ``control`` (1/length), ``sampling_scale``, ``density``, ``albedo_scale`` (factors),
+    ``albedo``, ``points``, ``contrast``, as in ``sweep(case, sampling=[0.5, 1.0, 2.0])``. Theory only, without ``draws``; with
+    them as ``run``.
+    """
+    if len(values) != 1 or not set(values) <= set(_SWEEPS):
+        found = ", ".join(values) or "nothing"
+        raise Error(f"{found} cannot be swept; give the values of one of: {', '.join(_SWEEPS)}")
+    [(what, points)] = values.items()
+    try:
+        numbers = [float(x) for x in np.atleast_1d(np.asarray(points, dtype=np.float64))]
+    except (TypeError, ValueError) as error:
+        raise Error(f"{what} = {points!r} are no numbers; give a list of numbers") from error
+    asked = as_case(case) | {"sweep": (what.replace("_", "-"), numbers)}
+    wanted = _wanted(draws, seed, alpha, filter, threads)
+    if draws is None:
+        return _columns(_trueflight.predict(asked, wanted, False))
+    return _drawn(asked, wanted, progress)
+
+
+def as_case(case: Case) -> dict[str, Any]:
+    """A case as the library's side takes it."""
+    if isinstance(case, dict):
+        try:
+            return _asked("json", json.dumps(case, default=_plain, allow_nan=False))
+        except (TypeError, ValueError) as error:
+            raise Error(f"the dict is no case: {error}; give texts, numbers, lists and dicts") from error
+    if isinstance(case, str):
+        return _asked("toml" if "\n" in case else "named", case)
+    if isinstance(case, os.PathLike):
+        return _asked("named", os.fspath(case))
+    kind = type(case).__name__
+    raise Error(f"a case cannot be {kind}; give a built-in name, a path, a text or a dict")
+
+
+def whole(what: str, number: Any, least: int, most: int) -> int:
+    """A whole number within bounds; 1e6 is one."""
+    is_number = isinstance(number, int | float | np.integer | np.floating) and not isinstance(number, bool)
+    if is_number and np.isfinite(number) and int(number) == number and least <= number <= most:
+        return int(number)
+    raise Error(f"{what} = {number!r}; give a whole number from {least} to {most:g}")
+
+
+def _asked(kind: str, text: str) -> dict[str, Any]:
+    return {"kind": kind, "text": text, "sweep": None}
+
+
+def _plain(value: Any) -> Any:
+    """NumPy's numbers and arrays, and paths, as JSON has them."""
+    if isinstance(value, np.ndarray | np.generic):
+        return value.tolist()
+    return os.fspath(value)
+
+
+def _wanted(draws: int | None, seed: int, alpha: float, filter: str | None, threads: int | None) -> dict[str, Any]:
+    if not 0.0 < alpha < 1.0:
+        raise Error(f"alpha = {alpha!r}; give a probability above 0 and below 1, such as 1e-3")
+    return {
+        "draws": None if draws is None else whole("draws", draws, 2, 10**12),
+        "seed": whole("seed", seed, 0, 2**64 - 1),
+        "alpha": float(alpha),
+        "filter": filter,
+        "threads": 0 if threads is None else whole("threads", threads, 1, 1024),
+    }
+
+
+def _drawn(asked: dict[str, Any], wanted: dict[str, Any], progress: Progress) -> Columns:
+    if callable(progress):
+        return _columns(_trueflight.run(asked, wanted, progress))
+    if not progress:
+        return _columns(_trueflight.run(asked, wanted, None))
+    try:
+        return _columns(_trueflight.run(asked, wanted, _line))
+    finally:
+        print(file=sys.stderr)
+
+
+def _line(done: int, planned: int) -> None:
+    """A line on stderr, written over itself."""
+    print(f"\rdrawing {done:.3g} of {planned:.3g} draws", end="", file=sys.stderr, flush=True)
+
+
+def _columns(text: str) -> Columns:
+    """Rows in JSON as columns."""
+    rows = json.loads(text)
+    names = rows[0].keys() if rows else ()
+    return {name: _column(name, [row[name] for row in rows]) for name in names}
+
+
+def _column(name: str, values: list[Any]) -> Any:
+    if name in _TEXTS:
+        return ["" if value is None else value for value in values]
+    if name == "lookups_pmf":
+        return values
+    if name in _COUNTS and None not in values:
+        return np.array(values, dtype=np.int64 if max(values) < 2**63 else np.uint64)
+    return np.array([np.nan if value is None else value for value in values], dtype=np.float64)

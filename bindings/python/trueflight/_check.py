@@ -1,0 +1,211 @@
+"""Is my estimator unbiased?"""
+
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _draws
+from ._cases import as_case, whole
+from ._draws import Array, Chunk
+from ._errors import DrawsError, Error
+from ._trueflight import Judging
+from ._verdict import Verdict
+
+Values = float | Sequence[float] | npt.NDArray[Any]
+
+# So many numbers are converted at a time, where they are not float64 or float32 side by side.
+PIECE = 1 << 20
+
+
+def check(
+    source: Callable[..., Any] | Iterable[Any] | npt.ArrayLike,
+    *,
+    truth: Values | None = None,
+    variance: Values | None = None,
+    kurtosis: Values | None = None,
+    range: tuple[float, float] | None = None,
+    lookups: tuple[float, float] | None = None,
+    case: str | os.PathLike[str] | dict[str, Any] | None = None,
+    estimator: str | None = None,
+    sampling: float | None = None,
+    mean_only: bool = False,
+    tolerance: float | None = None,
+    variance_tolerance: float | None = None,
+    rounding: float | None = None,
+    batch: int = 1,
+    alpha: float = 1e-3,
+    draws: int | None = None,
+    seed: int = 1,
+    name: str | None = None,
+) -> Verdict:
+    """Judges draws: are mean and variance what they should be? A correct estimator fails with chance ``alpha`` at most.
+
+    ``source`` is one of
+
+    - an array of n draws, shape (n,), or of n draws of k values, shape (n, k): NumPy, anything with DLPack on the CPU, or a
+      buffer. Any real dtype; float64 and float32 side by side are read in place, others some at a time;
+    - a callable ``f(n)`` or ``f(n, rng)`` that answers n draws in such an array; ``rng`` is a ``numpy.random.Generator`` from
+      seed and name. It is called until all is decided, for 2**24 draws at most;
+    - an iterator of draws, or of such arrays.
+
+    A pair ``(draws, lookups)`` in place of an array tells the number of lookups of each draw, too.
+
+    What is known of a correct draw (lengths in any unit, as long as draws and truth have the same):
+
+    ``truth``, ``variance``, ``kurtosis``
+        Its mean, its variance (tested, too), its kurtosis (3 for the normal law; without a variance an upper bound). One
+        number, or one for each of the k values.
+    ``range``
+        Where it lies, (low, high); either may be infinite. A draw outside fails.
+    ``lookups``
+        Mean and variance of its number of lookups of the extinction.
+    ``case``, ``estimator``, ``sampling``
+        An experiment whose theory has all of that: a case as in ``predict``, the estimator's name in it, and the value of what
+        the case sweeps, or a constant sampling extinction in 1/length. Every channel of the case is a value of the draw.
+    ``mean_only``
+        Of theory only the mean, for an estimator that the case does not have.
+
+    What is wanted of the verdict:
+
+    ``tolerance``, ``variance_tolerance``
+        The relative bias that a pass excludes (absolute for a truth of 0). Without them what the draws can see, 5 % and 20 %
+        at most; for callables and iterators without ``draws`` 1 % of the mean.
+    ``rounding``
+        What rounding may add to a draw, relative to the truth: 3.6e-13, for arrays of float32 and float16 eight times the
+        dtype's epsilon.
+    ``batch``
+        Judges averages of so many consecutive draws, for draws that depend on their neighbours.
+    ``alpha``, ``draws``, ``seed``, ``name``
+        The error rate; how many draws, all of them; where callables' random numbers begin; what the verdict calls it.
+
+    Raises ``trueflight.Error`` (a ``ValueError``) where something makes no sense, ``DrawsError`` (also a ``TypeError``) where
+    draws are no real numbers, ``CaseNotFound`` (also a ``FileNotFoundError``). Exceptions of a callable come through. A draw
+    that is NaN or infinite is no error but a fail.
+
+    >>> import numpy as np
+    >>> halves = np.random.default_rng(1).random(1_000_000) < 0.5
+    >>> print(check(halves, truth=0.5, range=(0, 1)).verdict)
+    pass
+    """
+    called = name if name is not None else getattr(source, "__name__", "draws").replace("<lambda>", "draws")
+    count = None if draws is None else whole("draws", draws, 1, 2**63 - 1)
+    asked: dict[str, Any] = {
+        "name": called,
+        "truth": _numbers("truth", truth),
+        "variance": _numbers("variance", variance),
+        "kurtosis": _numbers("kurtosis", kurtosis),
+        "range": _pair("range", range, "(low, high)"),
+        "lookups": _pair("lookups", lookups, "(mean, variance)"),
+        "rounding": _number("rounding", rounding),
+        "case": None if case is None else as_case(case),
+        "estimator": _estimator(case, estimator, sampling),
+        "sampling": _number("sampling", sampling),
+        "mean_only": bool(mean_only),
+        "tolerance": _number("tolerance", tolerance),
+        "variance_tolerance": _number("variance_tolerance", variance_tolerance),
+        "batch": whole("batch", batch, 1, 2**63 - 1),
+        "alpha": _number("alpha", alpha),
+        "seed": whole("seed", seed, 0, 2**64 - 1),
+    }
+    chunks, length = _chunks(called, source, count, asked["seed"])
+    # An array is read to its end, and so is what was announced; else the drawing stops when all is decided.
+    is_whole = length is not None
+    judging, form = None, None
+    for values, counts in chunks:
+        if judging is None:
+            form = _form(values, counts)
+            judging = _open(asked, form, length, values.dtype)
+        elif _form(values, counts) != form:
+            raise Error(f"check `{called}`: draws of {_words(_form(values, counts))} after {_words(form)}; give all alike")
+        _absorb(judging, values, counts)
+        if not is_whole and not judging.is_open():
+            break
+    if judging is None:
+        raise Error(f"check `{called}`: there are no draws; make one at least")
+    return Verdict(judging.verdict(), asked["seed"])
+
+
+def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Iterator[Chunk], int | None]:
+    """The draws, and how many there are, where that is known."""
+    if callable(source) and not _draws.is_array(source):
+        return _draws.from_callable(name, source, draws, seed), draws
+    if _draws.is_pair(source) or _draws.is_array(source) or isinstance(source, tuple):
+        values, counts = _draws.chunk(name, source)
+        cut = values[:draws], None if counts is None else counts[:draws]
+        return iter([cut] if len(values) else []), len(cut[0]) or None
+    if isinstance(source, Iterable):
+        return _draws.from_iterator(name, source, draws), draws
+    kind = type(source).__name__
+    raise DrawsError(f"check `{name}`: draws cannot come from {kind}; give an array, an iterator or a callable f(n)")
+
+
+def _open(asked: dict[str, Any], form: tuple[int, bool], length: int | None, dtype: np.dtype[Any]) -> Judging:
+    rounding = asked["rounding"]
+    if rounding is None and dtype.kind == "f" and dtype.itemsize < 8:
+        rounding = 8.0 * float(np.finfo(dtype).eps)
+    values, counts = form
+    return Judging(asked | {"values": values, "counts": counts, "draws": length, "rounding": rounding})
+
+
+def _absorb(judging: Judging, values: Array, counts: Array | None) -> None:
+    """Hands draws over: in place where they are floats side by side, else converted some at a time."""
+    step = PIECE
+    if values.dtype in (np.float64, np.float32) and values.flags.c_contiguous and counts is None:
+        step = max(len(values), 1)
+    for first in np.arange(0, len(values), step):
+        part = values[first : first + step]
+        if part.dtype != np.float32:
+            part = part.astype(np.float64, order="C", copy=False)
+        told = None if counts is None else np.ascontiguousarray(counts[first : first + step], dtype=np.float64)
+        judging.absorb(np.ascontiguousarray(part), told)
+
+
+def _form(values: Array, counts: Array | None) -> tuple[int, bool]:
+    """How many values a draw has, and whether it tells its lookups."""
+    return (values.shape[1] if values.ndim == 2 else 1), counts is not None
+
+
+def _words(form: tuple[int, bool] | None) -> str:
+    values, counts = form or (1, False)
+    return f"{values} value{'s' if values > 1 else ''} {'with' if counts else 'without'} lookups"
+
+
+def _numbers(what: str, given: Values | None) -> list[float] | None:
+    if given is None:
+        return None
+    try:
+        array = np.atleast_1d(np.asarray(given, dtype=np.float64))
+    except (TypeError, ValueError) as error:
+        raise Error(f"{what} = {given!r} is no number; give a number, or one for each value of a draw") from error
+    if array.ndim != 1 or not len(array):
+        raise Error(f"{what} has shape {array.shape}; give a number, or one for each value of a draw")
+    return [float(number) for number in array]
+
+
+def _number(what: str, given: float | None) -> float | None:
+    if given is None:
+        return None
+    try:
+        return float(given)
+    except (TypeError, ValueError) as error:
+        raise Error(f"{what} = {given!r} is no number; give a number") from error
+
+
+def _pair(what: str, given: tuple[float, float] | None, form: str) -> tuple[float, float] | None:
+    pair = _numbers(what, given)
+    if pair is None:
+        return None
+    if len(pair) != 2:
+        raise Error(f"{what} = {given!r} is no pair; give {what}={form}")
+    return pair[0], pair[1]
+
+
+def _estimator(case: Any, estimator: str | None, sampling: float | None) -> str:
+    if case is None and (estimator is not None or sampling is not None):
+        raise Error("an estimator or a sampling extinction without a case; give case=… too")
+    if case is not None and not isinstance(estimator, str):
+        raise Error("a case without an estimator; give estimator=…, its name in predict(case)['estimator']")
+    return estimator or ""

@@ -1,0 +1,20 @@
+"""Why there is no verdict. All are a ``trueflight.Error``, and a ``ValueError``."""
+
+
+class Error(ValueError):
+    """What was asked makes no sense; the words name the place and the cure."""
+
+
+class CaseNotFound(Error, FileNotFoundError):
+    """No built-in case and no file has that name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0]) if self.args else ""
+
+
+class DrawsError(Error, TypeError):
+    """What should be draws are no real numbers."""
+
+
+class Inconclusive(AssertionError):
+    """The draws neither pass nor fail: too few of them, no grounds to fail on, or they depend on each other."""
