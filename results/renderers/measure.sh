@@ -7,7 +7,7 @@
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 : "${TRUEFLIGHT:=trueflight}" "${PYTHON:=python3}" "${DRAWS:=1000000}" "${TABLE:=$root/results/renderers/mitsuba.csv}"
-export TRUEFLIGHT PYTHONPATH="$root/bindings/python"
+export TRUEFLIGHT
 scenes=$(mktemp -d)
 trap 'rm -r "$scenes"' EXIT
 rm -f "$TABLE"

@@ -99,19 +99,23 @@ impl Scalar {
             );
             return (Verdict::Fail, reason);
         }
+        let looks_off = || {
+            let (mean, cure) = (self.past.mean(), self.cure());
+            format!(
+                "the {what} looks off by {mean:+.2e}, but no number of draws can show that without {cure}"
+            )
+        };
         let Some(design) = self.design.filter(|_| is_founded) else {
+            // Draws that are all alike show no spread, but they show where they are.
+            let are_alike = self.past.draws() > BLOCK && self.past.kurtosis() == f64::INFINITY;
+            if are_alike && self.past.mean().abs() > self.ask.cap {
+                return (Verdict::Inconclusive, looks_off());
+            }
             let weak = if self.ask.must_pass { Verdict::Inconclusive } else { weak };
             return (weak, self.unknown());
         };
         match self.decision {
-            _ if self.is_doubted && !relies_on_shown => {
-                let reason = format!(
-                    "the {what} looks off by {:+.2e}, but no number of draws can show that without {}",
-                    self.past.mean(),
-                    self.cure()
-                );
-                (Verdict::Inconclusive, reason)
-            }
+            _ if self.is_doubted && !relies_on_shown => (Verdict::Inconclusive, looks_off()),
             Decision::Passed if relies_on_shown && !self.ask.is_hard => (weak, self.unknown()),
             Decision::Passed => (Verdict::Pass, String::new()),
             Decision::Open | Decision::Failed => {

@@ -70,6 +70,19 @@ fn bugs_of_mean_and_variance_fail() {
 }
 
 #[test]
+fn a_constant_does_not_pass_for_draws_that_vary() {
+    // The right mean without any variance: nothing refutes it without a kurtosis or a range, and nothing bears it out.
+    let constant = || check("constant", |_| 0.4).truth(0.4).variance(0.1).draws(200_000);
+    let found = constant().verdict().expect("a verdict");
+    assert_eq!(found.verdict(), Verdict::Inconclusive, "{found}");
+    assert!(found.reason().contains("the variance looks off by -1"), "{found}");
+    for known in [constant().range(0.0, 1.0), constant().kurtosis(3.0)] {
+        let found = known.verdict().expect("a verdict");
+        assert_eq!(found.verdict(), Verdict::Fail, "{found}");
+    }
+}
+
+#[test]
 fn channels_are_judged_one_by_one() {
     let three = |rng: &mut Stream| {
         let u = rng.uniform();

@@ -1,6 +1,6 @@
 """The client of Mitsuba: honest pictures pass, injected bugs fail, and what is wrong gets one clear error.
 
-It needs the packages mitsuba and numpy, and the command `trueflight` in PATH or its path in TRUEFLIGHT.
+It needs the package mitsuba, and the command `trueflight` in PATH or its path in TRUEFLIGHT.
 """
 
 import csv
@@ -98,5 +98,5 @@ def test_what_is_wrong_is_told(export, capsys, words, told):
 def test_a_command_that_is_not_there_is_told(export, capsys, monkeypatch):
     folder = export("transmittance/eq21-overview")
     monkeypatch.setenv("TRUEFLIGHT", "no-such-command")
-    assert client.main([folder, "--draws", "100"]) == 2
+    assert client.main([folder, "--draws", "100", "--ours"]) == 2
     assert "no-such-command" in capsys.readouterr().err

@@ -6,7 +6,7 @@
 Every sample of the camera's only ray has one law, whose mean `truth.json` tells, and often its variance. Draws are
 the samples of the integrator with the numbers of one generator. With `--pixels` they are those of pictures: scalar
 variants seed each pixel by a consecutive number, and neighbours depend on each other, which the gate may find.
-`trueflight judge` says pass, fail or inconclusive, and so does the exit code: 0, 1 or 3, and 2 where something is wrong
+The gate says pass, fail or inconclusive, and so does the exit code: 0, 1 or 3, and 2 where something is wrong
 with what was given. Seconds are processor time of a picture, on one thread.
 
 Two bugs can be injected, to see that they are found:
@@ -19,6 +19,7 @@ Two bugs can be injected, to see that they are found:
 import argparse
 import csv
 import json
+import math
 import os
 import re
 import subprocess
@@ -27,6 +28,8 @@ import tempfile
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
+
+import trueflight
 
 # The version of `truth.json` that is read, and exit codes, the worst last.
 VERSION = 1
@@ -63,31 +66,16 @@ class Row:
 
 
 def judge(draws, truth, rounding, law, alpha):
-    """The verdict and the reason of the gate over an array of draws, by `trueflight judge`."""
-    import numpy
-
-    program = os.environ.get("TRUEFLIGHT", "trueflight")
-    command = [program, "judge", "--format", "json", "--truth", repr(truth), "--alpha", repr(alpha)]
-    command += ["--rounding", repr(rounding)]
-    if law["variance"] is not None:
-        command += ["--variance", repr(law["variance"])]
-    if law["kurtosis"] is not None:
-        command += ["--kurtosis", repr(law["kurtosis"])]
+    """The verdict and the reason of the gate over an array of draws."""
+    known = {"rounding": rounding, "variance": law["variance"], "kurtosis": law["kurtosis"]}
     if law["low"] is not None:
         low, high = law["low"] - rounding, law["high"]
-        high = "inf" if high is None else repr(high * (1 + rounding))
-        command.append(f"--range={low!r},{high}")
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder, "draws.npy")
-        numpy.save(path, numpy.ascontiguousarray(draws, dtype="<f8"))
-        try:
-            run = subprocess.run([*command, str(path)], capture_output=True, text=True, check=False)
-        except FileNotFoundError:
-            raise Wrong(f"cannot run `{program}`; put it in PATH, or its path in TRUEFLIGHT") from None
-    if run.returncode not in CODES.values():
-        raise Wrong(f"`{program} judge`: {run.stderr.strip()}")
-    verdict = json.loads(run.stdout)
-    return verdict["verdict"], verdict["reason"]
+        known["range"] = (low, math.inf if high is None else high * (1 + rounding))
+    try:
+        verdict = trueflight.check(draws, truth=truth, alpha=alpha, **known)
+    except trueflight.Error as error:
+        raise Wrong(str(error)) from None
+    return verdict.verdict, verdict.reason
 
 
 def ours(folder, question):
@@ -95,7 +83,10 @@ def ours(folder, question):
     program = os.environ.get("TRUEFLIGHT", "trueflight")
     with tempfile.TemporaryDirectory() as out:
         command = [program, "bench", str(Path(folder, "case.toml")), "--format", "csv", "--out", out]
-        run = subprocess.run(command, capture_output=True, text=True, check=False)
+        try:
+            run = subprocess.run(command, capture_output=True, text=True, check=False)
+        except FileNotFoundError:
+            raise Wrong(f"cannot run `{program}`; put it in PATH, or its path in TRUEFLIGHT") from None
     if run.returncode != 0:
         raise Wrong(f"`{program} bench`: {run.stderr.strip()}")
     rows = list(csv.DictReader(run.stdout.splitlines()))
