@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use pyo3::prelude::*;
-use trueflight::harness::{Case, Source, suite};
+use trueflight::harness::{Case, Catalogue, Source, suite};
 
 use crate::trouble::Trouble;
 
@@ -27,7 +27,7 @@ impl Asked {
     /// Reads the cases.
     pub fn read(&self) -> Result<Vec<Case>, Trouble> {
         if self.kind == "named" && self.sweep.is_none() {
-            return Ok(Case::named(&self.text)?);
+            return Ok(Catalogue::builtin().named(&self.text)?);
         }
         let source = self.source()?;
         let source = match &self.sweep {
