@@ -44,5 +44,8 @@ pub fn main() {
         }
     };
     let ratio = Choice { estimator: "ratio", ..Choice::default() };
-    check("ratio tracking in haze", tracking).of_case(&case, &ratio).assert_pass();
+    let found = check("ratio tracking in haze", tracking).of_case(&case, &ratio).verdict();
+    let found = found.unwrap_or_else(|error| panic!("{error}"));
+    println!("{found}");
+    found.assert_pass();
 }

@@ -18,4 +18,4 @@ pub use additions::{Addition, Additions};
 pub use page::{Page, PageList};
 pub use settings::Settings;
 pub use tree::{Domain, Entry, Fault, Node, Value};
-pub use words::{number, rounded};
+pub use words::{number, rounded, suggestion};

@@ -3,7 +3,7 @@
 use super::error::CheckError;
 use super::made::{Closure, Factory};
 use super::sample::Sample;
-use crate::judge::claim::{Claim, Given, Lookups, ROUNDING};
+use crate::judge::claim::{Claim, ClaimError, Given, Lookups, ROUNDING};
 use crate::judge::reading::Reading;
 use crate::judge::trial::{Trial, Wanted};
 use crate::rng::Stream;
@@ -197,7 +197,7 @@ impl<S> Check<S> {
     }
 
     /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance
-    /// and kurtosis are then those of an average.
+    /// and kurtosis are then those of an average, and of theory only the mean is taken.
     pub fn batch(mut self, batch: u64) -> Self {
         self.said.batch = batch;
         self
@@ -228,11 +228,20 @@ impl<S> Check<S> {
         has_lookups: bool,
         length: Option<u64>,
     ) -> Result<Vec<Reading>, CheckError> {
+        if values == 0 {
+            return Err(CheckError::NoValues { name: self.name.clone() });
+        }
         let claims = self.said.claims(&self.name, values, has_lookups)?;
+        let alpha = self.said.alpha;
+        if !(alpha > 0.0 && alpha < 1.0) {
+            let (what, wanted) = ("alpha", "a probability above 0 and below 1");
+            let source = ClaimError::Number { what, value: alpha, wanted };
+            return Err(CheckError::Claim { name: self.name.clone(), source });
+        }
         let wanted = Wanted {
             tolerance: self.said.tolerance,
             variance_tolerance: self.said.variance_tolerance,
-            alpha: self.said.alpha / values as f64,
+            alpha: alpha / values as f64,
             batch: self.said.batch,
             stop_early: false,
             most: self.said.draws,
@@ -284,9 +293,11 @@ impl Said {
         if self.truth.is_none() && theory.is_none() {
             return Err(CheckError::NoTruth { name: name() });
         }
+        // What theory knows of a draw is not so of averages, but for the mean.
+        let mean_only = self.mean_only || self.batch > 1;
         let twice = [("truth", self.truth.is_some(), true)].into_iter().chain([
-            ("variance", self.variance.is_some(), !self.mean_only),
-            ("kurtosis", self.kurtosis.is_some(), !self.mean_only),
+            ("variance", self.variance.is_some(), !mean_only),
+            ("kurtosis", self.kurtosis.is_some(), !mean_only),
         ]);
         if let (Some(_), Some((what, ..))) = (theory, twice.into_iter().find(|t| t.1 && t.2)) {
             return Err(CheckError::Twice { name: name(), what });
@@ -309,7 +320,7 @@ impl Said {
                 Claim::new(&given).map_err(|source| CheckError::Claim { name: name(), source })?;
             let claim = match theory {
                 None => by_numbers,
-                Some(claims) if self.mean_only => Claim {
+                Some(claims) if mean_only => Claim {
                     variance,
                     kurtosis,
                     variance_error: 0.0,
@@ -318,7 +329,8 @@ impl Said {
                 },
                 Some(claims) => {
                     let told = claims[index].lookups.filter(|_| lookups && index == 0);
-                    Claim { lookups: own_lookups.or(told), ..claims[index] }
+                    let rounding = claims[index].rounding.max(self.rounding);
+                    Claim { lookups: own_lookups.or(told), rounding, ..claims[index] }
                 }
             };
             claim.within(self.range).map_err(|source| CheckError::Claim { name: name(), source })

@@ -22,9 +22,15 @@ pub enum CheckError {
         /// What is wrong with it.
         source: ClaimError,
     },
+    /// A draw without values.
+    #[error("check `{name}`: a draw has no values; return one at least")]
+    NoValues {
+        /// The check.
+        name: String,
+    },
     /// Numbers for another number of values than a draw has.
     #[error(
-        "check `{name}`: {found} numbers for the {what}, but a draw has {wanted} values; give one for each value, or one for all"
+        "check `{name}`: {found} number(s) for the {what}, but a draw has {wanted} value(s); give one for each value, or one for all"
     )]
     Values {
         /// The check.

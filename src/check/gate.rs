@@ -72,7 +72,9 @@ impl<'a> Gate<'a> {
 
     /// The verdicts, in the order of the checks.
     pub fn verdicts(self) -> Vec<Result<Outcome, CheckError>> {
-        let share = self.alpha / self.checks.len() as f64;
+        // What is no probability is told by each check, undivided.
+        let is_one = self.alpha > 0.0 && self.alpha < 1.0;
+        let share = if is_one { self.alpha / self.checks.len() as f64 } else { self.alpha };
         self.checks.into_iter().map(|check| check.verdict_at(share)).collect()
     }
 
@@ -83,6 +85,10 @@ impl<'a> Gate<'a> {
     /// Any verdict is fail or inconclusive, or there is none.
     #[track_caller]
     pub fn assert_pass(self) {
+        assert!(
+            !self.checks.is_empty(),
+            "a gate without checks tests nothing; add one by .check(…)"
+        );
         let all = self.checks.len();
         let verdicts = self.verdicts();
         let said = verdicts.iter().filter_map(|verdict| match verdict {

@@ -5,6 +5,9 @@ use std::fmt;
 use crate::judge::judgement::Judgement;
 use crate::stats::verdict::Verdict;
 
+/// So many values are told of.
+const TOLD: usize = 8;
+
 /// The verdict of a check, with everything that `trueflight judge` tells.
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "library", derive(serde::Serialize))]
@@ -39,7 +42,13 @@ impl Outcome {
         let said = reasons.map(|(index, value)| {
             if many { format!("value {index}: {}", value.reason) } else { value.reason.clone() }
         });
-        said.collect::<Vec<_>>().join("; ")
+        let mut said: Vec<String> = said.collect();
+        let count = said.len();
+        if count > TOLD {
+            said.truncate(TOLD);
+            said.push(format!("and {} others", count - TOLD));
+        }
+        said.join("; ")
     }
 
     /// Panics unless all values pass, with the words of [`Outcome`]'s display.
@@ -61,13 +70,22 @@ impl fmt::Display for Outcome {
         if !reason.is_empty() {
             write!(f, ": {reason}")?;
         }
-        for (index, value) in self.values.iter().enumerate() {
+        // Those that decide come first where there are too many to tell.
+        let verdict = self.verdict();
+        let mut told: Vec<(usize, &Judgement)> = self.values.iter().enumerate().collect();
+        if told.len() > TOLD {
+            told.sort_by_key(|(_, value)| value.verdict != verdict);
+        }
+        for (index, value) in told.iter().take(TOLD) {
             let name =
                 if self.values.len() > 1 { format!("value {index}") } else { self.name.clone() };
             for (word, text) in value.lines(&name) {
                 write!(f, "\n  {word:10}{text}")?;
             }
         }
-        Ok(())
+        match told.len().saturating_sub(TOLD) {
+            0 => Ok(()),
+            rest => write!(f, "\n  and {rest} other values"),
+        }
     }
 }

@@ -50,7 +50,7 @@ impl<S> Check<S> {
 
     /// The same of a case that was read before.
     pub fn of_case(mut self, case: &Case, choice: &Choice) -> Self {
-        let claims = Claim::of_channels(case, choice, self.said.rounding);
+        let claims = Claim::of_channels(case, choice, 0.0);
         let claims = claims.map(|claims| claims.into_iter().map(|(_, claim)| claim).collect());
         self.said.theory = Some(claims.map_err(|error| error.to_string()));
         self

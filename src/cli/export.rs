@@ -7,7 +7,8 @@ use clap::{Args, ValueEnum};
 
 use super::{Console, output};
 use crate::export::{self, ExportError, Target};
-use crate::harness::{Catalogue, Source, suite};
+use crate::harness::catalogue::source;
+use crate::harness::{CaseError, Catalogue};
 
 /// Arguments of `export`.
 #[derive(Debug, Args)]
@@ -38,11 +39,7 @@ enum Renderer {
 /// Writes the scene, prints what its pixels must be.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
     let name = &arguments.case;
-    let path = PathBuf::from(name);
-    let source = match suite::find(name) {
-        Some(source) if !path.exists() => Ok(source),
-        _ => Source::read(&path),
-    };
+    let source = source(name);
     let target = match arguments.to {
         Renderer::Mitsuba => Target::Mitsuba,
         Renderer::Pbrt => Target::Pbrt,
@@ -53,7 +50,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         .and_then(|source| export::export(catalogue, &source, target, cells, &arguments.out));
     let exported = match exported {
         Ok(exported) => exported,
-        Err(ExportError::Case(error)) => {
+        Err(ExportError::Case(error @ CaseError::Faulty { .. })) => {
             return Err(output::mistakes(&[error], console, "case file(s); nothing was written"));
         }
         Err(error) => return Err(error.into()),
@@ -68,6 +65,13 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     }
     for note in &exported.truth.notes {
         let _ = writeln!(text, "note: {note}");
+    }
+    for file in &exported.older {
+        let _ = writeln!(
+            text,
+            "note: {} is of an earlier export, and does not belong to this one",
+            file.display()
+        );
     }
     let _ = writeln!(text, "{} files in {}", exported.files.len(), arguments.out.display());
     output::print(&text)?;

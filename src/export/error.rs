@@ -35,7 +35,7 @@ pub enum ExportError {
     #[error("cannot encode truth.json: {0}")]
     Json(#[from] serde_json::Error),
     /// A file could not be written.
-    #[error("cannot write {}: {source}; free the place or give another folder with --out", path.display())]
+    #[error("cannot write {}; free some space or give another folder with --out", path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -62,6 +62,8 @@ impl Target {
 pub struct Exported {
     /// The files, in the folder asked for.
     pub files: Vec<PathBuf>,
+    /// The scenes and fields of an earlier export that are still there, and do not belong to this one.
+    pub older: Vec<PathBuf>,
     /// What `truth.json` says.
     pub truth: Truth,
 }
@@ -119,8 +121,23 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
         put(question.scene.clone(), text.as_bytes())?;
     }
     put(truth::FILE.into(), truth.json()?.as_bytes())?;
+    let older = older(out, &names);
     move_all(stage.path(), out, &names)?;
-    Ok(Exported { files: names.iter().map(|name| out.join(name)).collect(), truth })
+    Ok(Exported { files: names.iter().map(|name| out.join(name)).collect(), older, truth })
+}
+
+/// The files of an earlier export that this one does not replace.
+fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
+    let Ok(entries) = fs::read_dir(out) else { return Vec::new() };
+    let is_old = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let is_scene = path.extension().is_some_and(|end| end == "xml" || end == "pbrt");
+        (is_scene || name == sampled::FILE) && !names.iter().any(|own| *own == name)
+    };
+    let mut older: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    older.retain(is_old);
+    older.sort();
+    older
 }
 
 /// Moves what is complete to where it belongs; `truth.json`, which a client reads first, comes last.

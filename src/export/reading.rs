@@ -194,9 +194,7 @@ impl Reader {
         let eye = Point((entry - scene.direction * (0.25 * diagonal)).0.map(single));
         let mut notes = vec!["the ray begins outside the box".to_owned()];
         if furnace.scene.albedo.even() != Some(1.0) {
-            let note =
-                "the medium is white: absorbing ones would have to emit, which Mitsuba's do not";
-            notes.push(note.into());
+            notes.push("the medium is white here: absorbing ones would have to emit light".into());
         }
         let phase = lobe(furnace.scene.phase);
         Ok(Scene { eye, is_inside: false, phase, notes, ..scene })

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use super::case::Case;
 use super::source::{CaseError, Source};
 use super::suite;
-use crate::catalogue::{Addition, Additions, PageList};
+use crate::catalogue::{Addition, Additions, PageList, suggestion};
 use crate::{estimators, media, problems};
 
 /// The built-in pages with those of a program's own.
@@ -95,12 +95,11 @@ impl Catalogue {
     ///
     /// All files that cannot be read or are wrong.
     pub fn named(&self, name: &str) -> Result<Vec<Case>, Vec<CaseError>> {
-        match suite::find(name) {
-            Some(source) if !Path::new(name).exists() => {
-                self.read(&source).map(|case| vec![case]).map_err(|error| vec![error])
-            }
-            _ => self.read_all(&[name]),
+        if Path::new(name).is_dir() {
+            return self.read_all(&[name]);
         }
+        let read = source(name).and_then(|source| self.read(&source));
+        read.map(|case| vec![case]).map_err(|error| vec![error])
     }
 
     /// Reads every case of a file, or of a folder and those below it, in the order of the names.
@@ -125,6 +124,26 @@ impl Catalogue {
             }
         }
         if errors.is_empty() { Ok(cases) } else { Err(errors) }
+    }
+}
+
+/// The text that a user names: a case file, or a built-in case.
+///
+/// # Errors
+///
+/// There is none, or it cannot be read.
+pub fn source(name: &str) -> Result<Source, CaseError> {
+    let path = Path::new(name);
+    match suite::find(name) {
+        _ if path.exists() => Source::read(path),
+        Some(source) => Ok(source),
+        None => {
+            let names: Vec<String> = suite::suite().into_iter().map(|source| source.name).collect();
+            let names: Vec<&str> = names.iter().map(String::as_str).collect();
+            let otherwise = "`trueflight list cases` shows those that are built in";
+            let hint = suggestion(name, &names, otherwise);
+            Err(CaseError::Unknown { name: name.to_owned(), hint })
+        }
     }
 }
 

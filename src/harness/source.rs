@@ -63,6 +63,14 @@ pub enum CaseError {
         /// What the system said.
         cause: std::io::Error,
     },
+    /// No file and no built-in case has the name.
+    #[error("{name}: there is no such file, folder or built-in case; {hint}")]
+    Unknown {
+        /// The name.
+        name: String,
+        /// What may have been meant.
+        hint: String,
+    },
     /// A name that no report could show.
     #[error("{name:?}: a case's name has no control characters; rename the file")]
     Name {

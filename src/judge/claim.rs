@@ -1,5 +1,7 @@
 //! What is claimed of another program's draws: by numbers, or by theory for an experiment of a case.
 
+use crate::catalogue::number;
+
 /// What rounding may add to each draw, relative to the truth, where the caller does not say: a
 /// product of a hundred factors.
 pub const ROUNDING: f64 = 16.0 * f64::EPSILON * 100.0;
@@ -68,7 +70,7 @@ pub struct Given {
 #[non_exhaustive]
 pub enum ClaimError {
     /// Not a finite number, or negative where it must not be.
-    #[error("{what} = {} is not {wanted}; give {what} as {wanted}", crate::catalogue::number(*value))]
+    #[error("{what} = {} is not {wanted}; give another", number(*value))]
     Number {
         /// Which number.
         what: &'static str,
@@ -79,7 +81,10 @@ pub enum ClaimError {
     },
     /// A range that does not hold the truth inside.
     #[error(
-        "a range of {low} to {high} does not have the truth {truth} inside; give a range around it"
+        "a range of {} to {} {}; give a range around the truth",
+        number(*low),
+        number(*high),
+        if low < high { format!("does not have the truth {} inside", number(*truth)) } else { "is empty".to_owned() }
     )]
     Range {
         /// Its lower end.
@@ -174,6 +179,19 @@ pub enum ClaimError {
         case: String,
         /// Their names.
         channels: Vec<String>,
+    },
+    /// Theory works in units of a transmittance that few doubles hold.
+    #[error(
+        "{case}: `{estimator}` sees an optical depth of {depth:.0}, where theory is in units of T; multiply the \
+         draws by e^τ and give the truth 1 and what else is known of them by numbers"
+    )]
+    Deep {
+        /// The case.
+        case: String,
+        /// The estimator.
+        estimator: String,
+        /// τ.
+        depth: f64,
     },
     /// The experiment is refused.
     #[error("{case}: `{estimator}` is refused: {why}; choose an estimator that is unbiased there")]

@@ -60,8 +60,12 @@ impl Claim {
         let prepared = case.scenario.prepare(index, variation, pilots);
         let Ready { prediction, .. } = prepared.map_err(|refusal| {
             let why = refusal.to_string();
-            ClaimError::Refused { case: case.name.clone(), estimator: label, why }
+            ClaimError::Refused { case: case.name.clone(), estimator: label.clone(), why }
         })?;
+        if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
+            let (case, depth) = (case.name.clone(), deep.log_unit);
+            return Err(ClaimError::Deep { case, estimator: label, depth });
+        }
         let lookups = prediction.lookups.as_ref();
         let claims = prediction.channels.iter().map(|channel| {
             let claim = Self {
@@ -136,6 +140,10 @@ fn variation(
     let axis = case.sweep.as_ref().filter(|axis| case.scenario.depends_on(index, axis.what));
     if let (true, Some(value)) = (choice.is_exact, swept) {
         let what = axis.map_or(What::Sampling, |axis| axis.what);
+        if !(value > 0.0 && value.is_finite()) {
+            let (what, wanted) = ("swept value", "a finite number above 0");
+            return Err(ClaimError::Number { what, value, wanted });
+        }
         if axis.is_some() || case.scenario.depends_on(index, What::SamplingScale) {
             return Ok(Some((what, value)));
         }

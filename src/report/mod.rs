@@ -91,7 +91,7 @@ pub enum ReportError {
         source: io::Error,
     },
     /// A file could not be written.
-    #[error("cannot write {}; free the place or give another with --out", path.display())]
+    #[error("cannot write {}; free some space or give another with --out", path.display())]
     Write {
         /// The file.
         path: PathBuf,

@@ -157,6 +157,14 @@ fn a_gate_shares_its_alpha() {
 }
 
 #[test]
+fn many_values_are_told_in_few_words() {
+    let wrong = check("many", |rng| [rng.uniform(); 100]).truth(0.4).range(0.0, 1.0).draws(50_000);
+    let text = wrong.verdict().expect("a verdict").to_string();
+    assert!(text.contains("; and 92 others") && text.ends_with("and 92 other values"), "{text}");
+    assert!(std::panic::catch_unwind(|| Gate::new().assert_pass()).is_err());
+}
+
+#[test]
 fn a_case_of_ones_own_is_as_good() {
     let text = r#"
         title = "two layers"
@@ -186,6 +194,35 @@ fn said<T>(verdict: Result<T, CheckError>) -> String {
     verdict.map_or_else(|error| error.to_string(), |_| "a verdict".into())
 }
 
+/// A case whose draws are too small for doubles of their own.
+fn deep() -> Case {
+    let text = r#"
+        title = "deep"
+        [problem.transmittance]
+        medium.constant = { extinction = 1 }
+        span = [0, 400]
+        estimators = [{ ratio = { sampling.constant.value = 1.5 } }]
+    "#;
+    let source = Source { name: "deep".into(), path: "deep.toml".into(), text: text.into() };
+    Case::read(&source).expect("a case without mistakes")
+}
+
+#[test]
+fn averages_take_the_mean_alone_and_rounding_counts_whenever_it_is_said() {
+    let averages = check("averages", |rng| ratio(rng, 1.0)).of(CASE, "ratio", 1.0).batch(16);
+    averages.range(0.0, 1.0).assert_pass();
+    #[expect(clippy::cast_possible_truncation)] // single precision is what this is about
+    let single = |rng: &mut Stream| f64::from(ratio(rng, 1.0) as f32);
+    let regular = |_: &mut Stream| 0.013_4 * (1.0 + 1e-7);
+    let claimed = || check("constant", regular).truth(0.013_4).variance(0.0);
+    assert_eq!(claimed().verdict().expect("a verdict").verdict(), Verdict::Fail);
+    assert_eq!(
+        claimed().rounding(1e-6).draws(20_000).verdict().expect("one").verdict(),
+        Verdict::Pass
+    );
+    check("single", single).of(CASE, "ratio", 1.0).rounding(1e-6).assert_pass();
+}
+
 #[test]
 fn what_makes_no_sense_is_told_with_its_cure() {
     let u = || check("u", Stream::uniform);
@@ -201,16 +238,31 @@ fn what_makes_no_sense_is_told_with_its_cure() {
         (said(u().truth(0.5).batch(0).verdict()), "batch = 0"),
         (said(u().truth(0.5).range(0.6, 1.0).verdict()), "give a range around it"),
         (said(u().truth(0.0).verdict()), "a truth of 0"),
-        (said(u().truth([0.5, 0.5]).verdict()), "2 numbers for the truth, but a draw has 1"),
-        (said(pair().truth([0.5; 3]).verdict()), "3 numbers for the truth, but a draw has 2"),
+        (said(u().truth([0.5, 0.5]).verdict()), "2 number(s) for the truth, but a draw has 1"),
+        (said(pair().truth([0.5; 3]).verdict()), "3 number(s) for the truth, but a draw has 2"),
         (said(u().truth(0.5).lookups(3.0, 1.0).verdict()), "return (value, lookups)"),
         (said(u().of("no/such-case", "ratio", 1.0).verdict()), "no/such-case"),
         (said(u().of(CASE, "ratoi", 1.0).verdict()), "no estimator is called `ratoi`"),
         (said(u().of(CASE, "woodcock", 0.5).verdict()), "refused"),
         (said(u().of(CASE, "ratio", None).verdict()), "choose one of its values"),
-        (said(u().of(CASE, "ratio", -1.0).verdict()), "σ̂"),
+        (said(u().of(CASE, "ratio", -1.0).verdict()), "swept value = -1"),
+        (said(pair().truth(0.5).alpha(1.5).verdict()), "alpha = 1.5"),
+        (
+            said(
+                u().of_case(&deep(), &Choice { estimator: "ratio", ..Choice::default() }).verdict(),
+            ),
+            "multiply the draws by e^τ",
+        ),
         (said(u().of(CASE, "ratio", 1.0).truth(0.5).verdict()), "the truth is given twice"),
-        (said(pair().of(CASE, "ratio", 1.0).verdict()), "1 numbers for the channels of the case"),
+        (said(pair().of(CASE, "ratio", 1.0).verdict()), "1 number(s) for the channels of the case"),
+        (said(check("none", |_| [0.0; 0]).truth(0.5).verdict()), "return one at least"),
+        (said(u().truth(0.5).range(1.0, 0.0).verdict()), "is empty"),
+        (said(u().truth(1e308).range(0.0, 1.0).verdict()), "the truth 1e308 inside"),
+        (
+            said(u().of(CASE, "ratio", f64::NAN).verdict()),
+            "swept value = NaN is not a finite number above 0",
+        ),
+        (said(u().of("transmitance/eq21-overview", "ratio", 1.0).verdict()), "did you mean"),
         (said(claim("none").truth(0.5).judge(&[])), "there are no draws"),
         (said(claim("odd").truth([0.5; 2]).judge(&[0.5; 3])), "no whole number of draws"),
     ];

@@ -278,7 +278,7 @@ fn order_of(stack: &Stack, pixels: &Pixels, alpha: f64) -> (Dependence, Vec<u32>
     if let Some(found) = repeats::repeat(stack).filter(|found| found.ln_p <= -limit) {
         let names: Vec<String> = found.passes.iter().map(u32::to_string).collect();
         said.reason = format!(
-            "the passes are not independent: passes {} share values (the first is 0); give each pass \
+            "the passes are not independent: passes {} share values, counted from 0; give each pass \
              and thread a seed of its own",
             names.join(", ")
         );

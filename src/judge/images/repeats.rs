@@ -53,10 +53,17 @@ pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
-/// Whether all passes are one image.
+/// So many different values no law without many of them gives to all passes alike.
+const VARIED: usize = 8;
+
+/// Whether all passes are one image, of many values: passes of few may be the same by chance.
 pub(super) fn is_one_image(stack: &Stack) -> bool {
     let first = stack.pass(0);
-    (1..stack.passes).all(|pass| stack.pass(pass).iter().zip(first).all(|(x, y)| x == y))
+    let mut values: Vec<u64> = first.iter().map(|x| x.to_bits()).collect();
+    values.sort_unstable();
+    values.dedup();
+    values.len() >= VARIED
+        && (1..stack.passes).all(|pass| stack.pass(pass).iter().zip(first).all(|(x, y)| x == y))
 }
 
 /// `ln C(n, k)`.

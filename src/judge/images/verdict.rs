@@ -26,6 +26,16 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
             "the variance is too small: values spread {:.3} times as wide (ln E = {:.1} ≥ {:.1})",
             variance.about_mean, variance.ln_e, variance.limit
         ));
+        // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
+        let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
+        let strange = judgement.tiles.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+        if let Some(tile) = strange.filter(|_| judgement.counts.fail == 0) {
+            failing.push(format!(
+                "what stands out most, {}: {} (not judged by that variance; give a range, too)",
+                place(judgement, tile),
+                off(judgement, tile)
+            ));
+        }
     }
     for whole in judgement.whole.iter().filter(|whole| whole.verdict == Verdict::Fail) {
         failing.push(format!("the picture is off: {}", off(judgement, whole)));
@@ -155,10 +165,12 @@ fn fault(judgement: &Judgement, refuted: Refuted, pixels: &Pixels) -> String {
 fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     let mut said = Vec::new();
     let has_grounds = claim.variance.is_some() || claim.range.is_some();
+    let is_free = judgement.neighbours.is_tested && !judgement.neighbours.is_refuted();
+    let pixels = if is_free { " of independent pixels" } else { "" };
     let whose = if claim.variance.is_some() { " of that variance" } else { "" };
     if has_grounds {
         said.push(format!(
-            "independent passes{whose} fail with chance {} at most, all tiles and channels together",
+            "independent passes{pixels}{whose} fail with chance {} at most, all tiles and channels together",
             judgement.alpha
         ));
         let condition = if claim.variance.is_some() { " if the variance is right" } else { "" };

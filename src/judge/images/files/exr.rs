@@ -22,7 +22,7 @@ pub(super) fn picture(bytes: Vec<u8>, file: &str) -> Result<Picture, ImageError>
         file: file.to_owned(),
         what: "an exr file",
         cause,
-        cure: "write one layer of R, G, B or Y as half or float, or give npy or pfm",
+        cure: "give a whole file with one layer of R, G, B or Y as half or float, or npy or pfm",
     };
     let wrong = |error: exr::error::Error| faulty(error.to_string());
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(wrong)?;
