@@ -80,7 +80,7 @@ static double timed(const struct problem *problem, enum way way, const double *d
     switch (way) {
     case LOOP: sink = problem->loop(count); break;
     case DRAW: tf_check_run(check, problem->draw, NULL); break;
-    case BATCH: tf_check_run_batches(check, problem->batch, NULL); break;
+    case BATCH: tf_check_run_batches(check, 1, problem->batch, NULL); break;
     default: tf_check_absorb(check, draws, count); break;
     }
     const double took = now() - start;

@@ -2,7 +2,9 @@
  *
  * Made by cbindgen from bindings/c/src. A check is used by one thread at a time; different checks are independent.
  * Texts are UTF-8. An error ends a check: all later calls answer the first one, so that it is enough to look at the
- * last. Callbacks return: they neither throw nor jump.
+ * last. A number that makes no sense by itself is an error of the setter that is given it; what does not go together, as
+ * a truth outside of the range, is one of the first draws. Callbacks return: they neither throw nor jump, and they leave
+ * the check alone that they draw for.
  */
 
 #ifndef TRUEFLIGHT_H
@@ -20,15 +22,16 @@ typedef enum {
   TF_STATUS_NULL_POINTER = 1,
   // A text is not UTF-8.
   TF_STATUS_TEXT = 2,
-  // What was said of the draws makes no sense, or too little was said.
+  // What was said of the draws makes no sense, does not go with their number of values, or is too little.
   TF_STATUS_CLAIM = 3,
   // A case or an estimator does not exist, or cannot be judged.
   TF_STATUS_CASE = 4,
-  // Draws are missing, are no whole number, or do not go with their lookups.
+  // Draws are missing, have no values or too many, are no whole number, or do not go with their lookups.
   TF_STATUS_DRAWS = 5,
   // A callback says that it made more draws than it was asked for.
   TF_STATUS_CALLBACK = 6,
-  // Something was said of the draws after the first of them, or draws came after the verdict.
+  // Something was said of the draws after the first of them, draws came after the verdict, or a callback used the
+  // check that it draws for.
   TF_STATUS_ORDER = 7,
   // A value that a draw does not have.
   TF_STATUS_INDEX = 8,
@@ -60,7 +63,7 @@ typedef struct {
 typedef double (*tf_draw_function)(tf_rng *rng, void *user);
 
 // A callback that makes up to so many draws, one after the other, each with all its values, and answers how many it
-// made: fewer if there are no more.
+// made: fewer if there are no more. There is room for as many numbers as draws times values.
 typedef size_t (*tf_batch_function)(double *out, size_t draws, tf_rng *rng, void *user);
 
 // What was found of one value of the draws; NAN is unknown.
@@ -89,8 +92,8 @@ typedef struct {
 extern "C" {
 #endif // __cplusplus
 
-// What went wrong in the last call that did, on this thread; empty if none did. Valid until another call goes wrong
-// on this thread.
+// What went wrong in the last call that did, on this thread; empty if none did. The text has the same place all the
+// thread's life: another call that goes wrong writes over it. It is cut after 16383 bytes; `tf_check_text` has all.
 const char *tf_last_error(void);
 
 // The library's version, as in "0.1.0".
@@ -100,7 +103,7 @@ const char *tf_version(void);
 // `tf_check_free`.
 tf_check *tf_check_new(const char *name);
 
-// The mean of a correct draw.
+// The mean of a correct draw; of each of its values, if it has several.
 tf_status tf_check_truth(tf_check *check, double truth);
 
 // The same for draws of several values: one number for each value.
@@ -183,14 +186,17 @@ tf_status tf_check_absorb_with_lookups(tf_check *check,
 int32_t tf_check_is_open(tf_check *check);
 
 // Makes draws of one value by a callback until all is decided, or as many as `tf_check_draws` says. Each block of 2^14
-// draws has a random stream of its own, which seed, name and block say.
+// draws has a random stream of its own, which seed, name and block say. The callback must leave its check alone. Claims
+// of several values are an error.
 tf_status tf_check_run(tf_check *check,
                        tf_draw_function draw,
                        void *user);
 
-// The same by a callback that makes many draws in one call, of any number of values. If it makes fewer than it is asked
-// for, these are the last.
+// The same by a callback that makes many draws in one call, each of so many `values`: it may write that many numbers for
+// each draw that it is asked for. One truth serves all values; a list of truths, or the channels of a case, must be as
+// many. If it makes fewer draws than it is asked for, these are the last.
 tf_status tf_check_run_batches(tf_check *check,
+                               size_t values,
                                tf_batch_function fill,
                                void *user);
 
@@ -213,7 +219,7 @@ const char *tf_check_text(tf_check *check);
 // Why the verdict is not pass, in words; empty for a plain pass, after an error its message. As long valid.
 const char *tf_check_reason(tf_check *check);
 
-// Frees a check; null is fine.
+// Frees a check; null is fine. A callback cannot free its own check, which is an error of the check.
 void tf_check_free(tf_check *check);
 
 #ifdef __cplusplus

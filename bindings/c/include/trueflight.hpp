@@ -4,8 +4,9 @@
  *         .truth(std::exp(-1.0)).range(0, 1).assert_pass();
  *
  * A wrapper of trueflight.h: what a setter means stands there, under the same name. A draw is a number, or a std::array
- * of them. What makes no sense throws `error`, a verdict other than pass `not_passed`; an exception of the estimator's
- * comes through as it is. A check is used by one thread at a time; different checks are independent.
+ * of them; its type says how many values it has. What makes no sense throws `error`, a verdict other than pass
+ * `not_passed`; an exception of the estimator's comes through as it is. A check is used by one thread at a time, and not
+ * by its own estimator; different checks are independent.
  */
 #ifndef TRUEFLIGHT_HPP
 #define TRUEFLIGHT_HPP
@@ -90,6 +91,8 @@ template <class T> struct draw {
 };
 
 template <class T, std::size_t K> struct draw<std::array<T, K>> {
+    static_assert(std::is_arithmetic<T>::value, "a draw is a number or a std::array of numbers");
+    static_assert(K > 0, "a draw has one value at least");
     static constexpr std::size_t values = K;
     static void write(double *out, const std::array<T, K> &xs)
     {
@@ -99,6 +102,7 @@ template <class T, std::size_t K> struct draw<std::array<T, K>> {
 
 /** An estimator, and what it threw: no exception may go through C. */
 template <class F> struct trampoline {
+    using one = draw<std::decay_t<decltype(std::declval<F &>()(std::declval<rng &>()))>>;
     F &estimator;
     std::exception_ptr thrown;
 
@@ -106,7 +110,6 @@ template <class F> struct trampoline {
     {
         auto *self = static_cast<trampoline *>(user);
         try {
-            using one = draw<std::decay_t<decltype(self->estimator(std::declval<rng &>()))>>;
             // In registers while draws are made.
             tf_rng local = *stream;
             rng random(&local);
@@ -126,6 +129,7 @@ template <class F> struct trampoline {
 /** What is known of a draw; `Self` is the check, so that calls can be chained. */
 template <class Self> class setup {
   public:
+    /** One truth serves all values of a draw; a list has one for each. */
     Self &truth(double value) { return said(tf_check_truth(get(), value)); }
     Self &truth(const std::vector<double> &list) { return said(tf_check_truths(get(), list.data(), list.size())); }
     Self &variance(double value) { return said(tf_check_variance(get(), value)); }
@@ -215,9 +219,10 @@ template <class F> class drawn : public setup<drawn<F>> {
     /** Draws and judges. */
     outcome verdict()
     {
-        detail::trampoline<F> trampoline{estimator_, nullptr};
-        const tf_status status = tf_check_run_batches(this->get(), &detail::trampoline<F>::fill, &trampoline);
-        if (trampoline.thrown) std::rethrow_exception(trampoline.thrown);
+        using trampoline = detail::trampoline<F>;
+        trampoline made{estimator_, nullptr};
+        const tf_status status = tf_check_run_batches(this->get(), trampoline::one::values, &trampoline::fill, &made);
+        if (made.thrown) std::rethrow_exception(made.thrown);
         detail::need(status);
         return this->judged();
     }

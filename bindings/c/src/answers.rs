@@ -8,6 +8,7 @@ use trueflight::judge::judgement::Judgement;
 
 use crate::border::{ask, free, write};
 use crate::check::Check;
+use crate::state::State;
 use crate::status::{Error, Status, tf_last_error};
 
 /// What is said of draws.
@@ -139,7 +140,7 @@ pub unsafe extern "C" fn tf_check_reason(check: *mut Check) -> *const c_char {
     unsafe { words(check, |check| check.reason().as_ptr()) }
 }
 
-/// Frees a check; null is fine.
+/// Frees a check; null is fine. A callback cannot free its own check, which is an error of the check.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_free(check: *mut Check) {
     // SAFETY: C's promise of checks.
@@ -151,7 +152,7 @@ fn told(answer: Result<(), Status>) -> Status {
 }
 
 /// A text of a check that is judged; where there is no verdict, an error has left its message.
-unsafe fn words(check: *mut Check, words: impl Fn(&Check) -> *const c_char) -> *const c_char {
+unsafe fn words(check: *mut Check, words: impl Fn(&State) -> *const c_char) -> *const c_char {
     // SAFETY: C's promise of checks.
     let found = unsafe {
         ask(check, |check| {

@@ -7,6 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::slice;
 
 use crate::check::Check;
+use crate::state::State;
 use crate::status::{Error, Status, remember};
 
 fn null(what: &str) -> Error {
@@ -34,19 +35,19 @@ pub(crate) fn answer<T>(act: impl FnOnce() -> Result<T, Error>) -> Result<T, Sta
 ///
 /// # Safety
 ///
-/// The check is null, or valid and nobody else's for the time of the call.
+/// The check is null, or valid and no other thread's for the time of the call.
 pub(crate) unsafe fn change(
     check: *mut Check,
-    act: impl FnOnce(&mut Check) -> Result<(), Error>,
+    act: impl FnOnce(&mut State) -> Result<(), Error>,
 ) -> Status {
-    // SAFETY: `as_mut` answers null by `None`; all else is the caller's promise.
-    let Some(check) = (unsafe { check.as_mut() }) else { return remember(&null("the check")) };
-    let done = match check.fault() {
+    // SAFETY: `as_ref` answers null by `None`; all else is the caller's promise. Shared, since a callback may call again.
+    let Some(check) = (unsafe { check.as_ref() }) else { return remember(&null("the check")) };
+    let done = check.take().and_then(|mut state| match state.fault() {
         Some(error) => Err(error.clone()),
-        None => settled(|| act(check))
-            .map_err(|error| check.placed(error))
-            .inspect_err(|error| check.spoil(error)),
-    };
+        None => settled(|| act(&mut state))
+            .map_err(|error| state.placed(error))
+            .inspect_err(|error| state.spoil(error)),
+    });
     done.map_or_else(|error| remember(&error), |()| Status::Ok)
 }
 
@@ -57,13 +58,16 @@ pub(crate) unsafe fn change(
 /// The same.
 pub(crate) unsafe fn ask<T>(
     check: *mut Check,
-    act: impl FnOnce(&mut Check) -> Result<T, Error>,
+    act: impl FnOnce(&mut State) -> Result<T, Error>,
 ) -> Result<T, Status> {
     // SAFETY: as above.
-    let Some(check) = (unsafe { check.as_mut() }) else {
+    let Some(check) = (unsafe { check.as_ref() }) else {
         return Err(remember(&null("the check")));
     };
-    settled(|| act(check)).map_err(|error| remember(&check.placed(error)))
+    let answer = check
+        .look()
+        .and_then(|mut state| settled(|| act(&mut state)).map_err(|error| state.placed(error)));
+    answer.map_err(|error| remember(&error))
 }
 
 /// The text that C points to.
@@ -117,16 +121,22 @@ pub(crate) fn give(check: Check) -> *mut Check {
     Box::into_raw(Box::new(check))
 }
 
-/// Takes a check back and drops it.
+/// Takes a check back and drops it; one that is drawing stays, since its callback returns into it.
 ///
 /// # Safety
 ///
 /// It is null, or comes from [`give`] and is not used again.
 pub(crate) unsafe fn free(check: *mut Check) {
-    if !check.is_null() {
-        // SAFETY: it was a box's.
-        let check = unsafe { Box::from_raw(check) };
-        // A panic while dropping has nobody to be told to.
-        let _ = catch_unwind(AssertUnwindSafe(|| drop(check)));
+    // SAFETY: as above.
+    let Some(is_drawing) = (unsafe { check.as_ref() }).map(|check| check.take().err()) else {
+        return;
+    };
+    if let Some(error) = is_drawing {
+        remember(&error);
+        return;
     }
+    // SAFETY: it was a box's.
+    let check = unsafe { Box::from_raw(check) };
+    // A panic while dropping has nobody to be told to.
+    let _ = catch_unwind(AssertUnwindSafe(|| drop(check)));
 }

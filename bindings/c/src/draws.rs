@@ -7,6 +7,7 @@ use std::ffi::c_void;
 use crate::border::{ask, change, list};
 use crate::check::Check;
 use crate::random::Rng;
+use crate::state::State;
 use crate::status::{Error, Status};
 
 /// A callback that makes one draw with the help of a random stream; the pointer is the one that was given to
@@ -15,7 +16,7 @@ pub type DrawFunction =
     Option<unsafe extern "C-unwind" fn(rng: *mut Rng, user: *mut c_void) -> f64>;
 
 /// A callback that makes up to so many draws, one after the other, each with all its values, and answers how many it
-/// made: fewer if there are no more.
+/// made: fewer if there are no more. There is room for as many numbers as draws times values.
 pub type BatchFunction = Option<
     unsafe extern "C-unwind" fn(
         out: *mut f64,
@@ -65,12 +66,13 @@ pub unsafe extern "C" fn tf_check_absorb_with_lookups(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_is_open(check: *mut Check) -> i32 {
     // SAFETY: C's promise of checks.
-    let is_open = unsafe { ask(check, Check::is_open) };
+    let is_open = unsafe { ask(check, State::is_open) };
     i32::from(is_open == Ok(true))
 }
 
 /// Makes draws of one value by a callback until all is decided, or as many as `tf_check_draws` says. Each block of 2^14
-/// draws has a random stream of its own, which seed, name and block say.
+/// draws has a random stream of its own, which seed, name and block say. The callback must leave its check alone. Claims
+/// of several values are an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_run(
     check: *mut Check,
@@ -81,8 +83,7 @@ pub unsafe extern "C" fn tf_check_run(
     unsafe {
         change(check, |check| {
             let draw = draw.ok_or_else(no_callback)?;
-            check.of_one_value()?;
-            check.run(|out, draws, rng| {
+            check.run(1, |out, draws, rng| {
                 for x in out {
                     *x = draw(rng, user);
                 }
@@ -92,11 +93,13 @@ pub unsafe extern "C" fn tf_check_run(
     }
 }
 
-/// The same by a callback that makes many draws in one call, of any number of values. If it makes fewer than it is asked
-/// for, these are the last.
+/// The same by a callback that makes many draws in one call, each of so many `values`: it may write that many numbers for
+/// each draw that it is asked for. One truth serves all values; a list of truths, or the channels of a case, must be as
+/// many. If it makes fewer draws than it is asked for, these are the last.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_run_batches(
     check: *mut Check,
+    values: usize,
     fill: BatchFunction,
     user: *mut c_void,
 ) -> Status {
@@ -104,7 +107,7 @@ pub unsafe extern "C" fn tf_check_run_batches(
     unsafe {
         change(check, |check| {
             let fill = fill.ok_or_else(no_callback)?;
-            check.run(|out, draws, rng| fill(out.as_mut_ptr(), draws, rng, user))
+            check.run(values, |out, draws, rng| fill(out.as_mut_ptr(), draws, rng, user))
         })
     }
 }

@@ -3,7 +3,9 @@
 //! ```text
 //! border    pointers from C become references here, and nowhere else; panics end here
 //! status    codes, and the message of the last error
-//! check     what a handle holds: a check that is set up, that waits for draws, or that is judged
+//! check     a handle, which one call at a time may use
+//! state     what a handle holds: a check that is set up, that waits for draws, or that is judged
+//! sense     whether what is said makes sense by itself
 //! setup     functions that say what is known of a draw
 //! draws     functions that take draws or make them by a callback
 //! answers   functions that tell the verdict
@@ -14,15 +16,17 @@
 //!
 //! What C must keep to holds for all functions alike. A check is null or comes from `tf_check_new`, was not freed, and
 //! is used by one thread at a time; different checks are independent. A text is null or ends with a zero. A list is
-//! null or has as many numbers as are told beside it. A callback returns: it neither throws nor jumps. Null is answered
-//! by an error.
+//! null or has as many numbers as are told beside it. A callback returns: it neither throws nor jumps, and writes no
+//! more numbers than it is asked for. Null is answered by an error, and so is a callback's call with its own check.
 
 mod answers;
 mod border;
 mod check;
 mod draws;
 mod random;
+mod sense;
 mod setup;
+mod state;
 mod status;
 
 pub use answers::{

@@ -5,9 +5,25 @@
 use std::ffi::c_char;
 use std::ptr;
 
+use trueflight::judge::claim::{Given, Lookups};
+use trueflight::judge::trial::Wanted;
+
 use crate::border::{answer, change, give, list, text};
 use crate::check::Check;
+use crate::sense::{self, all, given, wanted};
 use crate::status::Status;
+
+fn truth_is(truth: f64) -> Given {
+    Given { truth, ..Given::default() }
+}
+
+fn variance_is(variance: f64) -> Given {
+    Given { variance: Some(variance), ..Given::default() }
+}
+
+fn kurtosis_is(kurtosis: f64) -> Given {
+    Given { kurtosis: Some(kurtosis), ..Given::default() }
+}
 
 /// A check of that name, which says nothing of its draws yet; null if the name is null or not UTF-8. Free it by
 /// `tf_check_free`.
@@ -18,11 +34,11 @@ pub unsafe extern "C" fn tf_check_new(name: *const c_char) -> *mut Check {
     check.unwrap_or(ptr::null_mut())
 }
 
-/// The mean of a correct draw.
+/// The mean of a correct draw; of each of its values, if it has several.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_truth(check: *mut Check, truth: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.truth(truth))) }
+    unsafe { change(check, |check| check.say_truths(all(&[truth], truth_is), vec![truth])) }
 }
 
 /// The same for draws of several values: one number for each value.
@@ -35,8 +51,8 @@ pub unsafe extern "C" fn tf_check_truths(
     // SAFETY: C's promises of checks and of lists.
     unsafe {
         change(check, |check| {
-            let numbers = list("the list of truths", truths, count)?.to_vec();
-            check.say(|said| said.truth(numbers))
+            let numbers = list("the list of truths", truths, count)?;
+            check.say_truths(all(numbers, truth_is), numbers.to_vec())
         })
     }
 }
@@ -45,7 +61,11 @@ pub unsafe extern "C" fn tf_check_truths(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_variance(check: *mut Check, variance: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.variance(variance))) }
+    unsafe {
+        change(check, |check| {
+            check.say(all(&[variance], variance_is), |said| said.variance(variance))
+        })
+    }
 }
 
 /// The same, one number for each value.
@@ -58,8 +78,8 @@ pub unsafe extern "C" fn tf_check_variances(
     // SAFETY: C's promises of checks and of lists.
     unsafe {
         change(check, |check| {
-            let numbers = list("the list of variances", variances, count)?.to_vec();
-            check.say(|said| said.variance(numbers))
+            let numbers = list("the list of variances", variances, count)?;
+            check.say(all(numbers, variance_is), |said| said.variance(numbers.to_vec()))
         })
     }
 }
@@ -68,7 +88,11 @@ pub unsafe extern "C" fn tf_check_variances(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_kurtosis(check: *mut Check, kurtosis: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.kurtosis(kurtosis))) }
+    unsafe {
+        change(check, |check| {
+            check.say(all(&[kurtosis], kurtosis_is), |said| said.kurtosis(kurtosis))
+        })
+    }
 }
 
 /// The same, one number for each value.
@@ -81,8 +105,8 @@ pub unsafe extern "C" fn tf_check_kurtoses(
     // SAFETY: C's promises of checks and of lists.
     unsafe {
         change(check, |check| {
-            let numbers = list("the list of kurtoses", kurtoses, count)?.to_vec();
-            check.say(|said| said.kurtosis(numbers))
+            let numbers = list("the list of kurtoses", kurtoses, count)?;
+            check.say(all(numbers, kurtosis_is), |said| said.kurtosis(numbers.to_vec()))
         })
     }
 }
@@ -91,14 +115,22 @@ pub unsafe extern "C" fn tf_check_kurtoses(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_range(check: *mut Check, low: f64, high: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.range(low, high))) }
+    unsafe {
+        change(check, |check| check.say(sense::range(low, high), |said| said.range(low, high)))
+    }
 }
 
 /// Mean and variance of the number of lookups of a correct draw, which `tf_check_absorb_with_lookups` tells.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_lookups(check: *mut Check, mean: f64, variance: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.lookups(mean, variance))) }
+    unsafe {
+        change(check, |check| {
+            let lookups = Some(Lookups { mean, variance: Some(variance), error: 0.0 });
+            let sense = given(Given { lookups, ..Given::default() });
+            check.say(sense, |said| said.lookups(mean, variance))
+        })
+    }
 }
 
 /// What rounding may add to a draw, relative to the truth; absolute for a truth of 0. Without it 3.6e-13; for draws in
@@ -106,14 +138,19 @@ pub unsafe extern "C" fn tf_check_lookups(check: *mut Check, mean: f64, variance
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_rounding(check: *mut Check, rounding: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.rounding(rounding))) }
+    unsafe {
+        change(check, |check| {
+            let sense = given(Given { rounding, ..Given::default() });
+            check.say(sense, |said| said.rounding(rounding))
+        })
+    }
 }
 
 /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_mean_only(check: *mut Check) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(trueflight::Check::mean_only)) }
+    unsafe { change(check, |check| check.say(Ok(()), trueflight::Check::mean_only)) }
 }
 
 /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or with
@@ -121,14 +158,24 @@ pub unsafe extern "C" fn tf_check_mean_only(check: *mut Check) -> Status {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_tolerance(check: *mut Check, tolerance: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.tolerance(tolerance))) }
+    unsafe {
+        change(check, |check| {
+            let sense = wanted(Wanted { tolerance: Some(tolerance), ..Wanted::default() });
+            check.say(sense, |said| said.tolerance(tolerance))
+        })
+    }
 }
 
 /// The same for the variance, relative to it.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_variance_tolerance(check: *mut Check, tolerance: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.variance_tolerance(tolerance))) }
+    unsafe {
+        change(check, |check| {
+            let sense = wanted(Wanted { variance_tolerance: Some(tolerance), ..Wanted::default() });
+            check.say(sense, |said| said.variance_tolerance(tolerance))
+        })
+    }
 }
 
 /// Judges averages of so many consecutive draws, which is for draws that depend on their neighbours; variance and
@@ -136,7 +183,12 @@ pub unsafe extern "C" fn tf_check_variance_tolerance(check: *mut Check, toleranc
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_batch(check: *mut Check, batch: u64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.batch(batch))) }
+    unsafe {
+        change(check, |check| {
+            let sense = wanted(Wanted { batch, ..Wanted::default() });
+            check.say(sense, |said| said.batch(batch))
+        })
+    }
 }
 
 /// α: the chance that a correct estimator fails, 1e-3 without it. Of n checks together any fails with chance α at most
@@ -144,7 +196,12 @@ pub unsafe extern "C" fn tf_check_batch(check: *mut Check, batch: u64) -> Status
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_alpha(check: *mut Check, alpha: f64) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe { change(check, |check| check.say(|said| said.alpha(alpha))) }
+    unsafe {
+        change(check, |check| {
+            let sense = wanted(Wanted { alpha, ..Wanted::default() });
+            check.say(sense, |said| said.alpha(alpha))
+        })
+    }
 }
 
 /// So many draws, all of them, in place of as many as the decision takes (2^24 at most).
@@ -154,7 +211,8 @@ pub unsafe extern "C" fn tf_check_draws(check: *mut Check, draws: u64) -> Status
     unsafe {
         change(check, |check| {
             check.draws = Some(draws);
-            check.say(|said| said.draws(draws))
+            let sense = wanted(Wanted { most: Some(draws), ..Wanted::default() });
+            check.say(sense, |said| said.draws(draws))
         })
     }
 }
@@ -166,7 +224,7 @@ pub unsafe extern "C" fn tf_check_seed(check: *mut Check, seed: u64) -> Status {
     unsafe {
         change(check, |check| {
             check.seed = seed;
-            check.say(|said| said.seed(seed))
+            check.say(Ok(()), |said| said.seed(seed))
         })
     }
 }

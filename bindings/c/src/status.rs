@@ -1,7 +1,7 @@
 //! Codes, and the message of the last error.
 #![allow(unsafe_code)] // functions with a name of their own in the library
 
-use std::cell::RefCell;
+use std::cell::Cell;
 use std::ffi::{CStr, CString, c_char};
 
 use trueflight::check::CheckError;
@@ -16,15 +16,16 @@ pub enum Status {
     NullPointer = 1,
     /// A text is not UTF-8.
     Text = 2,
-    /// What was said of the draws makes no sense, or too little was said.
+    /// What was said of the draws makes no sense, does not go with their number of values, or is too little.
     Claim = 3,
     /// A case or an estimator does not exist, or cannot be judged.
     Case = 4,
-    /// Draws are missing, are no whole number, or do not go with their lookups.
+    /// Draws are missing, have no values or too many, are no whole number, or do not go with their lookups.
     Draws = 5,
     /// A callback says that it made more draws than it was asked for.
     Callback = 6,
-    /// Something was said of the draws after the first of them, or draws came after the verdict.
+    /// Something was said of the draws after the first of them, draws came after the verdict, or a callback used the
+    /// check that it draws for.
     Order = 7,
     /// A value that a draw does not have.
     Index = 8,
@@ -82,8 +83,12 @@ impl From<CheckError> for Error {
     }
 }
 
+/// How many bytes the last error has room for, with its end.
+const ROOM: usize = 1 << 14;
+
 thread_local! {
-    static LAST: RefCell<CString> = RefCell::default();
+    /// The last error. It stays at its place, so that a pointer to it is good for as long as the thread.
+    static LAST: Box<[Cell<u8>]> = vec![Cell::new(0); ROOM].into_boxed_slice();
 }
 
 /// A text for C; a zero in it, which C could not read past, becomes the sign for unreadable characters.
@@ -93,15 +98,21 @@ pub(crate) fn c_text(text: &str) -> CString {
 
 /// Keeps the message for `tf_last_error`.
 pub(crate) fn remember(error: &Error) -> Status {
-    LAST.set(c_text(&error.message));
+    let text = error.message.replace('\0', "\u{fffd}");
+    let end = (0..ROOM.min(text.len() + 1)).rev().find(|&end| text.is_char_boundary(end));
+    let text = &text[..end.unwrap_or(0)];
+    // A thread that is at its end has no last error.
+    let _ = LAST.try_with(|last| {
+        last.iter().zip(text.bytes().chain([0])).for_each(|(place, byte)| place.set(byte));
+    });
     error.status
 }
 
-/// What went wrong in the last call that did, on this thread; empty if none did. Valid until another call goes wrong
-/// on this thread.
+/// What went wrong in the last call that did, on this thread; empty if none did. The text has the same place all the
+/// thread's life: another call that goes wrong writes over it. It is cut after 16383 bytes; `tf_check_text` has all.
 #[unsafe(no_mangle)]
 pub extern "C" fn tf_last_error() -> *const c_char {
-    LAST.with_borrow(|last| last.as_ptr())
+    LAST.try_with(|last| last.as_ptr().cast()).unwrap_or(c"".as_ptr())
 }
 
 /// The library's version, as in "0.1.0".

@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::build::{Link, Program};
 
-fn run(source: &str) -> (Option<i32>, String) {
+pub fn run(source: &str) -> (Option<i32>, String) {
     Program::new(&format!("tests/programs/{source}"), Link::Shared, &[]).run()
 }
 
@@ -31,7 +31,10 @@ fn bad_input_gets_one_clear_error() {
         ("no such case", "4 check `half`: "),
         ("no such case", case),
         ("ragged", "5 check `pairs`: 3 numbers are no whole number of draws of 2 values"),
-        ("one of two", "5 check `pairs`: a draw has 2 values; make them by tf_check_run_batches"),
+        (
+            "one of two",
+            "3 check `pairs`: 2 truths, but a draw has 1 value; give one for each value, or one for all",
+        ),
         (
             "lookups",
             "5 check `half`: lookups are claimed; push them by tf_check_absorb_with_lookups",
@@ -102,7 +105,8 @@ fn sanitizers_find_nothing() {
         println!("skipped: this compiler has no sanitizers");
         return;
     }
-    for source in ["errors.c", "exceptions.cpp", "threads.cpp", "same.c"] {
+    let sources = ["errors.c", "exceptions.cpp", "threads.cpp", "same.c", "setters.c", "values.c"];
+    for source in sources.into_iter().chain(["values.cpp", "callbacks.c", "callbacks.cpp"]) {
         let (code, text) =
             Program::new(&format!("tests/programs/{source}"), Link::Static, &flags).run();
         assert_eq!(code, Some(0), "{source}: {text}");

@@ -6,4 +6,5 @@ mod build;
 mod examples;
 mod header;
 mod manual;
+mod misuse;
 mod packages;

@@ -56,7 +56,7 @@ int main(void)
     tf_check_free(check);
 
     check = half();
-    told("too many", tf_check_run_batches(check, too_many, NULL));
+    told("too many", tf_check_run_batches(check, 1, too_many, NULL));
     tf_check_free(check);
 
     check = half();
@@ -73,9 +73,7 @@ int main(void)
     tf_check_free(check);
 
     check = half();
-    told("no such case", tf_check_of(check, "no/such-case", "ratio", 1.0) == TF_STATUS_OK
-                             ? tf_check_run(check, none, NULL)
-                             : TF_STATUS_CASE);
+    told("no such case", tf_check_of(check, "no/such-case", "ratio", 1.0));
     tf_check_free(check);
 
     check = tf_check_new("pairs");

@@ -1,0 +1,135 @@
+//! What is said to the wrong place, at the wrong time, or of another number of values: an error, and never a write
+//! beyond the buffer. The sanitizers of [`crate::border`] run the same programs.
+
+use std::process::Command;
+
+use crate::border::run;
+use crate::build::here;
+
+/// Compares what a program wrote with the beginnings of its lines.
+fn lines_begin(text: &str, wanted: &[&str]) {
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines.len(), wanted.len(), "{text}");
+    for (line, wanted) in lines.iter().zip(wanted) {
+        assert!(line.starts_with(wanted), "{line}\n  does not begin by\n{wanted}");
+    }
+}
+
+#[test]
+fn setters_tell_what_makes_no_sense() {
+    let (code, text) = run("setters.c");
+    assert_eq!(code, Some(0), "{text}");
+    // A message on a case has several lines.
+    let lines: Vec<&str> = text.lines().filter(|line| line.contains(": ")).collect();
+    let wanted = [
+        ("alpha", "alpha = -1 is not a probability above 0 and below 1"),
+        ("alpha 1", "alpha = 1 is not a probability above 0 and below 1"),
+        ("draws", "number of draws = 0 is not a finite number above 0"),
+        ("batch", "batch = 0 is not a finite number above 0"),
+        ("tolerance", "tolerance = 0 is not a finite number above 0"),
+        ("its own", "variance tolerance = inf is not a finite number above 0"),
+        ("truth", "truth = NaN is not a finite number"),
+        ("truths", "truth = NaN is not a finite number"),
+        ("no truths", "a list is empty; give one number for each value of a draw"),
+        ("variance", "variance = -1 is not a finite number, 0 or more"),
+        ("variances", "variance = NaN is not a finite number, 0 or more"),
+        ("kurtosis", "kurtosis = 0.5 is not a finite number, 1 or more"),
+        ("kurtoses", "kurtosis = 0.5 is not a finite number, 1 or more"),
+        ("range", "a range of 1 to 0 has nothing inside"),
+        ("range nan", "a range of 0 to NaN has nothing inside"),
+        ("lookups", "expected lookups = 0 is not a finite number above 0"),
+        ("rounding", "rounding = -1 is not a finite number, 0 or more"),
+    ];
+    for (name, said) in wanted {
+        let wanted = format!("{name}: 3 check `{name}`: {said}");
+        assert!(lines.iter().any(|line| line.starts_with(&wanted)), "{text}\n  lacks\n{wanted}");
+    }
+    assert!(text.contains("\ncase: 4 check `case`: "), "{text}");
+    assert!(text.contains("\nasked: 0\ntogether: 3 check `together`: a range of 0 to 1"), "{text}");
+}
+
+#[test]
+fn a_draw_has_as_many_values_as_the_call_says() {
+    let (code, text) = run("values.c");
+    assert_eq!(code, Some(0), "{text}");
+    let more = "give one for each value, or one for all";
+    let wanted = [
+        "wanted: 1",
+        "one truth: 0 ",
+        "values: 3, passed: 1",
+        "three truths: 0 ",
+        &format!("two of three: 3 check `uniform`: 3 truths, but a draw has 2 values; {more}"),
+        &format!("one of three: 3 check `uniform`: 3 truths, but a draw has 1 value; {more}"),
+        "two after one: 3 check `uniform`: 1 values of the draws before, but a draw has 2 values",
+        "none: 5 check `uniform`: a draw has 0 values; it must have 1 at least",
+        "most: 5 check `uniform`: there is no memory for 16384 draws of 18446744073709551615 values",
+        "many: 5 check `uniform`: there is no memory for 16384 draws of 281474976710656 values",
+    ];
+    lines_begin(&text, &wanted);
+}
+
+#[test]
+fn a_lambda_says_how_many_values_a_draw_has() {
+    let (code, text) = run("values.cpp");
+    assert_eq!(code, Some(0), "{text}");
+    let wanted = [
+        "one truth: 2 values, passed: 1",
+        "two truths: 2 values, passed: 1",
+        "three truths: 3 check `a`: 3 truths, but a draw has 2 values; give one for each value",
+        "three of one: 3 check `a`: 3 truths, but a draw has 1 value; give one for each value",
+        "two variances: 2 values, passed: 1",
+        "three variances: 3 check `a`: 3 numbers for the variance, but a draw has 2 values",
+        if cfg!(feature = "theory") {
+            "a case: 3 check `a`: 4 channels of the case, but a draw has 1 value"
+        } else {
+            "a case: 4 check `a`: nothing is known of `common-ratio`"
+        },
+    ];
+    lines_begin(&text, &wanted);
+}
+
+#[test]
+fn a_draw_without_values_does_not_compile() {
+    let compiler = std::env::var("CXX").unwrap_or_else(|_| "c++".into());
+    let mut command = Command::new(compiler);
+    command.args(["-std=c++17", "-fsyntax-only", "-I"]).arg(here().join("include"));
+    let output = command.arg(here().join("tests/programs/empty.cpp")).output().expect("a compiler");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success() && said.contains("a draw has one value at least"), "{said}");
+}
+
+#[test]
+fn a_callback_must_leave_its_own_check_alone() {
+    let (code, text) = run("callbacks.c");
+    assert_eq!(code, Some(0), "{text}");
+    let says = "check `half`: the check is drawing; a callback must not use it";
+    let case = if cfg!(feature = "theory") { "nope" } else { "nothing is known of `x` of nope" };
+    let (head, rest) = text.split_once("place: ").expect("the last error");
+    let wanted = [
+        "draws: 7, 7, one block: 1, passed: 0",
+        &format!("draws says: {says}"),
+        "says: 7, 7, one block: 1, passed: 0",
+        &format!("says says: {says}"),
+        "frees: 0, 7, one block: 1, passed: 0",
+        &format!("frees says: {says}"),
+        "looks: 7, 0, one block: 0, passed: 1",
+        "other: 0, 0, one block: 0, passed: 1",
+    ];
+    lines_begin(head, &wanted);
+    let told: Vec<&str> = rest.split("place: ").collect();
+    assert_eq!(told.len(), 3, "{text}");
+    for told in told {
+        assert!(told.starts_with("4 check `half`: ") && told.contains(case), "{text}");
+    }
+    let end = text.find("\nlong: ").expect("the long one");
+    // Whole characters of two bytes, behind "check `".
+    let wanted = ["", "long: 16383, 1", "text: `half`: pass, 0, check `half`: say wh"];
+    assert_eq!(text[end..].trim_end(), wanted.join("\n"), "{text}");
+}
+
+#[test]
+fn a_lambda_must_leave_its_own_check_alone() {
+    let (code, text) = run("callbacks.cpp");
+    assert_eq!(code, Some(0), "{text}");
+    lines_begin(&text, &["7 check `own`: the check is drawing; a callback must not use it"; 2]);
+}
