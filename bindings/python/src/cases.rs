@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use pyo3::prelude::*;
+use trueflight::harness::sweep::What;
 use trueflight::harness::{Case, Catalogue, Source, suite};
 
 use crate::trouble::Trouble;
@@ -16,6 +17,18 @@ pub struct Asked {
     text: String,
     sweep: Option<(String, Vec<f64>)>,
 }
+
+/// Everything that can be swept.
+const KEYS: [&str; 8] = [
+    "sampling",
+    "sampling-scale",
+    "albedo",
+    "control",
+    "points",
+    "density",
+    "albedo-scale",
+    "contrast",
+];
 
 /// The names of the built-in cases.
 #[pyfunction]
@@ -34,7 +47,13 @@ impl Asked {
             None => source,
             Some((what, values)) => swept(source, what, values)?,
         };
-        Ok(vec![Case::read(&source)?])
+        let case = Case::read(&source)?;
+        if let (Some((key, _)), Some(axis)) = (&self.sweep, &case.sweep)
+            && !depends(&case, axis.what)
+        {
+            return Err(idle(&source, key));
+        }
+        Ok(vec![case])
     }
 
     /// Reads a single case.
@@ -87,4 +106,24 @@ fn swept(source: Source, what: &str, values: &[f64]) -> Result<Source, Trouble> 
     problem.insert("sweep".into(), toml::Value::Table(sweep));
     let text = toml::to_string(&table).map_err(|error| Trouble::Wrong(error.to_string()))?;
     Ok(Source { text, ..source })
+}
+
+/// Whether any estimator of a case depends on what is swept.
+fn depends(case: &Case, what: What) -> bool {
+    (0..case.scenario.estimators()).any(|estimator| case.scenario.depends_on(estimator, what))
+}
+
+/// That no estimator depends on what is swept, and what could be swept instead.
+fn idle(source: &Source, key: &str) -> Trouble {
+    let could = KEYS.iter().filter(|other| {
+        let read = swept(source.clone(), other, &[1.0]).ok().and_then(|it| Case::read(&it).ok());
+        let axis = read.as_ref().and_then(|case| Some((case, case.sweep.as_ref()?.what)));
+        axis.is_some_and(|(case, what)| depends(case, what))
+    });
+    let python = |key: &str| key.replace('-', "_");
+    let could = could.map(|key| python(key)).collect::<Vec<_>>().join(", ");
+    let key = python(key);
+    Trouble::Wrong(format!(
+        "{key} sweeps nothing here: no estimator of the case takes it, or each has its own; give the values of one of: {could}"
+    ))
 }

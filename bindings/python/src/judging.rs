@@ -4,6 +4,7 @@ use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use trueflight::check::{Check, CheckError, Outcome, Pushed};
+use trueflight::harness::sweep::What;
 use trueflight::judge::Choice;
 use trueflight::judge::claim::{Claim, ROUNDING};
 use trueflight::judge::trial::BUFFER;
@@ -80,6 +81,14 @@ impl Asked {
     fn with_theory(&self, case: &cases::Asked) -> Result<Check<()>, Trouble> {
         let case = case.read_one()?;
         let (estimator, swept) = (self.estimator.as_str(), self.sampling);
+        // Of what else is swept, the case says which numbers there are.
+        let is_sampling = case.sweep.as_ref().is_none_or(|axis| axis.what == What::Sampling);
+        let is_wrong = |x: &f64| !x.is_finite() || (is_sampling && *x <= 0.0);
+        if let Some(x) = swept.filter(is_wrong) {
+            let wanted = if is_sampling { "a finite number above 0" } else { "a finite number" };
+            let text = format!("check `{}`: sampling = {x} is not {wanted}", self.name);
+            return Err(Trouble::Wrong(text));
+        }
         let choice =
             Choice { estimator, swept, is_exact: true, seed: self.seed, ..Choice::default() };
         let wrong = |error: &dyn std::fmt::Display| {

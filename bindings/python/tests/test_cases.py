@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import trueflight as tf
+from trueflight._cases import _Line
 
 CASE = """
 title = "Homogeneous"
@@ -94,7 +95,20 @@ def test_progress_is_told(capsys):
     tf.run(CASE, progress=lambda done, planned: told.append((done, planned)))
     assert told[-1][1] == 200_000 and 0 < told[-1][0] and told == sorted(told)
     tf.run(CASE, progress=True)
-    assert "of 2e+05 draws\n" in capsys.readouterr().err
+    line = capsys.readouterr().err
+    last = line.split("\r")[-1]
+    assert last.endswith("\n") and last.strip() == f"drew {told[-1][0]:.3g} draws"
+    with pytest.raises(tf.Error):
+        tf.run("title = 1\n", progress=True)
+    assert capsys.readouterr().err == "", "no line began"
+
+
+def test_more_draws_than_planned_are_not_above_100_percent(capsys):
+    line = _Line()
+    line(11_100, 5_000)
+    line.tell("drew")
+    line.end()
+    assert capsys.readouterr().err == "\rdrawing: 99 % of 5e+03 draws\r" + "drew".ljust(28) + "\n"
 
 
 def test_an_exception_of_progress_comes_through_and_ends_the_drawing():

@@ -13,7 +13,7 @@ import pytest
 pytest.importorskip("mitsuba")
 pytest.importorskip("numpy")
 
-from trueflight.clients import mitsuba as client  # noqa: E402
+from trueflight.clients import mitsuba as client
 
 PROGRAM = os.environ.get("TRUEFLIGHT", "trueflight")
 if shutil.which(PROGRAM) is None:
@@ -79,7 +79,8 @@ def test_rows_are_appended_to_a_table(export, tmp_path):
         (["BALL", "--bug", "majorant"], "no majorant"),
         (["POINT", "--no-emitter-sampling"], "does not find this light"),
         (["PBRT"], "not for Mitsuba"),
-        (["EXPORT", "--draws", "100", "--csv", "no/such/table.csv"], "no/such"),
+        (["EXPORT", "--draws", "9999999999", "--csv", "no/such/table.csv"], "--csv no/such/table.csv: No such file"),
+        (["EXPORT", "--draws", "100", "--pixels", "--seed", "4096"], "--seed 4096 has no seed of 32 bits for each pixel"),
     ],
 )
 def test_what_is_wrong_is_told(export, capsys, words, told):
@@ -100,3 +101,38 @@ def test_a_command_that_is_not_there_is_told(export, capsys, monkeypatch):
     monkeypatch.setenv("TRUEFLIGHT", "no-such-command")
     assert client.main([folder, "--draws", "100", "--ours"]) == 2
     assert "no-such-command" in capsys.readouterr().err
+
+
+def test_what_the_console_says(export, capsys):
+    folder = export("transmittance/eq21-overview")
+    assert client.main([folder, "--draws", "100", "--seed", "0", "--ours"]) == 3
+    first, _, third, fourth = capsys.readouterr().out.splitlines()
+    assert first.startswith("transmittance/eq21-overview") and ", volpath: inconclusive: " in first
+    assert "100 draws, " in third and fourth.startswith("  ours: 1 % in ")
+
+
+def test_draws_that_are_alike_have_no_z(export, capsys, tmp_path):
+    table = tmp_path / "table.csv"
+    words = [export("transmittance/eq21-overview"), "--integrator", "path", "--draws", "5000", "--csv", str(table)]
+    client.main(words)
+    text = capsys.readouterr().out
+    assert "z = –\n" in text and "every draw is 1\n" in text and "1 % in" not in text
+    with open(table, encoding="utf-8") as file:
+        assert [row["z"] for row in csv.DictReader(file)] == [""]
+
+
+@pytest.mark.parametrize("seed", ["-1", "4294967296", "²", "1e3"])
+def test_a_seed_has_32_bits(capsys, seed):
+    with pytest.raises(SystemExit) as left:
+        client.main(["scene", f"--seed={seed}"])
+    assert left.value.code == 2 and "a whole number from 0 to 2^32 - 1" in capsys.readouterr().err
+
+
+def test_ctrl_c_is_one_line(export, capsys, monkeypatch, tmp_path):
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(client, "measure", interrupted)
+    table = tmp_path / "table.csv"
+    assert client.main([export("transmittance/eq21-overview"), "--csv", str(table)]) == 130
+    assert capsys.readouterr().err == "interrupted\n" and not table.exists()

@@ -48,7 +48,7 @@ def test_outcomes_and_what_is_printed(run):
     result.stdout.fnmatch_lines(
         [
             "trueflight: --tf-alpha=0.001 --tf-seed=1",
-            "trueflight: 5 test(s) share it, 0.0002 each",
+            "trueflight: alpha 0.001, shared by 5 tests: 0.0002 each",
             "*py ..FI..*",
             "*AssertionError: check `*::test_biased`: fail: the mean is off by +*",
             "*  seed      1",
@@ -64,11 +64,31 @@ def test_options(run):
     result.stdout.fnmatch_lines(["trueflight: --tf-alpha=0.01 --tf-seed=7", "*test_undecided INCONCLUSIVE*"])
 
 
-def test_alpha_is_shared_by_those_that_are_selected(run):
-    text = TESTS.replace("ALPHA / 5", "ALPHA / 2")
-    result = run("-k", "honest", text=text)
+@pytest.mark.parametrize(
+    "selection", [("-k", "honest"), ("-m", "parametrize"), ("--deselect=test_it.py::test_biased", "-k", "honest")]
+)
+def test_alpha_does_not_depend_on_what_is_deselected(run, selection):
+    result = run(*selection)
     assert result.ret == 0
-    result.stdout.fnmatch_lines(["trueflight: 2 test(s) share it, 0.0005 each"])
+    result.stdout.fnmatch_lines(["trueflight: alpha 0.001, shared by 5 tests (2 selected): 0.0002 each"])
+
+
+def test_a_test_asked_for_by_its_id_has_all_of_alpha(pytester):
+    text = "def test_{}(unbiased):\n    assert unbiased([0.5] * 9, truth=0.5, variance=0, range=(0, 1)).alpha == 5e-4\n"
+    pytester.makepyfile(test_ids=text.format("one") + text.format("two"))
+    result = pytester.runpytest_subprocess("test_ids.py::test_one")
+    result.stdout.fnmatch_lines(["trueflight: alpha 0.001, shared by 1 test: 0.001 each"])
+
+
+def test_a_test_that_never_calls_it_is_warned_of(run):
+    result = run(text="def test_forgot(unbiased):\n    pass\n\ndef test_failed(unbiased):\n    assert False\n")
+    assert result.parseoutcomes() == {"passed": 1, "failed": 1, "warnings": 1}
+    result.stdout.fnmatch_lines(["*test_forgot passed, but never called `unbiased`: it checked no draws; call it*"])
+
+
+def test_a_name_that_is_no_text_is_an_error(run):
+    result = run(text="def test_named(unbiased):\n    unbiased(lambda n, rng: rng.random(n), truth=0.5, name=3)\n")
+    result.stdout.fnmatch_lines(["*Error: name = 3 is no text; give one, or leave it out"])
 
 
 def test_what_is_inconclusive_may_be_let_pass(run, tmp_path):
@@ -96,4 +116,4 @@ def test_a_fixture_that_is_not_an_argument_is_refused(run):
 def test_a_run_without_it_says_no_more_than_its_options(run):
     result = run(text="def test_nothing():\n    pass\n")
     assert result.ret == 0
-    result.stdout.no_fnmatch_line("*share it*")
+    result.stdout.no_fnmatch_line("*shared by*")

@@ -1,6 +1,7 @@
 """What theory says of a case, and what its draws are."""
 
 import json
+import math
 import os
 import sys
 from collections.abc import Callable, Sequence
@@ -10,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _trueflight
-from ._errors import Error
+from ._errors import Error, shown
 
 Case = str | os.PathLike[str] | dict[str, Any]
 Columns = dict[str, Any]
@@ -91,8 +92,8 @@ def sweep(
     [(what, points)] = values.items()
     try:
         numbers = [float(x) for x in np.atleast_1d(np.asarray(points, dtype=np.float64))]
-    except (TypeError, ValueError) as error:
-        raise Error(f"{what} = {points!r} are no numbers; give a list of numbers") from error
+    except (TypeError, ValueError, OverflowError) as error:
+        raise Error(f"{what} = {shown(points)} are no numbers; give a list of numbers") from error
     asked = as_case(case) | {"sweep": (what.replace("_", "-"), numbers)}
     wanted = _wanted(draws, seed, alpha, filter, threads)
     if draws is None:
@@ -104,9 +105,9 @@ def as_case(case: Case) -> dict[str, Any]:
     """A case as the library's side takes it."""
     if isinstance(case, dict):
         try:
-            return _asked("json", json.dumps(case, default=_plain, allow_nan=False))
-        except (TypeError, ValueError) as error:
-            raise Error(f"the dict is no case: {error}; give texts, numbers, lists and dicts") from error
+            return _asked("json", json.dumps(_plain("", case), allow_nan=False))
+        except RecursionError as error:
+            raise Error("the dict is no case: it is nested too deep; give texts, numbers, lists and dicts") from error
     if isinstance(case, str):
         return _asked("toml" if "\n" in case else "named", case)
     if isinstance(case, os.PathLike):
@@ -117,30 +118,56 @@ def as_case(case: Case) -> dict[str, Any]:
 
 def whole(what: str, number: Any, least: int, most: int) -> int:
     """A whole number within bounds; 1e6 is one."""
-    is_number = isinstance(number, int | float | np.integer | np.floating) and not isinstance(number, bool)
-    if is_number and np.isfinite(number) and int(number) == number and least <= number <= most:
+    is_integer = isinstance(number, int | np.integer) and not isinstance(number, bool)
+    is_whole = is_integer or (isinstance(number, float | np.floating) and math.isfinite(number) and int(number) == number)
+    if is_whole and least <= number <= most:
         return int(number)
-    raise Error(f"{what} = {number!r}; give a whole number from {least} to {most:g}")
+    raise Error(f"{what} = {shown(number)}; give a whole number from {least} to {most:g}")
 
 
 def _asked(kind: str, text: str) -> dict[str, Any]:
     return {"kind": kind, "text": text, "sweep": None}
 
 
-def _plain(value: Any) -> Any:
-    """NumPy's numbers and arrays, and paths, as JSON has them."""
+def probability(what: str, number: Any) -> float:
+    """A probability above 0 and below 1."""
+    is_number = isinstance(number, int | float | np.integer | np.floating)
+    if is_number and 0.0 < number < 1.0:
+        return float(number)
+    raise Error(f"{what} = {shown(number)} is not a probability; give one above 0 and below 1, such as 1e-3")
+
+
+def _plain(place: str, value: Any) -> Any:
+    """What stands at a place of a dict, as JSON has it: NumPy's numbers and arrays and paths, too."""
     if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    return os.fspath(value)
+        value = value.tolist()
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if isinstance(value, dict):
+        for key in value:
+            if not isinstance(key, str):
+                raise Error(f"{place or 'the dict'} has the key {shown(key)}; keys of a case are texts")
+        return {key: _plain(f"{place}.{key}" if place else key, part) for key, part in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(f"{place}[{index}]", part) for index, part in enumerate(value)]
+    if value is None:
+        raise Error(f"{place} = None says nothing; leave the key out, or give it a value")
+    if isinstance(value, float) and not math.isfinite(value):
+        raise Error(f"{place} = {value} is not a finite number")
+    if isinstance(value, int) and not -(2**63) <= value < 2**63:
+        raise Error(f"{place} = {shown(value)} is no whole number of 64 bits; give a float")
+    if isinstance(value, str | bool | int | float):
+        return value
+    raise Error(f"{place} = {shown(value)} is {type(value).__name__}; a case has texts, numbers, lists and dicts")
 
 
 def _wanted(draws: int | None, seed: int, alpha: float, filter: str | None, threads: int | None) -> dict[str, Any]:
-    if not 0.0 < alpha < 1.0:
-        raise Error(f"alpha = {alpha!r}; give a probability above 0 and below 1, such as 1e-3")
+    if filter is not None and not isinstance(filter, str):
+        raise Error(f'filter = {shown(filter)} is no text; give a pattern such as "*eq21*:single"')
     return {
         "draws": None if draws is None else whole("draws", draws, 2, 10**12),
         "seed": whole("seed", seed, 0, 2**64 - 1),
-        "alpha": float(alpha),
+        "alpha": probability("alpha", alpha),
         "filter": filter,
         "threads": 0 if threads is None else whole("threads", threads, 1, 1024),
     }
@@ -151,15 +178,38 @@ def _drawn(asked: dict[str, Any], wanted: dict[str, Any], progress: Progress) ->
         return _columns(_trueflight.run(asked, wanted, progress))
     if not progress:
         return _columns(_trueflight.run(asked, wanted, None))
+    line = _Line()
     try:
-        return _columns(_trueflight.run(asked, wanted, _line))
+        found = _columns(_trueflight.run(asked, wanted, line))
+        line.tell(f"drew {line.done:.3g} draws")
+        return found
     finally:
-        print(file=sys.stderr)
+        line.end()
 
 
-def _line(done: int, planned: int) -> None:
-    """A line on stderr, written over itself."""
-    print(f"\rdrawing {done:.3g} of {planned:.3g} draws", end="", file=sys.stderr, flush=True)
+class _Line:
+    """How far the drawing is: a line on stderr, written over itself.
+
+    The planned draws are no bound: the gate may stop earlier or go on, and blocks are whole. So 99 % is said at most until all
+    is drawn.
+    """
+
+    def __init__(self) -> None:
+        self.done, self._width = 0, 0
+
+    def __call__(self, done: int, planned: int) -> None:
+        self.done = done
+        self.tell(f"drawing: {min(100 * done // planned, 99)} % of {planned:.3g} draws")
+
+    def tell(self, text: str) -> None:
+        """Writes over what was there."""
+        print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
+        self._width = len(text)
+
+    def end(self) -> None:
+        """Ends the line, if one has begun."""
+        if self._width:
+            print(file=sys.stderr, flush=True)
 
 
 def _columns(text: str) -> Columns:

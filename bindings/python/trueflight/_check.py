@@ -8,9 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _draws
-from ._cases import as_case, whole
+from ._cases import as_case, probability, whole
 from ._draws import Array, Chunk
-from ._errors import DrawsError, Error
+from ._errors import DrawsError, Error, shown
 from ._trueflight import Judging
 from ._verdict import Verdict
 
@@ -18,6 +18,9 @@ Values = float | Sequence[float] | npt.NDArray[Any]
 
 # So many numbers are converted at a time, where they are not float64 or float32 side by side.
 PIECE = 1 << 20
+
+# So many values of a draw are judged together: more have lost their alpha, and their lines nobody reads.
+WIDEST = 64
 
 
 def check(
@@ -90,7 +93,7 @@ def check(
     >>> print(check(halves, truth=0.5, range=(0, 1)).verdict)
     pass
     """
-    called = name if name is not None else getattr(source, "__name__", "draws").replace("<lambda>", "draws")
+    called = _name(source, name)
     count = None if draws is None else whole("draws", draws, 1, 2**63 - 1)
     asked: dict[str, Any] = {
         "name": called,
@@ -107,7 +110,7 @@ def check(
         "tolerance": _number("tolerance", tolerance),
         "variance_tolerance": _number("variance_tolerance", variance_tolerance),
         "batch": whole("batch", batch, 1, 2**63 - 1),
-        "alpha": _number("alpha", alpha),
+        "alpha": probability("alpha", alpha),
         "seed": whole("seed", seed, 0, 2**64 - 1),
     }
     chunks, length = _chunks(called, source, count, asked["seed"])
@@ -117,6 +120,7 @@ def check(
     for values, counts in chunks:
         if judging is None:
             form = _form(values, counts)
+            _not_too_wide(called, values)
             judging = _open(asked, form, length, values.dtype)
         elif _form(values, counts) != form:
             raise Error(f"check `{called}`: draws of {_words(_form(values, counts))} after {_words(form)}; give all alike")
@@ -134,12 +138,39 @@ def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Itera
         return _draws.from_callable(name, source, draws, seed), draws
     if _draws.is_pair(source) or _draws.is_array(source) or isinstance(source, tuple):
         values, counts = _draws.chunk(name, source)
+        _not_transposed(name, values)
         cut = values[:draws], None if counts is None else counts[:draws]
         return iter([cut] if len(values) else []), len(cut[0]) or None
     if isinstance(source, Iterable):
         return _draws.from_iterator(name, source, draws), draws
     kind = type(source).__name__
     raise DrawsError(f"check `{name}`: draws cannot come from {kind}; give an array, an iterator or a callable f(n)")
+
+
+def _name(source: Any, name: Any) -> str:
+    """What the verdict calls the draws."""
+    if name is None:
+        own = getattr(source, "__name__", None)
+        return own.replace("<lambda>", "draws") if isinstance(own, str) else "draws"
+    if not isinstance(name, str):
+        raise Error(f"name = {shown(name)} is no text; give one, or leave it out")
+    return name
+
+
+def _not_too_wide(name: str, values: Array) -> None:
+    """Whether so many values of a draw are judged together."""
+    count = values.shape[1] if values.ndim == 2 else 1
+    if count > WIDEST:
+        cure = f"{WIDEST} are judged together at most; check them in parts, each with its share of alpha"
+        raise Error(f"check `{name}`: draws of {count} values each; {cure}")
+
+
+def _not_transposed(name: str, values: Array) -> None:
+    """Whether an array has a draw for each value at least."""
+    if values.ndim == 2 and 0 < len(values) < values.shape[1]:
+        one = "1 draw" if len(values) == 1 else f"{len(values)} draws"
+        found = f"{one} of {values.shape[1]} values each, fewer draws than values"
+        raise Error(f"check `{name}`: {found}; a row is a draw: did you mean draws.T?")
 
 
 def _open(asked: dict[str, Any], form: tuple[int, bool], length: int | None, dtype: np.dtype[Any]) -> Judging:
@@ -176,22 +207,32 @@ def _words(form: tuple[int, bool] | None) -> str:
 def _numbers(what: str, given: Values | None) -> list[float] | None:
     if given is None:
         return None
+    cure = "give a number, or one for each value of a draw"
+    if isinstance(given, np.ma.MaskedArray):
+        raise Error(f"{what} is a masked array; fill or drop what is masked")
     try:
-        array = np.atleast_1d(np.asarray(given, dtype=np.float64))
-    except (TypeError, ValueError) as error:
-        raise Error(f"{what} = {given!r} is no number; give a number, or one for each value of a draw") from error
+        array = np.atleast_1d(np.asarray(given))
+    except ValueError as error:
+        raise Error(f"{what} = {shown(given)} is no number; {cure}") from error
     if array.ndim != 1 or not len(array):
-        raise Error(f"{what} has shape {array.shape}; give a number, or one for each value of a draw")
-    return [float(number) for number in array]
+        raise Error(f"{what} has shape {np.shape(array)}; {cure}")
+    return [_real(what, number, given, cure) for number in array.tolist()]
 
 
 def _number(what: str, given: float | None) -> float | None:
-    if given is None:
-        return None
+    return None if given is None else _real(what, given, given, "give a number")
+
+
+def _real(what: str, number: Any, given: Any, cure: str) -> float:
+    """A number as a float; a text is none, whatever it says."""
     try:
-        return float(given)
+        if isinstance(number, str | bytes):
+            raise TypeError
+        return float(number)
+    except OverflowError as error:
+        raise Error(f"{what} = {shown(given)} is too large for a float64; {cure}") from error
     except (TypeError, ValueError) as error:
-        raise Error(f"{what} = {given!r} is no number; give a number") from error
+        raise Error(f"{what} = {shown(given)} is no number; {cure}") from error
 
 
 def _pair(what: str, given: tuple[float, float] | None, form: str) -> tuple[float, float] | None:
@@ -199,7 +240,7 @@ def _pair(what: str, given: tuple[float, float] | None, form: str) -> tuple[floa
     if pair is None:
         return None
     if len(pair) != 2:
-        raise Error(f"{what} = {given!r} is no pair; give {what}={form}")
+        raise Error(f"{what} = {shown(given)} is no pair; give {what}={form}")
     return pair[0], pair[1]
 
 

@@ -41,6 +41,9 @@ def is_pair(source: Any) -> bool:
 
 def numbers(name: str, what: str, made: Any) -> Array:
     """Real numbers as an array of NumPy's, without a copy where they are one, or lie in a buffer."""
+    if isinstance(made, np.ma.MaskedArray):
+        cure = f"fill its masked {what} (filled), or drop them (compressed)"
+        raise DrawsError(f"check `{name}`: the {what} are a masked array; {cure}")
     try:
         if hasattr(made, "__dlpack__") and not hasattr(made, "__array__"):
             array = np.from_dlpack(made)
@@ -49,9 +52,19 @@ def numbers(name: str, what: str, made: Any) -> Array:
     except ValueError as error:
         raise DrawsError(f"check `{name}`: the {what} are no array: {error}; give numbers of one shape") from error
     if array.dtype.kind not in "fiub":
-        kind = type(made).__name__ if array.dtype.kind == "O" else array.dtype.name
+        kind = _kind(array)
         raise DrawsError(f"check `{name}`: the {what} are {kind}, not real numbers; give an array of floats")
     return array
+
+
+def _kind(array: Array) -> str:
+    """What an array has in place of real numbers."""
+    if array.dtype.kind != "O":
+        return array.dtype.name
+    if array.ndim == 0:
+        return type(array.item()).__name__
+    first = f", the first is {type(array.flat[0]).__name__}" if array.size else ""
+    return f"Python objects (dtype object{first})"
 
 
 def chunk(name: str, made: Any, count: int | None = None) -> Chunk:

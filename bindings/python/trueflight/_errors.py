@@ -16,5 +16,14 @@ class DrawsError(Error, TypeError):
     """What should be draws are no real numbers."""
 
 
+def shown(value: object) -> str:
+    """A value in a message: short, whatever it is."""
+    try:
+        text = repr(value)
+    except Exception:  # Integers of many digits have none, and anybody's `__repr__` may raise.
+        text = f"<{type(value).__name__}>"
+    return text if len(text) <= 60 else f"{text[:57]}…"
+
+
 class Inconclusive(AssertionError):
     """The draws neither pass nor fail: too few of them, no grounds to fail on, or they depend on each other."""

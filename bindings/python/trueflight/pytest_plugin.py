@@ -1,9 +1,11 @@
 """The fixture ``unbiased`` for pytest: all tests of a run that ask for it share one alpha.
 
 A run of correct estimators shows a failure with chance ``--tf-alpha`` at most: each of the N collected tests that use the
-fixture has alpha/N, and the k-th check of one test alpha/(N k (k + 1)), which sums up to its share.
+fixture has alpha/N, whatever ``-k`` and ``-m`` deselect of them, and the k-th check of one test alpha/(N k (k + 1)), which
+sums up to its share.
 """
 
+import warnings
 from argparse import ArgumentTypeError
 from collections.abc import Generator
 from typing import Any
@@ -16,6 +18,7 @@ from ._errors import Inconclusive
 from ._verdict import Verdict
 
 _USERS = pytest.StashKey[int]()
+_PASSED = pytest.StashKey[bool]()
 
 
 class Unbiased:
@@ -25,7 +28,8 @@ class Unbiased:
         self.name, self.alpha, self.seed = name, alpha, seed
         self.rng = np.random.default_rng([seed, *name.encode()])
         """A ``numpy.random.Generator`` from ``--tf-seed`` and the test's name, for draws that the test makes itself."""
-        self._checks = 0
+        self.checks = 0
+        """How often it was called."""
 
     def __call__(self, source: Any, **known: Any) -> Verdict:
         """Checks draws with the test's share of alpha; answers the verdict of those that pass.
@@ -34,11 +38,13 @@ class Unbiased:
         ``AssertionError`` where they fail, ``trueflight.Inconclusive`` where they do neither.
         """
         __tracebackhide__ = True
+        self.checks += 1
         for key in {"alpha", "seed"} & known.keys():
             raise TypeError(f"{key} belongs to the whole run; give it by --tf-{key}")
-        self._checks += 1
-        share = self.alpha / (self._checks * (self._checks + 1))
-        name = known.pop("name", None) or (self.name if self._checks == 1 else f"{self.name} #{self._checks}")
+        share = self.alpha / (self.checks * (self.checks + 1))
+        name = known.pop("name", None)
+        if name is None:
+            name = self.name if self.checks == 1 else f"{self.name} #{self.checks}"
         verdict = check(source, alpha=share, seed=self.seed, name=name, **known)
         if verdict.verdict == "inconclusive":
             raise Inconclusive(f"check {verdict}\n  seed      {self.seed}")
@@ -48,13 +54,17 @@ class Unbiased:
 
 
 @pytest.fixture
-def unbiased(request: pytest.FixtureRequest) -> Unbiased:
+def unbiased(request: pytest.FixtureRequest) -> Generator[Unbiased, None, None]:
     """Checks draws with a share of the alpha of the whole run; see ``trueflight.pytest_plugin.Unbiased``."""
     if not _asks(request.node):
         raise pytest.UsageError("`unbiased` was not asked for before the first test ran; make it an argument of the test")
     config = request.config
     alpha = config.getoption("tf_alpha") / config.stash[_USERS]
-    return Unbiased(request.node.nodeid, alpha, config.getoption("tf_seed"))
+    mine = Unbiased(request.node.nodeid, alpha, config.getoption("tf_seed"))
+    yield mine
+    if not mine.checks and request.node.stash.get(_PASSED, False):
+        text = f"{mine.name} passed, but never called `unbiased`: it checked no draws; call it, or drop the argument"
+        warnings.warn(pytest.PytestWarning(text), stacklevel=1)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -72,18 +82,22 @@ def pytest_report_header(config: pytest.Config) -> str:
     return f"trueflight: --tf-alpha={config.getoption('tf_alpha'):g} --tf-seed={config.getoption('tf_seed')}"
 
 
-@pytest.hookimpl(tryfirst=True)
-def pytest_collection_finish(session: pytest.Session) -> None:
-    """Counts who shares alpha, before the first test runs."""
-    session.config.stash[_USERS] = sum(map(_asks, session.items))
+@pytest.hookimpl(wrapper=True, tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> Generator[None, None, None]:
+    """Counts who shares alpha, before ``-k`` and ``-m`` deselect any of them."""
+    config.stash[_USERS] = sum(map(_asks, items))
+    return (yield)
 
 
-def pytest_report_collectionfinish(config: pytest.Config) -> str | list[str]:
+def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Item]) -> str | list[str]:
     """Says who shares alpha."""
-    users = config.stash.get(_USERS, 0)
-    if not users:
+    users, selected = config.stash.get(_USERS, 0), sum(map(_asks, items))
+    if not selected:
         return []
-    return f"trueflight: {users} test(s) share it, {config.getoption('tf_alpha') / users:.2g} each"
+    alpha = config.getoption("tf_alpha")
+    tests = "1 test" if users == 1 else f"{users} tests"
+    some = f" ({selected} selected)" if selected < users else ""
+    return f"trueflight: alpha {alpha:g}, shared by {tests}{some}: {alpha / users:.2g} each"
 
 
 @pytest.hookimpl(wrapper=True)
@@ -92,6 +106,8 @@ def pytest_runtest_makereport(
 ) -> Generator[None, pytest.TestReport, pytest.TestReport]:
     """Marks what is inconclusive."""
     report = yield
+    if call.when == "call":
+        item.stash[_PASSED] = report.passed
     if call.excinfo is not None and isinstance(call.excinfo.value, Inconclusive):
         report.tf_inconclusive = str(call.excinfo.value)  # type: ignore[attr-defined]
         if item.config.getoption("tf_inconclusive") == "pass":

@@ -34,6 +34,10 @@ import trueflight
 # The version of `truth.json` that is read, and exit codes, the worst last.
 VERSION = 1
 CODES = {"pass": 0, "inconclusive": 3, "fail": 1}
+INTERRUPTED = 130
+
+# Mitsuba's seeds have 32 bits.
+SEEDS = 1 << 32
 
 
 class Wrong(Exception):
@@ -55,7 +59,7 @@ class Row:
     mean: float
     relative_difference: float
     relative_error: float
-    z: float
+    z: float | None
     draws: int
     variance: float
     expected_variance: float | None
@@ -122,7 +126,10 @@ def scene(mitsuba, folder, truth, question, options):
         text, count = re.subn(r"(gridvolume\">)", rf'\1<float name="max_value" value="{low!r}"/>', text)
     elif options.bug == "emission":
         one = r'name="(radiance|intensity)" value="(\S+) \S+ \S+"'
-        bright = lambda found: f'name="{found[1]}" value="{2 * float(found[2])!r}"'
+
+        def bright(found):
+            return f'name="{found[1]}" value="{2 * float(found[2])!r}"'
+
         text, count = re.subn(one, bright, text)
     else:
         count = 1
@@ -147,6 +154,9 @@ def pixels(mitsuba, loaded, count, seed):
     import numpy
 
     side = loaded.sensors()[0].film().size()[0]
+    most = SEEDS // side**2 - -(-count // side**2)
+    if seed > most:
+        raise Wrong(f"--seed {seed} has no seed of 32 bits for each pixel; give one from 0 to {most}")
     pictures, seconds = [], 0.0
     for index in range(-(-count // side**2)):
         begin = time.process_time()
@@ -181,7 +191,7 @@ def measure(mitsuba, folder, truth, question, options):
         raise Wrong("scattering alone does not find this light; leave --no-emitter-sampling out")
     loaded = scene(mitsuba, folder, truth, question, options)
     # Not the calls from Python are timed, but a picture.
-    draws, seconds = pixels(mitsuba, loaded, options.draws if options.pixels else 1, options.seed)
+    draws, seconds = pixels(mitsuba, loaded, options.draws if options.pixels else 1, options.seed if options.pixels else 0)
     rate = len(draws) / seconds
     if not options.pixels:
         draws = samples(mitsuba, loaded, options.draws, options.seed, truth["camera_in_medium"])
@@ -204,7 +214,7 @@ def measure(mitsuba, folder, truth, question, options):
         mean=float(draws.mean()),
         relative_difference=off / mean,
         relative_error=standard_error / mean,
-        z=off / standard_error if standard_error > 0 else 0.0,
+        z=off / standard_error if standard_error > 0 else None,
         draws=len(draws),
         variance=deviation**2,
         expected_variance=law["variance"],
@@ -223,22 +233,34 @@ def arguments(words):
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
 
+    def digits(text):
+        return int(text) if text.isascii() and text.isdigit() and len(text) < 20 else -1
+
     def whole(text):
-        if not text.isdigit() or int(text) == 0:
+        if digits(text) < 1:
             raise argparse.ArgumentTypeError("it takes a whole number above 0")
-        return int(text)
+        return digits(text)
+
+    def seed(text):
+        if not 0 <= digits(text) < SEEDS:
+            raise argparse.ArgumentTypeError("it takes a whole number from 0 to 2^32 - 1, as Mitsuba does")
+        return digits(text)
 
     def chance(text):
-        if not 0 < float(text) < 1:
+        try:
+            number = float(text)
+        except ValueError:
+            number = math.nan
+        if not 0 < number < 1:
             raise argparse.ArgumentTypeError("it takes a probability above 0 and below 1")
-        return float(text)
+        return number
 
     parser.add_argument("folder", metavar="DIR", help="what `trueflight export --to mitsuba` wrote")
     parser.add_argument("--integrator", default="volpath", help="volpath (default), volpathmis, …")
     parser.add_argument("--no-emitter-sampling", action="store_true", help="scattering finds lights")
     parser.add_argument("--draws", type=whole, default=1 << 20, help="samples (default 1048576)")
     parser.add_argument("--pixels", action="store_true", help="take pixels of pictures of 1024 x 1024")
-    parser.add_argument("--seed", type=whole, default=1, help="seed (default 1)")
+    parser.add_argument("--seed", type=seed, default=1, help="seed, of 32 bits (default 1)")
     parser.add_argument("--alpha", type=chance, default=1e-3, help="chance that a correct renderer fails")
     parser.add_argument("--variant", default="scalar_rgb", help="of Mitsuba (default scalar_rgb)")
     parser.add_argument("--bug", choices=["majorant", "emission"], help="a bug to be found")
@@ -247,9 +269,31 @@ def arguments(words):
     return parser.parse_args(words)
 
 
+def writable(path):
+    """Whether a table can be written, found out before anything is rendered; leaves no file behind."""
+    is_new = not os.path.lexists(path)
+    try:
+        with open(path, "a", encoding="utf-8"):
+            pass
+        if is_new:
+            os.remove(path)
+    except OSError as error:
+        raise Wrong(f"--csv {path}: {error.strerror}; give a file that can be written") from None
+
+
+def lines(row):
+    """What the console says of a picture."""
+    reason = f": {row.reason}" if row.reason else ""
+    z = "–" if row.z is None else f"{row.z:.2f}"
+    yield f"{row.case} {row.question}, {row.integrator}: {row.verdict}{reason}"
+    yield f"  mean/truth - 1 = {row.relative_difference:.3e} ± {row.relative_error:.1e}, z = {z}"
+    time_to = f"every draw is {row.mean:g}" if row.z is None else f"1 % in {row.seconds_to_1e_2:.3g} s"
+    yield f"  {row.draws} draws, {row.samples_per_second:.3g} per second, {time_to}"
+
+
 def append(path, rows):
     """Appends rows to a table, which begins with its header."""
-    is_new = not Path(path).exists()
+    is_new = not Path(path).exists() or Path(path).stat().st_size == 0
     with open(path, "a", newline="", encoding="utf-8") as file:
         table = csv.DictWriter(file, asdict(rows[0]).keys(), lineterminator="\n")
         if is_new:
@@ -262,6 +306,8 @@ def main(words=None):
     options = arguments(words)
     try:
         truth = read(options.folder)
+        if options.csv:
+            writable(options.csv)
         try:
             import drjit
             import mitsuba
@@ -280,10 +326,15 @@ def main(words=None):
     except (Wrong, OSError) as error:
         print(f"error: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return INTERRUPTED
     for row in rows:
-        print(f"{row.case} {row.question}, {row.integrator}: {row.verdict} {row.reason}".rstrip())
-        print(f"  mean/truth - 1 = {row.relative_difference:.3e} ± {row.relative_error:.1e}, z = {row.z:.2f}")
-        print(f"  {row.draws} draws, {row.samples_per_second:.3g} per second, 1 % in {row.seconds_to_1e_2:.3g} s")
+        for line in lines(row):
+            print(line)
+        if options.ours:
+            fast = row.ours_seconds_to_1e_2
+            print("  ours: " + ("every draw is alike" if fast is None else f"1 % in {fast:.3g} s"))
     return CODES[max((row.verdict for row in rows), key=list(CODES).index)]
 
 
