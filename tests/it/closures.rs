@@ -236,7 +236,7 @@ fn what_makes_no_sense_is_told_with_its_cure() {
         (said(u().truth(0.5).tolerance(0.0).verdict()), "tolerance = 0"),
         (said(u().truth(0.5).draws(0).verdict()), "number of draws = 0"),
         (said(u().truth(0.5).batch(0).verdict()), "batch = 0"),
-        (said(u().truth(0.5).range(0.6, 1.0).verdict()), "give a range around it"),
+        (said(u().truth(0.5).range(0.6, 1.0).verdict()), "give a range around the truth"),
         (said(u().truth(0.0).verdict()), "a truth of 0"),
         (said(u().truth([0.5, 0.5]).verdict()), "2 number(s) for the truth, but a draw has 1"),
         (said(pair().truth([0.5; 3]).verdict()), "3 number(s) for the truth, but a draw has 2"),

@@ -30,6 +30,7 @@ impl From<Vec<CaseError>> for Trouble {
     fn from(errors: Vec<CaseError>) -> Self {
         let text = errors.iter().map(CaseError::in_full).collect::<Vec<_>>().join("\n\n");
         let is_missing = |error: &CaseError| match error {
+            CaseError::Unknown { .. } => true,
             CaseError::Unreadable { cause, .. } => cause.kind() == std::io::ErrorKind::NotFound,
             _ => false,
         };

@@ -81,7 +81,10 @@ fn cases_that_are_not_there_and_folders_that_cannot_be_written_are_errors() {
         assert_eq!(output.status.code(), Some(2), "{arguments:?}");
         assert!(stderr(&output).contains(words), "{}", stderr(&output));
     };
-    told(&["nowhere", "--to", "mitsuba", "--out", "scene"], "nowhere: No such file");
+    told(
+        &["nowhere", "--to", "mitsuba", "--out", "scene"],
+        "nowhere: there is no such file, folder or built-in case",
+    );
     std::fs::write(folder.path().join("bad.toml"), "title = 3\n").expect("a file");
     told(&["bad.toml", "--to", "pbrt", "--out", "scene"], "bad.toml");
     assert!(!folder.path().join("scene").exists());
