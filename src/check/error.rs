@@ -2,6 +2,12 @@
 
 use crate::judge::claim::ClaimError;
 
+/// A number of things in words.
+fn counted(count: usize, thing: &str) -> String {
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{count} {thing}{plural}")
+}
+
 /// Why a check has no verdict.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -30,7 +36,9 @@ pub enum CheckError {
     },
     /// Numbers for another number of values than a draw has.
     #[error(
-        "check `{name}`: {found} number(s) for the {what}, but a draw has {wanted} value(s); give one for each value, or one for all"
+        "check `{name}`: {} for the {what}, but a draw has {}; give one for each value, or one for all",
+        counted(*found, "number"),
+        counted(*wanted, "value")
     )]
     Values {
         /// The check.
