@@ -8,10 +8,9 @@ use clap::{Args, ValueEnum};
 use super::Console;
 use super::output::{self, Format};
 use crate::catalogue::{Page, PageList};
-use crate::estimators::Estimated;
 use crate::harness::catalogue::{Catalogue, built_in};
 use crate::harness::{self, checks, suite};
-use crate::problems::{self, MultipleScattering};
+use crate::problems;
 use crate::recipes::{controls, sampling};
 use crate::render::{self, Picture, gallery};
 use crate::{phase, report};
@@ -57,8 +56,6 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
     let own = [("phases", phase::CATALOGUE), ("sampling", sampling::CATALOGUE)];
     let own = own.into_iter().chain([("controls", controls::CATALOGUE)]);
     lists.splice(1..1, own.map(|(part, list)| (part.to_owned(), list)));
-    let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
-    lists.push(("estimators of pictures of multiple-scattering".to_owned(), of_pictures));
     lists.extend([
         ("problems".to_owned(), problems::CATALOGUE),
         ("checks".to_owned(), checks::CATALOGUE),

@@ -10,7 +10,9 @@ use super::case::Case;
 use super::source::{CaseError, Source};
 use super::suite;
 use crate::catalogue::{Addition, Additions, PageList, suggestion};
-use crate::{estimators, media, problems};
+use crate::estimators::{self, Estimated};
+use crate::media;
+use crate::problems::{self, MultipleScattering};
 
 /// The built-in pages with those of a program's own.
 ///
@@ -152,7 +154,10 @@ pub fn built_in() -> Vec<(String, PageList)> {
     let of_problems = problems::CATALOGUE.pages.iter().zip(estimators::catalogues());
     let estimators =
         of_problems.map(|(problem, list)| (format!("estimators of {}", problem.name()), list));
-    std::iter::once(("media".to_owned(), media::CATALOGUE)).chain(estimators).collect()
+    let of_pictures = <MultipleScattering as Estimated>::CATALOGUE;
+    let of_pictures = ("estimators of pictures of multiple-scattering".to_owned(), of_pictures);
+    let media = ("media".to_owned(), media::CATALOGUE);
+    std::iter::once(media).chain(estimators).chain([of_pictures]).collect()
 }
 
 /// The case files of a path, in the order of their names.

@@ -3,7 +3,8 @@
 
 use std::sync::Arc;
 
-use super::{CATALOGUE, Medium, Profile, READERS, Reader, Volume};
+use super::reader::{choose_line, read_line, read_listed, read_volume};
+use super::{CATALOGUE, Medium, Profile, Volume};
 use crate::catalogue::{Domain, Settings, Value, number};
 use crate::geometry::{Aabb, Bounds, Point, Ray};
 use crate::numeric::Span;
@@ -73,7 +74,7 @@ impl Body {
                 let ((name, profile), span) = (field?, span?);
                 let pieces = profile.pieces(span);
                 not_too_many(settings, "medium", pieces)?;
-                Some(Self::Line { name, profile, span })
+                is_extinction(settings, "medium", Self::Line { name, profile, span })
             }
             (false, true) => {
                 let field = read_volume(settings);
@@ -89,7 +90,7 @@ impl Body {
                     (name, volume, ray)
                 };
                 fits(settings, &*volume, &ray)?;
-                Some(Self::Volume { name, volume, ray })
+                is_extinction(settings, "volume", Self::Volume { name, volume, ray })
             }
             (both, _) => {
                 let found = if both { "both `medium` and `volume`" } else { "no field is given" };
@@ -229,6 +230,18 @@ fn fits(settings: &Settings, volume: &Volume, ray: &Ray) -> Option<()> {
     None
 }
 
+/// A field of the program's own is looked at along the ray; built-in ones have looked at their settings.
+fn is_extinction(settings: &Settings, key: &'static str, body: Body) -> Option<Body> {
+    let is_own = !CATALOGUE.pages.iter().any(|page| page.name() == body.name());
+    let medium = body.medium();
+    if is_own && medium.optical_depth(medium.support()).value.is_nan() {
+        let found = format!("σ_t of `{}` is negative or not finite on the ray", body.name());
+        settings.fault(key, found, "it takes a field with 0 ≤ σ_t < ∞");
+        return None;
+    }
+    Some(body)
+}
+
 fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<()> {
     if pieces <= MOST_PIECES {
         return Some(());
@@ -236,75 +249,6 @@ fn not_too_many(settings: &Settings, key: &'static str, pieces: f64) -> Option<(
     let found = format!("about {pieces:.1e} pieces along the ray, more than {MOST_PIECES:.0e}");
     settings.fault(key, found, "make it shorter, or its features larger");
     None
-}
-
-/// The pages of media, those of the program's own last, each with its name.
-fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
-    let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
-    built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
-}
-
-fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
-    choose_line(settings, |settings, names, offered| {
-        settings.chosen_among("medium", names, offered)
-    })
-}
-
-/// Reads a field along a line that `choose` finds among the names, of which some are offered.
-fn choose_line<'a>(
-    settings: &Settings<'a>,
-    choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
-) -> Option<(String, Arc<Profile>)> {
-    let (mut names, readers) = readers(settings);
-    let offered = names.iter().zip(&readers).filter(|(_, reader)| reader.line.is_some());
-    let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
-    let (index, field) = choose(settings, &names, &offered)?;
-    let Some(read) = &readers[index].line else {
-        let help = "write `volume` instead of `medium`, and give a `ray`";
-        field.fault_at(field.span.clone(), "", "this field has no 1-D form", help);
-        return None;
-    };
-    let profile = read(&field);
-    field.close();
-    Some((names.swap_remove(index), profile?))
-}
-
-/// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
-pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
-    read_field(settings, "volume")
-}
-
-/// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
-pub fn read_volumes(settings: &Settings) -> Option<Vec<(String, Arc<Volume>)>> {
-    let fields: Vec<_> = settings.tables("volume")?.iter().map(read_listed).collect();
-    fields.into_iter().collect()
-}
-
-/// Reads a field in space of a list.
-fn read_listed(table: &Settings) -> Option<(String, Arc<Volume>)> {
-    choose_volume(table, Settings::choice)
-}
-
-/// Reads a field in space, `KEY.NAME = { … }`.
-pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc<Volume>)> {
-    choose_volume(settings, |settings, names| settings.chosen(key, names))
-}
-
-/// Reads a field in space that `choose` finds among the names.
-fn choose_volume<'a>(
-    settings: &Settings<'a>,
-    choose: impl FnOnce(&Settings<'a>, &[String]) -> Option<(usize, Settings<'a>)>,
-) -> Option<(String, Arc<Volume>)> {
-    let (mut names, readers) = readers(settings);
-    let (index, field) = choose(settings, &names)?;
-    let Some(read) = &readers[index].volume else {
-        let help = "write `medium` instead of `volume`, and give a `span`";
-        field.fault_at(field.span.clone(), "", "this field has no 3-D form", help);
-        return None;
-    };
-    let volume = read(&field);
-    field.close();
-    Some((names.swap_remove(index), volume?))
 }
 
 fn read_span(settings: &Settings) -> Option<Span> {

@@ -32,6 +32,7 @@ pub mod piecewise_constant;
 pub mod piecewise_linear;
 pub mod placement;
 pub mod radial;
+pub mod reader;
 pub mod search;
 pub mod sines;
 pub mod voxels;
@@ -55,6 +56,7 @@ pub use majorants::Majorants;
 pub use medium::Medium;
 pub use piecewise::Piecewise;
 pub use placement::Placement;
+pub use reader::Reader;
 
 /// A field that can be looked up: `σ_t(t)` in 1/length at distance `t` along the ray.
 pub trait Extinction: Send + Sync {
@@ -313,24 +315,6 @@ impl<F: Field> InSpace for F {
 
     fn coarsened(&self, octaves: usize) -> Option<Arc<Volume>> {
         Field::coarsened(self, octaves).map(|field| Arc::new(field) as Arc<Volume>)
-    }
-}
-
-/// Reads the fields of a page from a case file.
-pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
-
-/// How the fields of a page are read: as one ray sees them, in space, or both.
-pub struct Reader {
-    line: Option<Read<Profile>>,
-    volume: Option<Read<Volume>>,
-}
-
-impl Reader {
-    fn of<F: Field>() -> Self {
-        let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
-        let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
-        let line = F::IN_LINE.then(|| Box::new(line) as Read<Profile>);
-        Self { line, volume: Some(Box::new(volume)) }
     }
 }
 

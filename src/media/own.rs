@@ -8,8 +8,8 @@
 //!
 //! The error is what the last halving of each panel changed, an estimate and no proof. Where σ_t jumps or has a kink,
 //! [`Formula::with_breaks`] and [`Medium::from_fn_with_breaks`] say so: panels then end there. What is narrower than a
-//! 64th of the way between two breaks may be stepped over. A σ_t that is not finite has no optical depth: τ is then
-//! not a number. Free flights are bracketed roots of τ.
+//! 64th of the way between two breaks may be stepped over. Where σ_t is negative or not
+//! finite, τ is not a number, and a case with that field is an error. Free flights are bracketed roots of τ.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, LazyLock};
@@ -71,7 +71,6 @@ const PANELS: f64 = 64.0;
 const HALVINGS: usize = 40;
 /// To this part of the sum two halves agree with the whole.
 const AGREEMENT: f64 = 1e-12;
-
 /// So many panels are looked at, at most: what a closure's own rounding keeps apart ends there.
 const LOOKED_AT: usize = 1 << 15;
 /// How near to its ends a panel is looked at.
@@ -79,21 +78,17 @@ const NEAR: f64 = 1e-9;
 
 static RULE: LazyLock<GaussLegendre> = LazyLock::new(|| GaussLegendre::new(16));
 
-/// The weights of the values at the nodes that make the value of their polynomial near each end of a panel.
-static ENDS: LazyLock<[Vec<f64>; 2]> = LazyLock::new(|| {
-    [NEAR, 1.0 - NEAR].map(|x| {
-        let nodes = &RULE.nodes;
-        let weight = |j: usize| {
-            let factors = nodes.iter().enumerate().filter(|(k, _)| *k != j);
-            factors.map(|(_, node)| (x - node) / (nodes[j] - node)).product()
-        };
-        (0..nodes.len()).map(weight).collect()
-    })
-});
+/// The weights that make the value of the polynomial through the nodes near each end of a panel.
+static ENDS: LazyLock<[Vec<f64>; 2]> =
+    LazyLock::new(|| [NEAR, 1.0 - NEAR].map(|x| RULE.weights_at(x)));
 
-/// ∫ f over a panel by the rule, and what a jump between its ends and its outermost nodes would hide.
+/// ∫ f over a panel by the rule, and what a jump between its ends and its outermost nodes would hide; not a number
+/// where f is no extinction.
 fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
     let values: Vec<f64> = RULE.on(part).map(|(t, _)| f(t)).collect();
+    if !values.iter().all(|value| *value >= 0.0) {
+        return [f64::NAN; 2];
+    }
     let sum: f64 = values.iter().zip(&RULE.weights).map(|(value, weight)| value * weight).sum();
     let gap = RULE.nodes[0] * part.length();
     let hidden = [NEAR, 1.0 - NEAR].into_iter().zip(ENDS.iter()).map(|(x, weights)| {
@@ -103,7 +98,7 @@ fn panel(f: &impl Fn(f64) -> f64, part: Span) -> [f64; 2] {
     [sum * part.length(), hidden.sum()]
 }
 
-/// ∫ f with an estimate of its error; not a number where f is not finite.
+/// ∫ f with an estimate of its error; not a number where f is negative or not finite.
 fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
     let on = |part: Span| (part, panel(&f, part));
     let cuts = span.cut(span.even_cuts(PANELS));
@@ -136,6 +131,18 @@ fn integral(f: impl Fn(f64) -> f64, span: Span) -> Known {
 }
 
 /// A field in space that a closure gives: `σ_t(x, y, z)`, 1/length, finite and ≥ 0, within bounds.
+///
+/// ```
+/// use trueflight::catalogue::{Addition, Page, Settings};
+/// use trueflight::geometry::{Aabb, Bounds, Point};
+/// use trueflight::{Catalogue, media::own::SpaceFormula};
+///
+/// let page = Page { module: "corner", source: "A cube that is densest in one corner." };
+/// let cube = Bounds::Box(Aabb { low: Point([0.0; 3]), high: Point([1.0; 3]) });
+/// let read = move |_: &Settings| Some(SpaceFormula::new(cube, 3.0, |[x, y, z]| x + y + z));
+/// let catalogue = Catalogue::builtin().with(Addition::volume(page, read))?; // volume.corner = {}
+/// # Ok::<(), trueflight::harness::catalogue::NameTaken>(())
+/// ```
 pub struct SpaceFormula<F> {
     at: Arc<F>,
     bounds: Bounds,

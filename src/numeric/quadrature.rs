@@ -45,6 +45,11 @@ impl GaussLegendre {
         Self { nodes, weights, running }
     }
 
+    /// What each node's value counts for in the polynomial through all of them, at `x` in `[0, 1]`.
+    pub fn weights_at(&self, x: f64) -> Vec<f64> {
+        (0..self.nodes.len()).map(|j| lagrange(&self.nodes, j, x)).collect()
+    }
+
     /// The nodes on a stretch, each with its weight; the weights sum to its length.
     pub fn on(&self, span: Span) -> impl Iterator<Item = (f64, f64)> + '_ {
         let length = span.to - span.from;

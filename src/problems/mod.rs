@@ -98,14 +98,15 @@ macro_rules! pages {
 }
 each_problem!(pages);
 
-/// A problem's name: that of its module.
+/// A problem's name.
 pub trait Named {
-    /// As in `single_scattering`.
+    /// That of its module, as in `single_scattering`.
     const MODULE: &'static str;
 }
 
+/// Multiple scattering is sought in pictures only.
 impl Named for MultipleScattering {
-    const MODULE: &'static str = "multiple_scattering";
+    const MODULE: &'static str = "pictures of multiple_scattering";
 }
 
 /// An integral along one ray.

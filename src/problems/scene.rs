@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::{default_albedo, number};
 use crate::catalogue::{Settings, Value};
 use crate::geometry::Point;
-use crate::media::{Body, Volume, body};
+use crate::media::{Body, Volume, reader};
 use crate::phase::Phase;
 
 /// The albedo a of a medium.
@@ -97,7 +97,7 @@ pub fn read_albedo(settings: &Settings, volume: Option<&Volume>) -> Option<Albed
     if !matches!(value, Some(Value::Table(_))) {
         return number(settings, "albedo", default_albedo(settings)).map(Albedo::Even);
     }
-    let (_, field) = body::read_field(settings, "albedo")?;
+    let (_, field) = reader::read_field(settings, "albedo")?;
     let most = volume?.bounds().enclosing_box().map(|within| field.majorant(&within));
     // A bound is raised a little over what the field reaches.
     let Some(most) = most.filter(|&most| most <= 1.0 + 1e-9) else {

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::budget::MOST_CHANNELS;
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Point, Ray};
-use crate::media::body::{read_volume, read_volumes};
+use crate::media::reader::{read_volume, read_volumes};
 use crate::media::{Body, Volume};
 use crate::numeric::Lane;
 use crate::problems::Sky;

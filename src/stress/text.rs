@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use crate::catalogue::Settings;
 use crate::harness::{Case, Source};
-use crate::media::body::read_volume;
+use crate::media::reader::read_volume;
 use crate::media::{Body, Medium, Volume};
 
 fn source(text: &str) -> Source {

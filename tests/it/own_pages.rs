@@ -4,11 +4,13 @@ use std::f64::consts::PI;
 use std::path::Path;
 
 use trueflight::catalogue::{Addition, Page, Settings};
+use trueflight::estimators::multiple_scattering::particle::Walker;
 use trueflight::geometry::{Aabb, Bounds, Point};
 use trueflight::harness::record::Verdict;
 use trueflight::media::own::{Formula, SpaceFormula};
 use trueflight::media::{Medium, OpticalDepth};
 use trueflight::numeric::Span;
+use trueflight::problems::MultipleScattering;
 use trueflight::{Catalogue, cli};
 
 use super::common::{judged, options, source};
@@ -165,6 +167,31 @@ fn names_are_taken_once() {
     );
     let once = Catalogue::builtin().with(add(page("mine"))).expect("a free name");
     assert!(once.with(add(page("mine"))).is_err());
+    // Those of pictures are names, too.
+    let particle = Addition::estimator::<MultipleScattering, Walker>(page("particle"));
+    assert!(Catalogue::builtin().with(particle).is_err());
+}
+
+#[test]
+fn closures_that_are_no_extinction_are_errors_with_their_place() {
+    let read = |at: fn(f64) -> f64| {
+        let page = Page { module: "bad", source: "Bad." };
+        let bad = Addition::line(page, move |_| Some(Formula::new(at)));
+        let catalogue = Catalogue::builtin().with(bad).expect("a free name");
+        let text = r#"
+            title = "bad"
+            [problem.transmittance]
+            medium.bad = {}
+            span = [0, 1]
+            estimators = [{ closed-form = {} }]
+        "#;
+        catalogue.read(&source("bad", text)).map_err(|error| error.in_full())
+    };
+    for bad in [|_| f64::NAN, |_| f64::INFINITY, |_| -1.0, |t| t - 0.5] {
+        let found = read(bad).err().expect("an error");
+        assert!(found.contains("σ_t of `bad` is negative or not finite"), "{found}");
+    }
+    assert!(read(|t| t).is_ok());
 }
 
 #[test]

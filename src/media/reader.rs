@@ -1,0 +1,97 @@
+//! How a field is chosen by its name in a case file, and read.
+
+use std::sync::Arc;
+
+use super::{CATALOGUE, Field, Profile, READERS, Volume};
+use crate::catalogue::Settings;
+
+/// Reads the fields of a page from a case file.
+pub type Read<T> = Box<dyn Fn(&Settings) -> Option<Arc<T>> + Send + Sync>;
+
+/// How the fields of a page are read: as one ray sees them, in space, or both.
+pub struct Reader {
+    /// As one ray sees them.
+    pub line: Option<Read<Profile>>,
+    /// In space.
+    pub volume: Option<Read<Volume>>,
+}
+
+impl Reader {
+    /// That of a type.
+    pub fn of<F: Field>() -> Self {
+        let line = |settings: &Settings| F::line(settings).map(|f| Arc::new(f) as Arc<Profile>);
+        let volume = |settings: &Settings| F::volume(settings).map(|f| Arc::new(f) as Arc<Volume>);
+        let line = F::IN_LINE.then(|| Box::new(line) as Read<Profile>);
+        Self { line, volume: Some(Box::new(volume)) }
+    }
+}
+
+/// The pages of media, those of the program's own last, each with its name.
+fn readers<'a>(settings: &Settings<'a>) -> (Vec<String>, Vec<&'a Reader>) {
+    let built_in = CATALOGUE.pages.iter().zip(READERS.iter());
+    built_in.chain(settings.additions().of()).map(|(page, reader)| (page.name(), reader)).unzip()
+}
+
+/// Reads a field along a line, `medium.NAME = { … }`: its name in the catalogue and the field.
+pub(super) fn read_line(settings: &Settings) -> Option<(String, Arc<Profile>)> {
+    choose_line(settings, |settings, names, offered| {
+        settings.chosen_among("medium", names, offered)
+    })
+}
+
+/// Reads a field along a line that `choose` finds among the names, of which some are offered.
+pub(super) fn choose_line<'a>(
+    settings: &Settings<'a>,
+    choose: impl FnOnce(&Settings<'a>, &[String], &[String]) -> Option<(usize, Settings<'a>)>,
+) -> Option<(String, Arc<Profile>)> {
+    let (mut names, readers) = readers(settings);
+    let offered = names.iter().zip(&readers).filter(|(_, reader)| reader.line.is_some());
+    let offered: Vec<String> = offered.map(|(name, _)| name.clone()).collect();
+    let (index, field) = choose(settings, &names, &offered)?;
+    let Some(read) = &readers[index].line else {
+        let help = "write `volume` instead of `medium`, and give a `ray`";
+        field.fault_at(field.span.clone(), "", "this field has no 1-D form", help);
+        return None;
+    };
+    let profile = read(&field);
+    field.close();
+    Some((names.swap_remove(index), profile?))
+}
+
+/// Reads a field in space, `volume.NAME = { … }`: its name in the catalogue and the field.
+pub fn read_volume(settings: &Settings) -> Option<(String, Arc<Volume>)> {
+    read_field(settings, "volume")
+}
+
+/// Reads a list of fields in space, `volume = [{ NAME = { … } }, …]`, each with its name.
+pub fn read_volumes(settings: &Settings) -> Option<Vec<(String, Arc<Volume>)>> {
+    let fields: Vec<_> = settings.tables("volume")?.iter().map(read_listed).collect();
+    fields.into_iter().collect()
+}
+
+/// Reads a field in space of a list.
+pub(super) fn read_listed(table: &Settings) -> Option<(String, Arc<Volume>)> {
+    choose_volume(table, Settings::choice)
+}
+
+/// Reads a field in space, `KEY.NAME = { … }`.
+pub fn read_field(settings: &Settings, key: &'static str) -> Option<(String, Arc<Volume>)> {
+    choose_volume(settings, |settings, names| settings.chosen(key, names))
+}
+
+/// Reads a field in space that `choose` finds among the names.
+fn choose_volume<'a>(
+    settings: &Settings<'a>,
+    choose: impl FnOnce(&Settings<'a>, &[String]) -> Option<(usize, Settings<'a>)>,
+) -> Option<(String, Arc<Volume>)> {
+    let (mut names, readers) = readers(settings);
+    let (index, field) = choose(settings, &names)?;
+    let Some(read) = &readers[index].volume else {
+        let help = "write `medium` instead of `volume`, and give a `span`";
+        field.fault_at(field.span.clone(), "", "this field has no 3-D form", help);
+        return None;
+    };
+    let volume = read(&field);
+    field.close();
+    Some((names.swap_remove(index), volume?))
+}
