@@ -27,8 +27,9 @@ impl Size {
 
 impl std::fmt::Display for Size {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { rows, columns, channels } = self;
-        write!(f, "{rows} × {columns} pixels of {channels} channel(s)")
+        let Self { rows, columns, channels } = *self;
+        write!(f, "{rows} × {columns} pixels")?;
+        if channels > 1 { write!(f, " of {channels} channels") } else { Ok(()) }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Judgement, Refuted, Tile};
+use crate::catalogue::digits::short;
 use crate::stats::gate::VARIANCE_MARGIN;
 use crate::stats::verdict::Verdict;
 
@@ -138,8 +139,10 @@ fn off(judgement: &Judgement, tile: &Tile) -> String {
         String::new()
     };
     format!(
-        "mean {:.6e}{channel}, truth {:.6e}{z} (ln E = {:.1})",
-        tile.mean, tile.truth, tile.ln_e
+        "mean {}{channel}, truth {}{z} (ln E = {:.1})",
+        short(tile.mean, 7),
+        short(tile.truth, 7),
+        tile.ln_e
     )
 }
 

@@ -76,8 +76,8 @@ fn facts(judgement: &Judgement) -> String {
         String::new()
     };
     format!(
-        "standard errors from the truth, {} passes, tiles of {tile} × {tile} pixels; {} of {}, larger ones too, \
-         fail{dots}",
+        "standard errors from the truth, {} passes, tiles of {tile} × {tile} pixels; {} of {} tiles of all \
+         sizes fail{dots}",
         judgement.passes, counts.fail, counts.tiles
     )
 }
