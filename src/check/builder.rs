@@ -295,11 +295,12 @@ impl Said {
         }
         // What theory knows of a draw is not so of averages, but for the mean.
         let mean_only = self.mean_only || self.batch > 1;
-        let twice = [("truth", self.truth.is_some(), true)].into_iter().chain([
-            ("variance", self.variance.is_some(), !mean_only),
-            ("kurtosis", self.kurtosis.is_some(), !mean_only),
-        ]);
-        if let (Some(_), Some((what, ..))) = (theory, twice.into_iter().find(|t| t.1 && t.2)) {
+        let twice = [
+            ("truth", self.truth.is_some()),
+            ("variance", self.variance.is_some() && !mean_only),
+            ("kurtosis", self.kurtosis.is_some() && !mean_only),
+        ];
+        if let (Some(_), Some((what, _))) = (theory, twice.into_iter().find(|(_, is)| *is)) {
             return Err(CheckError::Twice { name: name(), what });
         }
         let claim = |index: usize| {
@@ -318,19 +319,22 @@ impl Said {
                 Given { truth, variance, kurtosis, range: None, lookups: own_lookups, rounding };
             let by_numbers =
                 Claim::new(&given).map_err(|source| CheckError::Claim { name: name(), source })?;
-            let claim = match theory {
+            let known = theory.map(|claims| Claim {
+                rounding: claims[index].rounding.max(rounding),
+                ..claims[index]
+            });
+            let claim = match known {
                 None => by_numbers,
-                Some(claims) if mean_only => Claim {
+                Some(known) if mean_only => Claim {
                     variance,
                     kurtosis,
                     variance_error: 0.0,
                     lookups: own_lookups,
-                    ..claims[index].of_mean_alone()
+                    ..known.of_mean_alone()
                 },
-                Some(claims) => {
-                    let told = claims[index].lookups.filter(|_| lookups && index == 0);
-                    let rounding = claims[index].rounding.max(self.rounding);
-                    Claim { lookups: own_lookups.or(told), rounding, ..claims[index] }
+                Some(known) => {
+                    let told = known.lookups.filter(|_| lookups && index == 0);
+                    Claim { lookups: own_lookups.or(told), ..known }
                 }
             };
             claim.within(self.range).map_err(|source| CheckError::Claim { name: name(), source })

@@ -221,6 +221,11 @@ fn averages_take_the_mean_alone_and_rounding_counts_whenever_it_is_said() {
         Verdict::Pass
     );
     check("single", single).of(CASE, "ratio", 1.0).rounding(1e-6).assert_pass();
+    // Every draw of `closed-form` is the truth, to the rounding that is said.
+    let truth = check("truth", |_| 0.032_853_9 * (1.0 + 1e-5)).of(CASE, "closed-form", None);
+    let truth = truth.mean_only().variance(0.0).draws(20_000);
+    assert_eq!(truth.clone().verdict().expect("one").verdict(), Verdict::Fail);
+    assert_eq!(truth.rounding(1e-4).verdict().expect("one").verdict(), Verdict::Pass);
 }
 
 #[test]
