@@ -1,4 +1,5 @@
-/* What a callback costs a draw, and what the gate does, in nanoseconds of processor time: the least of seven runs.
+/* What a callback costs a draw, and what the gate does, in nanoseconds of processor time: the median of what short runs took
+ * in turn, and of what two of them differ by. Whatever else a machine does slows down both, and never one alone for long.
  *
  * The same estimator in a loop that only sums up, by a callback a draw, and by a callback a batch. The gate's cost would
  * hide that of the callback, so the callback's is measured on averages of 4096 draws, which the gate has little work
@@ -64,6 +65,7 @@ struct problem {
 };
 
 enum way { LOOP, DRAW, BATCH, AVERAGES, BY_RANGE, BY_VARIANCE, WAYS };
+enum { RUNS = 101 };
 
 /* Runs one way; the time that it takes. */
 static double timed(const struct problem *problem, enum way way, const double *draws, size_t count)
@@ -95,25 +97,36 @@ static double timed(const struct problem *problem, enum way way, const double *d
     return took / (double)count;
 }
 
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(double *values)
+{
+    qsort(values, RUNS, sizeof *values, compare);
+    return values[RUNS / 2];
+}
+
 static void measure(const struct problem *problem, double *draws, size_t count)
 {
-    double least[WAYS];
+    static double took[WAYS][RUNS];
     tf_rng rng = {{5, 6, 7, 8}};
     problem->batch(draws, count, &rng, NULL);
-    for (int run = 0; run < 7; ++run) {
-        for (int way = 0; way < WAYS; ++way) {
-            const double took = timed(problem, (enum way)way, draws, count);
-            if (run == 0 || took < least[way]) least[way] = took;
-        }
+    for (int run = 0; run < RUNS; ++run) {
+        for (int way = 0; way < WAYS; ++way) took[way][run] = timed(problem, (enum way)way, draws, count);
+        const double common = took[LOOP][run] + took[AVERAGES][run];
+        took[DRAW][run] -= common;
+        took[BATCH][run] -= common;
     }
-    const double common = least[LOOP] + least[AVERAGES];
-    printf("%-8s %8.2f %12.2f %12.2f %14.2f %14.2f\n", problem->name, least[LOOP], least[DRAW] - common,
-           least[BATCH] - common, least[BY_RANGE], least[BY_VARIANCE]);
+    printf("%-8s %8.2f %12.2f %12.2f %14.2f %14.2f\n", problem->name, median(took[LOOP]), median(took[DRAW]),
+           median(took[BATCH]), median(took[BY_RANGE]), median(took[BY_VARIANCE]));
 }
 
 int main(int argc, char **argv)
 {
-    const size_t count = argc > 1 ? strtoul(argv[1], NULL, 10) : (size_t)1 << 22;
+    const size_t count = argc > 1 ? strtoul(argv[1], NULL, 10) : (size_t)1 << 18;
     const double tau = 1 - exp(-3.0), over = (1 - exp(-6.0)) / 2;
     const struct problem problems[] = {
         {"uniform", 0.5, 1.0 / 12, uniform_loop, uniform_draw, uniform_batch},
@@ -121,7 +134,7 @@ int main(int argc, char **argv)
     };
     double *draws = malloc(count * sizeof *draws);
     if (!draws || count == 0) return 2;
-    printf("ns a draw, %zu draws\n", count);
+    printf("ns a draw, %d runs of %zu draws\n", RUNS, count);
     puts("         the draw  + callback  + its batch  gate by range  gate by variance");
     for (int i = 0; i < 2; ++i) measure(&problems[i], draws, count);
     free(draws);

@@ -55,17 +55,18 @@ fn no_honest_estimator_fails_and_no_buggy_one_passes() {
 
 #[test]
 fn costs_are_measured() {
-    let (code, text) = Program::new("examples/cost.c", Link::Static, &[]).run_with(&["262144"]);
+    let (code, text) = Program::new("examples/cost.c", Link::Static, &[]).run_with(&["65536"]);
     assert_eq!(code, Some(0), "{text}");
     let numbers = |line: &str| -> Vec<f64> {
         line.split_whitespace().skip(1).map(|word| word.parse().expect("a number")).collect()
     };
     let rows: Vec<_> = text.lines().skip(2).map(numbers).collect();
     assert_eq!(rows.len(), 2, "{text}");
+    // What is asked is 10 ns on a machine that takes 60 for the usual draw. Times differ between machines, their ratios hardly.
+    let most = rows[1][0] / 6.0;
     for row in rows {
         let [draw, callback, batch, by_range, by_variance] = row[..] else { panic!("{text}") };
         assert!(draw > 0.0 && by_range > 0.0 && by_variance > 0.0, "{text}");
-        // Measured 1 and 0 for the cheap one, 4 and 1 for the usual one, which are differences of 60.
-        assert!(callback < 10.0 && batch < 10.0, "{text}");
+        assert!(callback < most && batch < most, "{text}");
     }
 }
