@@ -136,17 +136,24 @@ pub fn in_fused_code<R>(f: impl FnOnce() -> R) -> R {
     f()
 }
 
-/// Computes in a function of its own where a pack takes several registers.
+/// Computes in a function of its own: what is computed from is moved into the closure, so that the loop around it keeps its
+/// own in registers.
 ///
-/// There the compiler replaces arrays of registers in a time that grows as the square of a function's length, before it looks
-/// at anything else: a kernel of which each part is inlined takes it 20 s. What is computed from is moved into the closure,
-/// so that the loop around it keeps its own in registers.
+/// A compiler replaces arrays of registers in a time that grows as the square of a function's length, before it looks at
+/// anything else: a kernel of which each part is inlined takes it 20 s. So what a kernel does only now and then is outlined, and
+/// what many kernels do is compiled once, if the function that calls this one is generic over nothing else but the hardware.
+#[inline(never)]
+pub fn outlined<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
+    simd.vectorize(compute)
+}
+
+/// Computes [`outlined`] where a pack takes several registers, and in place elsewhere.
 #[inline(always)]
 pub fn aside<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
     if const { size_of::<S::f64s>() >= size_of::<f64x8<S>>() } {
         return compute();
     }
-    simd.vectorize(compute)
+    outlined(simd, compute)
 }
 
 /// The places in a list that the elements are the numbers of.

@@ -121,7 +121,11 @@ impl<const ALL: bool> Task for Walks<'_, '_, ALL> {
             |places, found| bank::of_channels(simd, medium, channels, places, found),
             Request { streams, count, buffer: &mut *buffer },
         );
-        page.score::<S, ALL>(simd, &left.borrow(), Made::new(buffer, count));
+        pack::outlined(
+            simd,
+            #[inline(always)]
+            || page.score::<S, ALL>(simd, &left.borrow(), Made::new(buffer, count)),
+        );
     }
 }
 

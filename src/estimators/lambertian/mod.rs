@@ -3,7 +3,7 @@
 pub mod particle;
 pub mod splitting;
 
-use fearless_simd::{Level, Simd, mask64x8};
+use fearless_simd::{ExtractToken, Level, Simd, f64x8, mask64x8};
 
 use crate::estimators::space::exit::Points;
 use crate::estimators::space::packet::walks;
@@ -13,7 +13,7 @@ use crate::estimators::{Draw, Refusal, Setup, estimators};
 use crate::geometry::frame;
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::Numbers;
-use crate::numeric::{Known, Lane};
+use crate::numeric::{Known, Lane, pack};
 use crate::problems::Lambertian;
 use crate::problems::lambertian::Values;
 use crate::problems::rod::MOST;
@@ -147,6 +147,16 @@ impl Walked for Lambertian {
     }
 }
 
+/// [`Lambertian::boundary_lanes`], in a function of its own.
+#[inline(always)]
+fn on_boundary<S: Simd>(problem: &Lambertian, numbers: [f64x8<S>; 2]) -> [Points<S>; 2] {
+    pack::outlined(
+        numbers[0].token(),
+        #[inline(always)]
+        move || problem.boundary_lanes(numbers),
+    )
+}
+
 /// Where particles enter, and the sums over their collisions.
 struct Entering<'a> {
     problem: &'a Lambertian,
@@ -171,7 +181,7 @@ impl Tally<4> for Entering<'_> {
     #[inline(always)]
     fn begin<S: Simd>(&self, _: S, numbers: &mut Numbers<S>, which: mask64x8<S>) -> [Points<S>; 2] {
         let [u, v] = [numbers.uniform_where(which), numbers.uniform_where(which)];
-        self.problem.boundary_lanes([u, v])
+        on_boundary(self.problem, [u, v])
     }
 
     fn begins_turned(&self) -> bool {

@@ -44,9 +44,19 @@ pub fn ends<S: Simd>(
 ) -> [f64x8<S>; 2] {
     match bounds {
         Bounds::Everywhere => [origin[0].each(0.0), origin[0].each(f64::INFINITY)],
-        Bounds::Box(within) => of_box(within, origin, direction),
+        Bounds::Box(within) => faces(within, [origin, direction]),
         Bounds::Sphere { centre, radius } => chords(*centre, *radius, [origin, direction], which),
     }
+}
+
+/// Where the lines of rays that begin in a box enter and leave it.
+#[inline(always)]
+fn faces<S: Simd>(within: &Aabb, [origin, direction]: [Points<S>; 2]) -> [f64x8<S>; 2] {
+    pack::outlined(
+        origin[0].token(),
+        #[inline(always)]
+        move || of_box(within, origin, direction),
+    )
 }
 
 /// How far it is to the boundary, infinite where there is none, for the rays that a mask names.
@@ -66,6 +76,20 @@ pub fn exits<S: Simd>(
 pub fn chords<S: Simd>(
     centre: Point,
     radius: f64,
+    rays: [Points<S>; 2],
+    which: mask64x8<S>,
+) -> [f64x8<S>; 2] {
+    pack::outlined(
+        rays[0][0].token(),
+        #[inline(always)]
+        move || all_chords(centre, radius, rays, which),
+    )
+}
+
+#[inline(always)]
+fn all_chords<S: Simd>(
+    centre: Point,
+    radius: f64,
     [origin, direction]: [Points<S>; 2],
     which: mask64x8<S>,
 ) -> [f64x8<S>; 2] {
@@ -76,7 +100,7 @@ pub fn chords<S: Simd>(
         return [from, to];
     }
     if fuses(to.token().level()) && SIZES.contains(&radius) {
-        let [begin, end] = pack::aside(
+        let [begin, end] = pack::outlined(
             to.token(),
             #[inline(always)]
             move || grazing::chord(centre, radius, origin, direction),

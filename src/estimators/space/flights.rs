@@ -3,12 +3,12 @@
 //! Lanes cross the planes between cells together; those that have come to their collisions wait for the
 //! others.
 
-use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::exit::{Points, ends, meets};
 use crate::geometry::Point;
 use crate::media::Majorants;
-use crate::numeric::Lane;
+use crate::numeric::{Lane, pack};
 
 /// Where σ̂ has which value.
 pub struct Ground<'a> {
@@ -124,34 +124,51 @@ impl<S: Simd> Flights<S> {
             self.stop = Lane::select(which, stop, self.stop);
         }
         if ground.constant.is_none() {
-            for axis in 0..3 {
-                let place = (self.origin[axis] - ground.low[axis]) / zero.each(ground.width[axis]);
-                let cell = Lane::floor(place.or_more(zero).or_less(zero.each(ground.last[axis])));
-                self.cell[axis] = Lane::select(which, cell, self.cell[axis]);
-                let slope = self.direction[axis];
-                let is_up = zero.below(slope);
-                let index = self.cell[axis] + Lane::select(is_up, zero.each(1.0), zero);
-                let plane = index * ground.width[axis] + ground.low[axis];
-                let far = (plane - self.origin[axis]) / slope;
-                let is_level = slope.at_most(zero) & zero.at_most(slope);
-                let plane = Lane::select(is_level, zero.each(f64::INFINITY), far);
-                self.planes[axis] = Lane::select(which, plane, self.planes[axis]);
-            }
+            (self.cell, self.planes) = self.cells_entered(ground, which);
         }
+    }
+
+    /// In which cells those that a mask names are, and how far it is to the planes ahead; for the others as it was.
+    #[inline(always)]
+    fn cells_entered(mut self, ground: &Ground, which: mask64x8<S>) -> (Points<S>, Points<S>) {
+        pack::outlined(
+            self.t.token(),
+            #[inline(always)]
+            move || {
+                let zero = self.t.each(0.0);
+                for axis in 0..3 {
+                    let place =
+                        (self.origin[axis] - ground.low[axis]) / zero.each(ground.width[axis]);
+                    let cell =
+                        Lane::floor(place.or_more(zero).or_less(zero.each(ground.last[axis])));
+                    self.cell[axis] = Lane::select(which, cell, self.cell[axis]);
+                    let slope = self.direction[axis];
+                    let is_up = zero.below(slope);
+                    let index = self.cell[axis] + Lane::select(is_up, zero.each(1.0), zero);
+                    let plane = index * ground.width[axis] + ground.low[axis];
+                    let far = (plane - self.origin[axis]) / slope;
+                    let is_level = slope.at_most(zero) & zero.at_most(slope);
+                    let plane = Lane::select(is_level, zero.each(f64::INFINITY), far);
+                    self.planes[axis] = Lane::select(which, plane, self.planes[axis]);
+                }
+                (self.cell, self.planes)
+            },
+        )
     }
 
     /// Those that a mask names fly an optical depth through σ̂; the places of the others mean nothing.
     #[inline(always)]
     pub fn fly(&mut self, ground: &Ground, which: mask64x8<S>, depth: f64x8<S>) -> Flown<S> {
         let before = self.t;
-        let (mut inside, sampling) = match ground.constant {
-            Some(value) => {
-                let sampling = depth.each(value);
-                let inside = depth.below((self.end - self.t) * sampling);
-                self.t = Lane::select(inside, self.t + depth / sampling, self.end);
-                (inside, sampling)
-            }
-            None => self.cross_cells(ground, which, depth),
+        let (mut inside, sampling) = if let Some(value) = ground.constant {
+            let sampling = depth.each(value);
+            let inside = depth.below((self.end - self.t) * sampling);
+            self.t = Lane::select(inside, self.t + depth / sampling, self.end);
+            (inside, sampling)
+        } else {
+            let (crossed, inside, sampling) = self.cross_cells(ground, which, depth);
+            (self.t, self.cell, self.planes) = (crossed.t, crossed.cell, crossed.planes);
+            (inside, sampling)
         };
         inside &= which;
         if ground.core.is_some() {
@@ -168,11 +185,26 @@ impl<S: Simd> Flights<S> {
 
     #[inline(always)]
     fn cross_cells(
-        &mut self,
+        self,
+        ground: &Ground,
+        which: mask64x8<S>,
+        depth: f64x8<S>,
+    ) -> (Self, mask64x8<S>, f64x8<S>) {
+        pack::outlined(
+            depth.token(),
+            #[inline(always)]
+            move || self.across_cells(ground, which, depth),
+        )
+    }
+
+    /// Through one cell after the other, to where the optical depths end or the body does.
+    #[inline(always)]
+    fn across_cells(
+        mut self,
         ground: &Ground,
         mut on_its_way: mask64x8<S>,
         depth: f64x8<S>,
-    ) -> (mask64x8<S>, f64x8<S>) {
+    ) -> (Self, mask64x8<S>, f64x8<S>) {
         let (zero, one) = (depth.each(0.0), depth.each(1.0));
         let [nx, ny, _] = ground.cells;
         let (mut left, mut sampling, mut inside) = (depth, one, zero.below(zero));
@@ -201,7 +233,7 @@ impl<S: Simd> Flights<S> {
             self.t = Lane::select(leaves, self.end, self.t);
             on_its_way &= !leaves;
             if on_its_way.to_bitmask() == 0 {
-                return (inside, sampling);
+                return (self, inside, sampling);
             }
             let cell = cell + Lane::select(is_up, one, -one);
             let index = cell + Lane::select(is_up, one, zero);

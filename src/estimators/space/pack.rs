@@ -13,6 +13,7 @@ use crate::kernels::packet::bank::{Numbers, Slots};
 use crate::numeric::Lane;
 use crate::numeric::pack::{self, WIDTH};
 use crate::numeric::twin::PAIR;
+use crate::phase::Phase;
 
 /// So many particles of a pack set out together: a direction costs more than a step. While fewer wait for it, the
 /// others go on.
@@ -244,7 +245,8 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         (which, number): (mask64x8<S>, f64x8<S>),
         casts: mask64x8<S>,
     ) -> Points<S> {
-        let (mut axis, mut cosine) = (self.flights.direction, world.scene.phase.cosine(number));
+        let (mut axis, mut cosine) =
+            (self.flights.direction, cosine_of(&world.scene.phase, number));
         if world.tally.begins_turned() {
             cosine = Lane::select(self.unscattered, world.tally.first_cosine(number), cosine);
         }
@@ -254,11 +256,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
                 (chosen(casts, aim.axis, axis), Lane::select(casts, aim.cosine, cosine));
         }
         let turns = self.numbers.uniform_where(which);
-        let turned = pack::aside(
-            turns.token(),
-            #[inline(always)]
-            move || frame::turned_lanes(axis, cosine, turns),
-        );
+        let turned = turned(axis, cosine, turns);
         chosen(which, turned, self.flights.direction)
     }
 
@@ -273,6 +271,26 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
         let ended = (self.ended.to_bitmask(), slots);
         collect(&self.sums, &self.lookups, world.tally.channels(), ended, buffer)
     }
+}
+
+/// [`Phase::cosine`], in a function of its own.
+#[inline(always)]
+fn cosine_of<S: Simd>(phase: &Phase, number: f64x8<S>) -> f64x8<S> {
+    pack::outlined(
+        number.token(),
+        #[inline(always)]
+        move || phase.cosine(number),
+    )
+}
+
+/// [`frame::turned_lanes`], in a function of its own.
+#[inline(always)]
+fn turned<S: Simd>(direction: Points<S>, cosine: f64x8<S>, turns: f64x8<S>) -> Points<S> {
+    pack::outlined(
+        turns.token(),
+        #[inline(always)]
+        move || frame::turned_lanes(direction, cosine, turns),
+    )
 }
 
 /// Points where a mask says so, else others.

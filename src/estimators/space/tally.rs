@@ -98,7 +98,7 @@ pub trait Tally<const SUMS: usize> {
 
     /// How shadow rays from places are aimed by uniform numbers.
     #[inline(always)]
-    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+    fn aim<S: Simd>(&self, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
         let _ = number;
         let zero = place[0].each(0.0);
         Aim { axis: place, cosine: zero, share: zero, distance: zero }

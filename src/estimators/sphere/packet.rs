@@ -3,7 +3,7 @@
 //! Specification: draw j is, bit for bit, the draw that [`super::draw_by`], or [`Page::draw`], makes from stream
 //! j mod 16.
 
-use fearless_simd::{Level, Simd, f64x8, mask64x8};
+use fearless_simd::{ExtractToken, Level, Simd, f64x8, mask64x8};
 
 use super::Page;
 use super::combined::Sharing;
@@ -17,7 +17,7 @@ use crate::estimators::space::{Particle, Tally};
 use crate::geometry::{Bounds, Point};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::Numbers;
-use crate::numeric::Lane;
+use crate::numeric::{Lane, pack};
 use crate::problems::Sphere;
 use crate::problems::sphere::{self, Sought};
 use crate::theory::lit_rod::Densities;
@@ -36,6 +36,16 @@ fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
             at.left & distance.below(distance.each(middle))
         }
     }
+}
+
+/// [`aim`], in a function of its own.
+#[inline(always)]
+fn aimed<S: Simd>(sphere: &Sphere, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
+    pack::outlined(
+        number.token(),
+        #[inline(always)]
+        move || aim(sphere, place, number),
+    )
 }
 
 /// Walks that look for light, with shadow rays or without.
@@ -91,8 +101,8 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
     }
 
     #[inline(always)]
-    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
-        aim(self.sphere, place, number)
+    fn aim<S: Simd>(&self, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
+        aimed(self.sphere, place, number)
     }
 
     #[inline(always)]
@@ -196,7 +206,7 @@ impl Tally<3> for Sharers<'_> {
     }
 
     #[inline(always)]
-    fn aim<L: Lane>(&self, place: [L; 3], number: L) -> Aim<L> {
+    fn aim<S: Simd>(&self, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
         self.seekers.aim(place, number)
     }
 

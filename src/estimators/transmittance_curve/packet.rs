@@ -54,9 +54,17 @@ impl Task for Curves<'_, '_> {
     fn run<S: Simd>(self, simd: S) {
         let Self { setup, medium, request } = self;
         if let Some(even) = setup.sampling.even() {
-            walk(simd, setup, medium, Even::new(simd, even), request);
+            pack::outlined(
+                simd,
+                #[inline(always)]
+                move || walk(simd, setup, medium, Even::new(simd, even), request),
+            );
         } else {
-            walk(simd, setup, medium, Pieces::new(simd, &setup.sampling), request);
+            pack::outlined(
+                simd,
+                #[inline(always)]
+                move || walk(simd, setup, medium, Pieces::new(simd, &setup.sampling), request),
+            );
         }
     }
 }

@@ -48,9 +48,17 @@ impl Task for Decomposition<'_, '_> {
     fn run<S: Simd>(self, simd: S) {
         let sampling = self.sampling;
         if let Some(even) = sampling.even() {
-            self.along(simd, Even::new(simd, even));
+            pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.along(simd, Even::new(simd, even)),
+            );
         } else {
-            self.along(simd, Pieces::new(simd, sampling));
+            pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.along(simd, Pieces::new(simd, sampling)),
+            );
         }
     }
 }

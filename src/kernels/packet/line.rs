@@ -52,8 +52,16 @@ impl<W: Walks> Task for AlongLine<'_, '_, W> {
     fn run<S: Simd>(self, simd: S) {
         let sampling = self.sampling;
         match sampling.even() {
-            Some(even) => self.through(simd, Even::new(simd, even)),
-            None => self.through(simd, Pieces::new(simd, sampling)),
+            Some(even) => pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.through(simd, Even::new(simd, even)),
+            ),
+            None => pack::outlined(
+                simd,
+                #[inline(always)]
+                move || self.through(simd, Pieces::new(simd, sampling)),
+            ),
         }
     }
 }

@@ -100,12 +100,18 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
     if R::DECIDES && !R::WEIGHS {
         let before = streams.clone();
         let request = Request { streams: &mut *streams, count, buffer: &mut *buffer };
-        let is_done = run(
+        let is_done = pack::outlined(
             simd,
             #[inline(always)]
-            || Survivals::new(site, course, all),
-            residual,
-            request,
+            move || {
+                run(
+                    simd,
+                    #[inline(always)]
+                    || Survivals::new(site, course, all),
+                    residual,
+                    request,
+                )
+            },
         );
         if is_done {
             return;
@@ -114,12 +120,18 @@ fn walk<S: Simd, R: Collision, C: Course<S> + Copy>(
     }
     let weight = f64x8::splat(simd, site.begin);
     let invariant = Invariant::open(weight);
-    run(
+    pack::outlined(
         simd,
         #[inline(always)]
-        || Products { site, course, inside: all, weight, invariant },
-        residual,
-        Request { streams, count, buffer },
+        move || {
+            run(
+                simd,
+                #[inline(always)]
+                || Products { site, course, inside: all, weight, invariant },
+                residual,
+                Request { streams, count, buffer },
+            )
+        },
     );
 }
 

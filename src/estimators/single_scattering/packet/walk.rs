@@ -24,19 +24,22 @@ impl World<'_> {
     #[inline(always)]
     pub fn transmittance<S: Simd>(&self, to: f64x8<S>, which: mask64x8<S>) -> f64x8<S> {
         let from = self.support.from;
-        let depth = if let Some(value) = self.extinction {
-            (to.or_less(to.each(self.support.to)) - from).or_more(to.each(0.0)) * value
-        } else {
-            let (bits, medium) = (which.to_bitmask(), self.setup.problem.medium());
-            to.replaced(|elements| {
-                for (lane, to) in elements.iter_mut().enumerate() {
-                    if bits >> lane & 1 == 1 {
-                        *to = medium.optical_depth(Span::new(from, *to)).value;
-                    }
-                }
-            })
+        let depth = match self.extinction {
+            Some(value) => {
+                (to.or_less(to.each(self.support.to)) - from).or_more(to.each(0.0)) * value
+            }
+            None => to.replaced(|ends| self.depths_one_by_one(which.to_bitmask(), ends)),
         };
         (-depth).exp()
+    }
+
+    /// Optical depths from the ray's origin to places, for those whose bits are set.
+    #[inline(never)]
+    fn depths_one_by_one(&self, which: u64, to: &mut [f64]) {
+        let (from, medium) = (self.support.from, self.setup.problem.medium());
+        for (_, to) in to.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+            *to = medium.optical_depth(Span::new(from, *to)).value;
+        }
     }
 
     /// That of the control.

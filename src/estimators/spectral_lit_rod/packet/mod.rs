@@ -170,6 +170,10 @@ impl Task for Walks<'_, '_> {
             |places, found| bank::of_channels(simd, medium, page.media.count, places, found),
             Request { streams, count, buffer: &mut *buffer },
         );
-        events.borrow().score(simd, &page.media, buffer);
+        pack::outlined(
+            simd,
+            #[inline(always)]
+            || events.borrow().score(simd, &page.media, buffer),
+        );
     }
 }

@@ -132,6 +132,10 @@ impl<const ALL: bool> Task for Walks<'_, '_, ALL> {
             }
         }
         streams.turn = (streams.turn + count) % LANES;
-        score::all(simd, world, &left, Made::new(buffer, count));
+        pack::outlined(
+            simd,
+            #[inline(always)]
+            || score::all(simd, world, &left, Made::new(buffer, count)),
+        );
     }
 }

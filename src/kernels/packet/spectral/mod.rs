@@ -107,7 +107,11 @@ impl Task for Walks<'_, '_> {
             |places, found| bank::of_channels(simd, medium, count, places, found),
             Request { streams, count: draws, buffer: &mut *buffer },
         );
-        Scores::new(simd, setup, rule).of_all(buffer);
+        pack::outlined(
+            simd,
+            #[inline(always)]
+            move || Scores::new(simd, setup, rule).of_all(buffer),
+        );
     }
 }
 
