@@ -40,7 +40,7 @@ pub struct Arguments {
     /// Vector hardware to draw with, of what this machine has [default: the best]
     #[arg(long, value_name = "LEVEL", value_parser = level)]
     level: Option<Level>,
-    /// Folder for bench.csv, the cases' CSV files and the plots
+    /// Folder for report.html, bench.csv, the cases' CSV files and the plots
     #[arg(long, default_value = "results/bench", value_name = "DIR")]
     out: PathBuf,
     /// Store the times as a baseline, to compare later ones with

@@ -13,13 +13,15 @@ use clap::Args;
 use super::baseline::BaselineArguments;
 use super::drawing::{self, Budget};
 use super::output::Errors;
-use super::selection::Selection;
+use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
 use super::{Console, output};
 use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::{Case, Options, Record};
-use crate::report::{Report, annotations, console, junit, markdown, record_json, summary_csv};
+use crate::report::{
+    Report, annotations, console, html, junit, markdown, record_json, summary_csv,
+};
 
 /// So many draws per experiment where neither an argument nor the case says.
 const DRAWS: u64 = 400_000;
@@ -44,15 +46,11 @@ pub struct Arguments {
     /// Write a summary in Markdown
     #[arg(long, value_name = "FILE")]
     markdown: Option<PathBuf>,
-    /// Folder for summary.csv and record.json [default: none is written]
+    /// Folder for summary.csv, record.json and report.html [default: none is written]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Draw exactly what is planned: no check stops the drawing, none prolongs it
-    #[arg(long)]
-    fixed_draws: bool,
-    /// Let every underpowered check make its experiment inconclusive
-    #[arg(long)]
-    strict: bool,
+    #[command(flatten)]
+    looks: Looks,
     #[command(flatten)]
     baseline: BaselineArguments,
     /// Print every row, not only those that do not pass
@@ -69,13 +67,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         Some(Budget::Draws(draws)) => (None, Some(draws)),
         None => (None, None),
     };
-    let options = Options {
-        seconds,
-        budget,
-        fixed: arguments.fixed_draws,
-        strict: arguments.strict,
-        ..selection.options(DRAWS)?
-    };
+    let options = Options { seconds, budget, ..selection.options(DRAWS)? };
+    let options = arguments.looks.of(options);
     arguments.writable(&cases)?;
     let baselines = arguments.baseline.open()?;
     let record = selection.with_plan(&cases, &options, |plan| Ok(drawing::draw(plan, console)))?;
@@ -141,7 +134,7 @@ impl Arguments {
             errors.keep(written);
         }
         if let Some(out) = &self.out {
-            let pages: [Report; 2] = [summary_csv::render, record_json::render];
+            let pages: [Report; 3] = [summary_csv::render, record_json::render, html::render];
             let files: Result<Vec<_>, _> = pages.iter().map(|render| render(record)).collect();
             errors.write(files.map(|files| files.concat()), out);
         }

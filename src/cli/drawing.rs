@@ -13,27 +13,51 @@ use crate::baseline::fingerprint;
 use crate::files;
 use crate::harness::cache::Cache;
 use crate::harness::record::Record;
+use crate::harness::share::Share;
+use crate::harness::store::Store;
 use crate::harness::{Plan, run, verdict};
 
 /// The file beside the results that keeps what was drawn.
-const CACHE: &str = "draws.bin";
+pub const CACHE: &str = "draws.bin";
 
 /// Draws a plan and judges it, for no plots.
 pub fn draw(plan: &Plan, console: &Console) -> Record {
-    judged(plan, &mut Cache::default(), console)
+    judged(plan, &mut Cache::default(), &Store::default(), console)
 }
 
-/// Draws what has not been kept, keeps it, judges all, and adds the lines of plots.
-pub fn draw_uncached(plan: &Plan, cache: &mut Cache, console: &Console) -> Record {
-    let mut record = judged(plan, cache, console);
+/// Draws what neither cache nor store has, keeps it, judges all, and adds the lines of plots.
+pub fn draw_with(
+    plan: &Plan,
+    cache: &mut Cache,
+    store: &Store,
+    console: &Console,
+) -> anyhow::Result<Record> {
+    let mut record = judged(plan, cache, store, console);
+    store.fault().map_or(Ok(()), Err)?;
     verdict::add_curves(plan, &mut record);
-    record
+    Ok(record)
 }
 
-fn judged(plan: &Plan, cache: &mut Cache, console: &Console) -> Record {
+/// Draws a share of a plan, judges nothing; whether all of it is there.
+pub fn draw_share(
+    plan: &Plan,
+    share: Share,
+    store: &Store,
+    console: &Console,
+) -> anyhow::Result<bool> {
+    let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
+    let draws: u64 = ready.map(|(_, planned)| planned.horizon).sum();
+    let bar = output::progress("drawing", "draws", draws / u64::from(share.of), console);
+    let is_whole = run::draw_share(plan, share, store, &|draws| bar.inc(draws));
+    bar.finish_and_clear();
+    store.fault().map_or(Ok(()), Err)?;
+    Ok(is_whole)
+}
+
+fn judged(plan: &Plan, cache: &mut Cache, store: &Store, console: &Console) -> Record {
     let begin = Instant::now();
     let bar = progress(plan, console);
-    let draws = run::draw_uncached(plan, cache, &|draws| bar.inc(draws));
+    let draws = run::draw_with(plan, cache, store, &|draws| bar.inc(draws));
     bar.finish_and_clear();
     cache.keep(plan, &draws);
     verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())

@@ -17,12 +17,18 @@ mod completions;
 mod drawing;
 mod explain;
 mod export;
+mod journal;
 mod judge;
 mod list;
+mod merge;
+mod mpirun;
 mod output;
 mod plan;
 mod predict;
+#[cfg(feature = "mpi")]
+mod ranks;
 mod render;
+mod report;
 mod run;
 mod selection;
 mod self_test;
@@ -65,6 +71,8 @@ pub struct Console {
 enum Command {
     /// Draw, judge, and write tables and plots: the main job
     Run(run::Arguments),
+    /// Judge a run that many machines drew: the parts of `run --shard`
+    Merge(merge::Arguments),
     /// The gate for a CI: as run, tuned to decide, with JUnit, Markdown and GitHub annotations
     Check(check::Arguments),
     /// Theory only, no draws: moments, costs, the best σ̂, what is refused
@@ -75,6 +83,8 @@ enum Command {
     Plan(plan::Arguments),
     /// Pictures: estimators side by side at an equal number of lookups, with their errors
     Render(render::Arguments),
+    /// The page report.html of a stored run, for a browser
+    Report(report::Arguments),
     /// Does the gate keep its promises, and does it catch known bugs?
     SelfTest(self_test::Arguments),
     /// Numerical stability: every quantity where it is hardest, against 32 digits
@@ -110,14 +120,27 @@ pub fn run_as<T: Into<OsString> + Clone>(
 }
 
 fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
+    let done = mpirun::allow(matches!(cli.command, Command::Run(_)));
+    match done.and_then(|()| carry_out(catalogue, cli)) {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            output::complain(&error);
+            ExitCode::from(USAGE)
+        }
+    }
+}
+
+fn carry_out(catalogue: &Catalogue, cli: &Cli) -> anyhow::Result<u8> {
     let console = &cli.console;
-    let done = match &cli.command {
+    match &cli.command {
         Command::Run(arguments) => run::main(arguments, catalogue, console),
+        Command::Merge(arguments) => merge::main(arguments, catalogue, console),
         Command::Check(arguments) => check::main(arguments, catalogue, console),
         Command::Predict(arguments) => predict::main(arguments, catalogue, console),
         Command::Bench(arguments) => bench::main(arguments, catalogue, console),
         Command::Plan(arguments) => plan::main(arguments, catalogue, console),
         Command::Render(arguments) => render::main(arguments, catalogue, console),
+        Command::Report(arguments) => report::main(arguments, console),
         Command::SelfTest(arguments) => self_test::main(arguments, console),
         Command::Stress(arguments) => stress::main(arguments, console),
         Command::List(arguments) => list::main(arguments, catalogue, console),
@@ -125,12 +148,5 @@ fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
         Command::Judge(arguments) => judge::main(arguments, catalogue, console),
         Command::Export(arguments) => export::main(arguments, catalogue, console),
         Command::Completions(arguments) => completions::main(arguments),
-    };
-    match done {
-        Ok(code) => ExitCode::from(code),
-        Err(error) => {
-            output::complain(&error);
-            ExitCode::from(USAGE)
-        }
     }
 }

@@ -97,6 +97,11 @@ impl Errors {
         self.0.extend(errors.into_iter().map(Into::into));
     }
 
+    /// Whether all went well so far.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
     /// Writes files below a folder; answers how many were written, `None` where none could be rendered.
     pub fn write(
         &mut self,
@@ -129,8 +134,18 @@ pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::
 
 /// Writes a warning to stderr.
 pub fn warn(text: &str) {
+    tell("warning", text);
+}
+
+/// What is good to know.
+#[cfg(feature = "mpi")]
+pub fn note(text: &str) {
+    tell("note", text);
+}
+
+fn tell(kind: &str, text: &str) {
     // With stderr gone there is nobody left to tell.
-    let _ = writeln!(std::io::stderr(), "warning: {text}");
+    let _ = writeln!(std::io::stderr(), "{kind}: {text}");
 }
 
 /// A bar on the terminal's stderr; hidden where there is none.

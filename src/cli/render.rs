@@ -20,7 +20,7 @@ pub struct Arguments {
     /// Picture files, or names of built-in pictures (`trueflight list pictures`); without any, all of these
     #[arg(value_name = "PICTURES")]
     pictures: Vec<String>,
-    /// Folder; the sheets, gallery.csv and a folder of PFM images for each picture go to gallery/ in it
+    /// Folder; the sheets, gallery.csv, report.html and a folder of PFM and EXR images for each picture go to gallery/ in it
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
     /// Seed of all random numbers
@@ -48,16 +48,20 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         if let Some(reason) = record.refusal() {
             bail!("{}: {reason}", picture.name);
         }
-        write(&report::render::artifacts(&record)?, &out)?;
+        let files = report::render::artifacts(&record)?;
+        write(&files, &out)?;
         if !console.quiet {
             let text = table(&record, begin.elapsed().as_secs_f64());
             bar.suspend(|| output::print(&text))?;
         }
-        records.push(record);
+        // The sheet is the first of a picture's files.
+        let sheet = files.into_iter().next().map(|file| file.bytes).unwrap_or_default();
+        records.push((record, sheet));
     }
     bar.finish_and_clear();
-    let rows = report::render::table::csv(&records)?;
-    write(&[Artifact::text("gallery.csv", rows)], &out)?;
+    let page = Artifact::text("report.html", report::html::gallery::text(&records));
+    let rows = report::render::table::csv(records.iter().map(|(record, _)| record))?;
+    write(&[Artifact::text("gallery.csv", rows), page], &out)?;
     if !console.quiet {
         output::print(&format!("{} pictures in {}\n", records.len(), out.display()))?;
     }

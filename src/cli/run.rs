@@ -1,77 +1,209 @@
-//! `trueflight run`: the main job.
+//! `trueflight run`: the main job, whole, a share of it, or what an interrupted one has left.
 
 use std::fmt::Write;
 use std::path::PathBuf;
+use std::sync::atomic::Ordering;
 
-use clap::Args;
+use anyhow::Context;
+use clap::{Args, Command, FromArgMatches};
 
 use super::baseline::BaselineArguments;
 use super::output::{self, Errors, Format};
-use super::selection::Selection;
+use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
-use super::{Console, drawing};
-use crate::harness::Catalogue;
-use crate::harness::Options;
+use super::{Console, drawing, journal};
+use crate::baseline::fingerprint;
+use crate::harness::blocks::Blocks;
 use crate::harness::options::DRAWS;
+use crate::harness::share::{Header, Share};
+use crate::harness::store::Store;
+use crate::harness::workers::{Threads, Workers};
+use crate::harness::{Case, Catalogue, Options, Plan};
 use crate::report::{self, console::View};
 
 /// Arguments of `run`.
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub struct Arguments {
     #[command(flatten)]
-    selection: Selection,
-    /// Folder for summary.csv, checks.csv, record.json, the cases' CSV files and the plots
+    pub selection: Selection,
+    /// Folder for report.html, summary.csv, checks.csv, record.json, the cases' CSV files and the plots
     #[arg(long, default_value = "results", value_name = "DIR")]
-    out: PathBuf,
+    pub out: PathBuf,
+    /// Go on with the interrupted run in this folder; what is drawn is what its command said
+    #[arg(long, value_name = "DIR", conflicts_with_all = [
+        "cases", "filter", "kernel", "seed", "draws", "alpha", "out", "fixed_draws", "fresh", "strict", "blocks_per_look", "shard",
+    ])]
+    resume: Option<PathBuf>,
+    /// Draw a share of all blocks, such as part 3 of 16, and judge nothing: that does `trueflight merge`
+    #[arg(long, value_name = "K/N", conflicts_with_all = ["time", "save_baseline", "baseline"])]
+    pub shard: Option<Share>,
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
     #[arg(long, value_name = "T", value_parser = drawing::seconds)]
     time: Option<f64>,
-    /// Draw exactly what is planned: no check stops the drawing, none prolongs it
+    #[command(flatten)]
+    looks: Looks,
+    /// Draw every experiment, also those that have not changed since the last run in the same folder, or
+    /// that an interrupted one there has begun
     #[arg(long)]
-    fixed_draws: bool,
-    /// Draw every experiment, also those that have not changed since the last run in the same folder
-    #[arg(long)]
-    fresh: bool,
-    /// Let every underpowered check make its experiment inconclusive
-    #[arg(long)]
-    strict: bool,
+    pub fresh: bool,
     /// What an inconclusive experiment counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
-    inconclusive: Option<Inconclusive>,
+    pub inconclusive: Option<Inconclusive>,
     #[command(flatten)]
     baseline: BaselineArguments,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
-    format: Format,
+    pub format: Format,
 }
 
-/// Draws, judges, writes, prints.
+impl Arguments {
+    /// The words that ask for the same draws, wherever they are made.
+    pub fn words(&self) -> Vec<String> {
+        let mut words = self.selection.words();
+        words.extend(self.looks.words());
+        words.push("--".to_owned());
+        words.extend_from_slice(self.selection.names());
+        words
+    }
+
+    /// What such words ask for.
+    pub fn of(words: &[String]) -> anyhow::Result<Self> {
+        let command = Self::augment_args(Command::new("run").no_binary_name(true));
+        Ok(Self::from_arg_matches(&command.try_get_matches_from(words)?)?)
+    }
+
+    pub fn options(&self) -> anyhow::Result<Options> {
+        let options = Options { seconds: self.time, ..self.selection.options(DRAWS)? };
+        Ok(self.looks.of(options))
+    }
+
+    /// The same, or what an interrupted run was asked that is to be gone on with.
+    pub fn resumed(&self) -> anyhow::Result<Self> {
+        let Some(folder) = &self.resume else { return Ok(self.clone()) };
+        let header = journal::header(folder)?;
+        let known = Self::of(&header.words)?;
+        Ok(Self {
+            selection: known.selection.on_threads_of(&self.selection),
+            looks: known.looks,
+            out: folder.clone(),
+            shard: header.share,
+            ..self.clone()
+        })
+    }
+}
+
+/// Draws what is asked for, or what is missing of it.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    #[cfg(feature = "mpi")]
+    if super::mpirun::ranks() > 1 {
+        return super::ranks::main(arguments, catalogue, console);
+    }
+    draw(&arguments.resumed()?, Box::new(Threads), catalogue, console)
+}
+
+/// Lets workers draw what is asked for, as it was resumed.
+pub fn draw(
+    asked: &Arguments,
+    workers: Box<dyn Workers>,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> anyhow::Result<u8> {
+    if asked.shard.is_some() && (asked.time.is_some() || asked.baseline.is_used()) {
+        anyhow::bail!(
+            "a share is drawn whole and compared with nothing: leave out --time and baselines"
+        );
+    }
+    let store = |plan: &Plan| -> anyhow::Result<Store> {
+        let header = Header::new(plan, &fingerprint()?, &asked.words(), asked.shard);
+        workers.agree(&header).map_err(anyhow::Error::msg)?;
+        match &asked.resume {
+            Some(folder) => journal::go_on(folder, &header, workers),
+            None => journal::begin(&asked.out, &header, asked.fresh, workers),
+        }
+    };
+    match asked.shard {
+        Some(share) => draw_share(asked, share, catalogue, console, store),
+        None => judge(asked, catalogue, console, store),
+    }
+}
+
+/// Draws a share of the blocks; the folder then has them, and nothing else.
+fn draw_share(
+    arguments: &Arguments,
+    share: Share,
+    catalogue: &Catalogue,
+    console: &Console,
+    store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
+) -> anyhow::Result<u8> {
     let selection = &arguments.selection;
     let cases = selection.read(catalogue, console)?;
-    let options = Options {
-        seconds: arguments.time,
-        fixed: arguments.fixed_draws,
-        strict: arguments.strict,
-        ..selection.options(DRAWS)?
-    };
+    output::writable(&arguments.out)?;
+    let out = arguments.out.display();
+    let (is_whole, was_finished) = selection.with_plan(&cases, &arguments.options()?, |plan| {
+        let store = store(plan)?;
+        let was_finished = store.files.iter().any(|file| file.is_finished);
+        let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
+        if is_whole && !was_finished {
+            store.files.iter().try_for_each(Blocks::finish)?;
+        }
+        Ok((is_whole, was_finished))
+    })?;
+    if !is_whole {
+        let cure = journal::resume(&arguments.out);
+        anyhow::bail!("interrupted: share {share} is not finished; {cure} goes on with it");
+    }
+    if !console.quiet {
+        let done = if was_finished { "was drawn before" } else { "is drawn" };
+        output::print(&format!(
+            "share {share} {done}: {out}; `trueflight merge` judges all parts\n"
+        ))?;
+    }
+    Ok(0)
+}
+
+/// Draws what the store does not have, judges, writes, prints.
+pub fn judge(
+    arguments: &Arguments,
+    catalogue: &Catalogue,
+    console: &Console,
+    store: impl FnOnce(&Plan) -> anyhow::Result<Store> + Send,
+) -> anyhow::Result<u8> {
+    let selection = &arguments.selection;
+    let cases: Vec<Case> = selection.read(catalogue, console)?;
     // Better to learn now than after the drawing that nothing can be written.
     output::writable(&arguments.out)?;
     let baselines = arguments.baseline.open()?;
     let mut cache = drawing::cached(&arguments.out)?;
     // A comparison wants times and evidence of its own.
     cache.is_fresh = arguments.fresh || arguments.baseline.is_used();
-    let (record, [reused, ready]) = selection.with_plan(&cases, &options, |plan| {
-        let counts = cache.count(plan);
-        Ok((drawing::draw_uncached(plan, &mut cache, console), counts))
-    })?;
+    let (record, [reused, ready], store) =
+        selection.with_plan(&cases, &arguments.options()?, |plan| {
+            let (counts, store) = (cache.count(plan), store(plan)?);
+            let record = drawing::draw_with(plan, &mut cache, &store, console);
+            let kept = || {
+                format!(
+                    "not finished; {} goes on with what is kept",
+                    journal::resume(&arguments.out)
+                )
+            };
+            Ok((record.with_context(kept)?, counts, store))
+        })?;
+    // The time is up, or somebody wants it to end; a run that was begun with a limit of time is over then.
+    let is_asked = store.stop.load(Ordering::Relaxed) || arguments.resume.is_some();
+    let was_stopped = record.results.cut_by_time && is_asked && store.keeps;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Errors::default();
     let files = errors.write(report::render(&record), &arguments.out);
     errors.keep(drawing::keep(&cache, &arguments.out));
+    if store.keeps && errors.is_empty() && !was_stopped {
+        errors.keep(journal::end(&arguments.out));
+    }
+    drop(store);
     errors.keep(output::print_record(&record, View::Run, arguments.format, console));
     errors.extend(baselines.complaint(&record));
-    let stored = errors.keep(baselines.store(&record, run.as_ref()));
+    // What is to be gone on with is no baseline yet.
+    let store = || baselines.store(&record, run.as_ref());
+    let stored = if was_stopped { String::new() } else { errors.keep(store()) };
     let is_told = arguments.format == Format::Table && !console.quiet;
     if let Some(files) = files.filter(|_| is_told) {
         let mut said = format!("{files} files in {}\n", arguments.out.display());
@@ -84,5 +216,13 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         }
         errors.keep(output::print(&(said + &stored)));
     }
-    Ok(verdict::close(&record, arguments.inconclusive, &errors))
+    let code = verdict::close(&record, arguments.inconclusive, &errors);
+    if was_stopped {
+        let cure = journal::resume(&arguments.out);
+        output::warn(&format!(
+            "interrupted, or out of time: this is judged on what was drawn; {cure} goes on"
+        ));
+    }
+    // What was cut short is no pass, whatever counts as one.
+    Ok(if was_stopped && code == 0 { verdict::UNDECIDED } else { code })
 }

@@ -39,7 +39,40 @@ pub struct Selection {
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    pub threads: Option<u16>,
+}
+
+/// When the gate looks, and what stops the drawing.
+#[derive(Debug, Clone, Args)]
+pub struct Looks {
+    /// Draw exactly what is planned: no check stops the drawing, none prolongs it
+    #[arg(long)]
+    fixed_draws: bool,
+    /// Let every underpowered check make its experiment inconclusive
+    #[arg(long)]
+    strict: bool,
+    /// Look only after every K blocks of 16384 draws, which are kept, sent and merged as one: for very long runs
+    #[arg(long, default_value_t = 1, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    blocks_per_look: u64,
+}
+
+impl Looks {
+    /// The words that ask for the same.
+    pub fn words(&self) -> Vec<String> {
+        let flags = [("--fixed-draws", self.fixed_draws), ("--strict", self.strict)];
+        let mut words: Vec<String> =
+            flags.iter().filter(|flag| flag.1).map(|flag| flag.0.to_owned()).collect();
+        if self.blocks_per_look != 1 {
+            words.push(format!("--blocks-per-look={}", self.blocks_per_look));
+        }
+        words
+    }
+
+    /// Options that say so.
+    pub fn of(&self, options: Options) -> Options {
+        let Self { fixed_draws: fixed, strict, blocks_per_look } = *self;
+        Options { blocks_per_look, fixed, strict, ..options }
+    }
 }
 
 impl Experiments {
@@ -93,6 +126,26 @@ impl Selection {
     /// Reads the cases; mistakes in files are shown in place.
     pub fn read(&self, catalogue: &Catalogue, console: &Console) -> anyhow::Result<Vec<Case>> {
         self.experiments.read(catalogue, console)
+    }
+
+    /// The words that ask for the same draws.
+    pub fn words(&self) -> Vec<String> {
+        let Experiments { filter, kernel, seed, .. } = &self.experiments;
+        let mut words = vec![format!("--seed={seed}"), format!("--alpha={}", self.alpha)];
+        words.extend(self.draws.map(|draws| format!("--draws={draws}")));
+        words.extend(filter.as_ref().map(|filter| format!("--filter={filter}")));
+        words.extend(kernel.map(|kernel| format!("--kernel={}", kernel.word())));
+        words
+    }
+
+    /// The cases as they were named.
+    pub fn names(&self) -> &[String] {
+        &self.experiments.cases
+    }
+
+    /// The same on as many threads as another one.
+    pub fn on_threads_of(self, other: &Self) -> Self {
+        Self { threads: other.threads, ..self }
     }
 
     /// The options of a plan; `usual` is what is drawn where neither an argument nor the case says.

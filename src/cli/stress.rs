@@ -21,7 +21,7 @@ pub struct Arguments {
     /// Threads [default: one per processor]; results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Folder of results; tables and plot go to `stress` below it
+    /// Folder of results; report.html, tables and plot go to `stress` below it
     #[arg(long, short, default_value = "results", value_name = "DIR")]
     out: PathBuf,
 }

@@ -8,6 +8,9 @@ use crate::baseline::Comparison;
 use crate::harness::record::{Record, Verdict};
 use crate::report::junit;
 
+/// Nothing fails, but something is not decided.
+pub const UNDECIDED: u8 = 3;
+
 /// What an inconclusive experiment does to the exit code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Inconclusive {
@@ -58,7 +61,7 @@ fn exit_code(record: &Record, inconclusive: Option<Inconclusive>) -> u8 {
     }
     match inconclusive {
         _ if !any(Verdict::Inconclusive) => 0,
-        None => 3,
+        None => UNDECIDED,
         Some(Inconclusive::Fail) => 1,
         Some(Inconclusive::Pass) => 0,
     }

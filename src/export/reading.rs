@@ -297,9 +297,14 @@ fn own_grid(settings: &Settings) -> Option<([usize; 3], bool)> {
         return None;
     }
     let nearest = grid.word_or("interpolation", &["trilinear", "nearest"], "trilinear")?;
-    let size = match grid.table_if("random") {
-        Some(random) => random.counts("size", 1..=4096)?,
-        None => grid_file::read(&grid.folder.join(grid.text("file")?)).ok()?.size,
+    let size = if let Some(random) = grid.table_if("random") {
+        random.counts("size", 1..=4096)?
+    } else {
+        let path = grid.folder.join(grid.text("file")?);
+        if grid_file::is_vdb(&path) {
+            return None;
+        }
+        grid_file::read(&path, None).ok()?.size
     };
     Some((size, nearest == "nearest"))
 }

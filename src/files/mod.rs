@@ -3,11 +3,28 @@
 //! A file is written under a temporary name beside its place and then renamed, so that a killed run
 //! leaves no torn file and loses nothing that was written before.
 
+pub mod exr;
 pub mod npy;
+pub mod null;
+pub mod pfm;
+pub mod vdb;
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// A picture as files hold it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pixels {
+    /// Columns and rows.
+    pub size: [usize; 2],
+    /// Values of a pixel.
+    pub channels: usize,
+    /// Row after row from the top, each pixel with its channels.
+    pub values: Vec<f64>,
+    /// Whether some of them were stored as halves, with 11 bits.
+    pub has_halves: bool,
+}
 
 /// Writes a whole file. A link stays a link, and what is no plain file (a device, a pipe) is written
 /// into as it stands.
@@ -45,6 +62,18 @@ fn place(path: &Path) -> io::Result<Option<PathBuf>> {
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(Some(path.to_owned())),
         Err(error) => Err(error),
     }
+}
+
+/// Waits until a file is on the disk, and its name. Where the system cannot say, it is not waited for.
+pub fn synchronise(path: &Path) {
+    let _ = fs::File::open(path).and_then(|file| file.sync_all());
+    synchronise_folder(path);
+}
+
+/// The same of its name alone.
+pub fn synchronise_folder(path: &Path) {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let _ = fs::File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
 }
 
 /// A temporary file in the same folder.

@@ -96,6 +96,7 @@ impl Cache {
         let predicted = predicted?;
         let asked: Vec<_> = planned.questions.iter().map(|q| (&q.check, q.channel)).collect();
         let numbers = (planned.draws, planned.fixed, planned.horizon, plan.options.fixed);
+        let numbers = (numbers, plan.options.blocks_per_look);
         let made_of =
             (&self.program, pack::word(Level::new()), case.case.digest, planned.variation);
         let drawn_by = (planned.address, planned.shared, planned.expect_biased, numbers);

@@ -1,13 +1,16 @@
 //! What a comparison of two runs says.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::files::null;
 
 /// What the comparison is to say at which level.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Rules {
     /// The chance that equal code shows any regression of a variance or of lookups.
     pub alpha: f64,
     /// How much more time per draw is no regression, as a share.
+    #[serde(deserialize_with = "null::endless")]
     pub time_tolerance: f64,
 }
 
@@ -19,7 +22,7 @@ impl Rules {
 }
 
 /// What changed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Comparison {
     /// What the stored run is called.
     pub name: String,
@@ -50,7 +53,7 @@ pub struct Comparison {
 }
 
 /// Whether the e-values of both runs multiply.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sequel {
     /// They do: so many runs together.
@@ -62,7 +65,7 @@ pub enum Sequel {
 }
 
 /// What is compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Quantity {
     /// The sample variance of one draw.
@@ -74,19 +77,23 @@ pub enum Quantity {
 }
 
 /// A quantity that differs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// The experiment.
     pub id: String,
     /// The quantity.
     pub quantity: Quantity,
     /// Its stored value, with its standard error.
+    #[serde(deserialize_with = "null::read")]
     pub before: [f64; 2],
     /// Its value now, with its standard error.
+    #[serde(deserialize_with = "null::read")]
     pub now: [f64; 2],
     /// now/before.
+    #[serde(deserialize_with = "null::read")]
     pub ratio: f64,
     /// Where the true ratio is; `None` for times.
+    #[serde(deserialize_with = "null::read")]
     pub interval: Option<[f64; 2]>,
     /// Whether it became worse.
     pub is_regression: bool,
@@ -95,15 +102,17 @@ pub struct Change {
 }
 
 /// A check that fails over several runs.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Drift {
     /// The experiment.
     pub id: String,
     /// The check.
     pub check: String,
     /// ln E of all runs together.
+    #[serde(deserialize_with = "null::endless")]
     pub ln_e: f64,
     /// The limit.
+    #[serde(deserialize_with = "null::read")]
     pub limit: f64,
     /// The command that repeats the experiment.
     pub command: String,
@@ -141,7 +150,7 @@ impl Comparison {
 }
 
 /// The experiments that both runs have of which something was not compared, by the reason.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct LeftOut {
     /// σ̂ was learned from other pilot rays: neither variance nor lookups are of the same estimator.
     pub relearned: Vec<String>,

@@ -8,6 +8,7 @@ use std::cell::RefCell;
 
 use cpu_time::ThreadTime;
 use fearless_simd::Level;
+use serde::{Deserialize, Serialize};
 
 use super::checks::Kind;
 use super::checks::batch::Batch;
@@ -19,10 +20,10 @@ use crate::numeric::pack::in_fused_code;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::rng::Streams;
 use crate::stats::Tally;
-use crate::stats::gate::GateSums;
+use crate::stats::gate::{GateSums, SUMS};
 
 /// What a block found.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Block {
     /// How many draws.
     pub draws: u64,
@@ -37,16 +38,19 @@ pub struct Block {
 }
 
 /// What a block says to one question.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub enum Answer {
     /// The sums of ψ, and that of y itself.
-    Gate(Box<GateSums>, f64),
+    Gate([f64; SUMS], f64),
     /// The sums of a law over the fixed draws.
     Law(Vec<f64>),
     /// The largest value.
     Largest(f64),
     /// Nothing.
     Silent,
+    /// What becomes [`Answer::Gate`] at the block's end.
+    #[serde(skip)]
+    Open(Box<GateSums>, f64),
 }
 
 /// Draws a block of an experiment, or the same block of several that share their lookups. Each makes
@@ -68,6 +72,59 @@ pub fn blocks(group: &[&Planned], block: u64) -> Vec<Option<Block>> {
     }
     let seconds = begin.elapsed().as_secs_f64() / group.len() as f64;
     drawings.into_iter().map(|drawing| drawing.map(|drawing| drawing.close(seconds))).collect()
+}
+
+/// Draws `every` blocks one after the other, and merges them into one: number `number` of such. Nothing, if `is_over`
+/// comes true before the last.
+pub fn merged(
+    group: &[&Planned],
+    number: u64,
+    every: u64,
+    is_over: &dyn Fn() -> bool,
+) -> Vec<Option<Block>> {
+    let mut found: Vec<Option<Block>> = vec![None; group.len()];
+    for block in number * every..(number + 1) * every {
+        let is_there = |&i: &usize| block * BLOCK < group[i].horizon;
+        let there: Vec<usize> = (0..group.len()).filter(is_there).collect();
+        if there.is_empty() {
+            break;
+        }
+        if is_over() {
+            return vec![None; group.len()];
+        }
+        let members: Vec<&Planned> = there.iter().map(|&i| group[i]).collect();
+        for (i, drawn) in there.into_iter().zip(blocks(&members, block)) {
+            match (&mut found[i], drawn) {
+                (Some(all), Some(next)) => all.merge(&next),
+                (none, next) => *none = next,
+            }
+        }
+    }
+    found
+}
+
+impl Block {
+    /// Adds the one that follows.
+    fn merge(&mut self, next: &Self) {
+        self.draws += next.draws;
+        self.seconds += next.seconds;
+        self.lookups.merge(&next.lookups);
+        self.tallies.iter_mut().zip(&next.tallies).for_each(|(tally, next)| tally.merge(next));
+        for (answer, next) in self.answers.iter_mut().zip(&next.answers) {
+            match (answer, next) {
+                (Answer::Gate(sums, y), Answer::Gate(others, other)) => {
+                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
+                    *y += other;
+                }
+                // Beyond the fixed draws a law is not asked.
+                (Answer::Law(sums), Answer::Law(others)) => {
+                    sums.iter_mut().zip(others).for_each(|(sum, x)| *sum += x);
+                }
+                (Answer::Largest(most), Answer::Largest(other)) => *most = larger(*most, *other),
+                _ => {}
+            }
+        }
+    }
 }
 
 /// Fills a buffer of each by lookups that they share.
@@ -195,8 +252,12 @@ impl<'p> Drawing<'p> {
         let fixed = self.end.min(self.planned.fixed).saturating_sub(self.start) as usize;
         let Self { mut answers, tallies, lookups, .. } = self;
         for (question, answer) in self.planned.questions.iter().zip(&mut answers) {
-            if let (Kind::Law(law), Answer::Law(sums), 1..) = (&question.kind, answer, fixed) {
-                law.close(fixed, sums);
+            match (&question.kind, &mut *answer, fixed) {
+                (Kind::Law(law), Answer::Law(sums), 1..) => law.close(fixed, sums),
+                // Nothing was asked: it need not be kept, either.
+                (_, Answer::Law(sums), _) => sums.clear(),
+                (_, Answer::Open(sums, y), _) => *answer = Answer::Gate(sums.totals(), *y),
+                _ => {}
             }
         }
         self.scratch.leave();
@@ -207,7 +268,7 @@ impl<'p> Drawing<'p> {
 impl Answer {
     fn new(kind: &Kind) -> Self {
         match kind {
-            Kind::Scalar(_) => Self::Gate(Box::default(), 0.0),
+            Kind::Scalar(_) => Self::Open(Box::default(), 0.0),
             Kind::Law(law) => Self::Law(vec![0.0; law.size()]),
             Kind::Always(_) => Self::Largest(0.0),
             Kind::Inspection(_) | Kind::Untestable(_) => Self::Silent,
@@ -222,7 +283,7 @@ impl Answer {
         y: &mut Vec<f64>,
     ) {
         match (self, kind) {
-            (Self::Gate(sums, total), Kind::Scalar(scalar)) => {
+            (Self::Open(sums, total), Kind::Scalar(scalar)) => {
                 let arguments = scalar.design.arguments();
                 draws.observe(&scalar.observe, y, |y, times| {
                     if scalar.bias != 0.0 {

@@ -55,6 +55,28 @@ pub struct GateState {
     pub decision: Decision,
     /// The draws up to that look.
     pub draws: u64,
+    /// The draws and ln E at every look up to that one.
+    pub path: Vec<(u64, f64)>,
+}
+
+/// Where an experiment stands: everything that what is still to be drawn and decided depends on.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Standing {
+    /// What it drew.
+    pub drawn: Drawn,
+    /// How many blocks are merged.
+    pub blocks: u64,
+    /// After how many blocks the next look comes.
+    pub look: u64,
+    /// Whether nothing is left to draw.
+    pub is_done: bool,
+}
+
+impl Standing {
+    /// Before the first block.
+    pub fn new(planned: &Planned) -> Self {
+        Self { drawn: Drawn::new(planned), look: 1, ..Self::default() }
+    }
 }
 
 /// Everything that a plan drew.
@@ -62,7 +84,7 @@ pub struct GateState {
 pub struct Draws {
     /// Per case, per experiment; nothing for refused ones.
     pub cases: Vec<Vec<Drawn>>,
-    /// Whether the time limit came first.
+    /// Whether the time limit came first, or the wish to stop.
     pub cut_by_time: bool,
     /// Whether the budget of draws came first.
     pub cut_by_budget: bool,
@@ -79,6 +101,7 @@ impl Drawn {
                 evidence: Evidence::NONE,
                 decision: Decision::Open,
                 draws: 0,
+                path: Vec::new(),
             }),
             Kind::Law(law) => Total::Law(vec![Sum::default(); law.size()]),
             Kind::Always(_) => Total::Largest(0.0, 0),
@@ -99,7 +122,7 @@ impl Drawn {
         for (total, answer) in self.totals.iter_mut().zip(&block.answers) {
             match (total, answer) {
                 (Total::Gate(state), Answer::Gate(sums, y)) => {
-                    state.psi.iter_mut().zip(sums.totals()).for_each(|(sum, x)| sum.add(x));
+                    state.psi.iter_mut().zip(sums).for_each(|(sum, &x)| sum.add(x));
                     state.y.add(*y);
                 }
                 (Total::Law(sums), Answer::Law(others)) => {

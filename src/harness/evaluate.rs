@@ -13,6 +13,7 @@
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
 use super::drawn::{Drawn, Draws, GateState, Total};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
+use super::plot_data::thinned;
 use super::qualify::{qualify_means, show_anywhere};
 use super::record::{Finding, GateFinding, Verdict};
 use crate::numeric::parallel;
@@ -43,6 +44,7 @@ fn blank(check: &str, what: &str, channel: String) -> Finding {
         z: None,
         p: None,
         gate: None,
+        path: Vec::new(),
         block: None,
         verdict: Verdict::Inconclusive,
         reason: String::new(),
@@ -88,8 +90,8 @@ impl Experiment<'_> {
                     self.decided(question, scalar, state)
                 };
                 let gate = Some(self.gate_finding(question, scalar, state));
-                let block = Some(state.draws.saturating_sub(1) / BLOCK);
-                Finding { gate, block, verdict, reason, ..finding }
+                let (path, block) = (thinned(&state.path), state.draws.saturating_sub(1) / BLOCK);
+                Finding { gate, path, block: Some(block), verdict, reason, ..finding }
             }
             (Kind::Law(_), Total::Law(_)) if drawn.draws < planned.fixed => {
                 let (what, fixed, drawn) = (&question.what, planned.fixed, drawn.draws);

@@ -8,26 +8,29 @@
 //!
 //! ```text
 //! words       source  rewrite  sweep  names  filter  options  addresses  normality  suite
-//! case        ready  estimator  problem  scenario  case  catalogue
+//! case        ready  estimator  problem  plot_data  course  scenario  case  catalogue
 //! plan        checks  levels  plan  mutation
-//! draws       draw  drawn  cache  run
-//! record      comparison  plot_data  record
+//! draws       draw  drawn  cache  share  workers  frames  blocks  store  run
+//! record      comparison  record
 //! verdict     qualify  evaluate  theory_rows  measured  repeat  anatomy  curves  summary  verdict
 //! ```
 
 pub mod addresses;
 mod anatomy;
+pub mod blocks;
 pub mod cache;
 pub mod case;
 pub mod catalogue;
 pub mod checks;
 pub mod comparison;
+mod course;
 pub mod curves;
 pub mod draw;
 pub mod drawn;
 pub mod estimator;
 pub mod evaluate;
 pub mod filter;
+mod frames;
 pub mod levels;
 mod measured;
 pub mod mutation;
@@ -44,12 +47,15 @@ mod repeat;
 pub mod rewrite;
 pub mod run;
 pub mod scenario;
+pub mod share;
 pub mod source;
+pub mod store;
 pub mod suite;
 pub mod summary;
 pub mod sweep;
 mod theory_rows;
 pub mod verdict;
+pub mod workers;
 
 use crate::catalogue::PageList;
 

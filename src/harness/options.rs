@@ -22,6 +22,8 @@ pub struct Options {
     pub seconds: Option<f64>,
     /// Stop drawing after this many draws of all experiments together.
     pub budget: Option<u64>,
+    /// How many blocks of 2¹⁴ draws are drawn, kept and merged as one; the gate looks between them.
+    pub blocks_per_look: u64,
     /// Draw exactly what is planned: the gate stops nothing.
     pub fixed: bool,
     /// Whether each check that is underpowered makes its experiment inconclusive.
@@ -60,6 +62,7 @@ impl Default for Options {
             alpha: 1e-3,
             seconds: None,
             budget: None,
+            blocks_per_look: 1,
             fixed: false,
             strict: false,
             until_failed: None,

@@ -124,6 +124,11 @@ impl Planned {
 }
 
 impl<'a> Plan<'a> {
+    /// How many draws are merged before the gate may look.
+    pub fn step(&self) -> u64 {
+        self.options.blocks_per_look * BLOCK
+    }
+
     /// Prepares every experiment of the cases.
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
         let mut cases = parallel::map(cases, |case| plan_case(case, options));

@@ -1,9 +1,12 @@
-//! What a record holds for plots: theory's lines along a sweep, and a ray seen from the side.
+//! What a record holds for plots: theory's lines along a sweep, a ray seen from the side, fields along the ray of
+//! what is refused, and the way of ln E.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
+
+use crate::files::null;
 
 /// The axis of a sweep and the theory's curves along it.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Sweep {
     /// What is swept, by its key in case files, as `sampling` or `density`.
     pub what: String,
@@ -18,14 +21,14 @@ pub struct Sweep {
 }
 
 /// What theory says of one estimator along the sweep, one channel of its value.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Curve {
     /// The estimator's label: the same as in its rows.
     pub estimator: String,
     /// Its control in words: the same as in its rows.
     pub control: String,
     /// The channel: the same as in its rows.
-    #[serde(skip_serializing_if = "String::is_empty")]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub channel: String,
     /// Points in ascending order; refused stretches are left out.
     pub points: Vec<CurvePoint>,
@@ -34,56 +37,121 @@ pub struct Curve {
 }
 
 /// Theory at one value of the swept quantity.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct CurvePoint {
     /// The swept value.
+    #[serde(deserialize_with = "null::read")]
     pub x: f64,
     /// The variance of one draw.
+    #[serde(deserialize_with = "null::read")]
     pub variance: f64,
     /// The expected lookups.
+    #[serde(deserialize_with = "null::read")]
     pub lookups: f64,
     /// 1/(variance · lookups).
+    #[serde(deserialize_with = "null::read")]
     pub fom: f64,
 }
 
 /// A ray seen from the side, as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Anatomy {
     /// The estimator that the curves belong to.
     pub estimator: String,
     /// Distances along the ray, ascending.
+    #[serde(deserialize_with = "null::read")]
     pub t: Vec<f64>,
     /// σ_t there, 1/length.
+    #[serde(deserialize_with = "null::read")]
     pub extinction: Vec<f64>,
     /// The control there, 1/length; empty for none.
+    #[serde(deserialize_with = "null::read")]
     pub control: Vec<f64>,
     /// σ_t less the control there, 1/length.
+    #[serde(deserialize_with = "null::read")]
     pub residual: Vec<f64>,
     /// σ̂ there, 1/length.
+    #[serde(deserialize_with = "null::read")]
     pub sampling: Vec<f64>,
     /// The exact transmittance T(t) there.
+    #[serde(deserialize_with = "null::read")]
     pub transmittance: Vec<f64>,
     /// The standard deviation of one draw of it there.
+    #[serde(deserialize_with = "null::read")]
     pub deviation: Vec<f64>,
     /// Where the control was fitted: (t, value).
+    #[serde(deserialize_with = "null::read")]
     pub explorers: Vec<[f64; 2]>,
     /// The tentative collisions of the first walk: (t, σ_t).
+    #[serde(deserialize_with = "null::read")]
     pub collisions: Vec<[f64; 2]>,
     /// T̂ of the first few walks at the distances `t`.
+    #[serde(deserialize_with = "null::read")]
     pub walks: Vec<Vec<f64>>,
     /// What was measured: one entry per channel.
     pub measured: Vec<MeasuredPoint>,
 }
 
 /// A measured point of the transmittance along a ray.
-#[derive(Debug, Clone, Copy, Serialize)]
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct MeasuredPoint {
     /// The distance.
+    #[serde(deserialize_with = "null::read")]
     pub t: f64,
     /// The mean of the draws.
+    #[serde(deserialize_with = "null::read")]
     pub mean: f64,
     /// The standard error of the mean.
+    #[serde(deserialize_with = "null::read")]
     pub standard_error: f64,
     /// The standard deviation of one draw.
+    #[serde(deserialize_with = "null::read")]
     pub deviation: f64,
+}
+
+/// σ_t, control and σ̂ along the ray of an experiment that is refused.
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+pub struct Course {
+    /// Distances along the ray, ascending; not more than 100.
+    pub t: Vec<f64>,
+    /// σ_t there, 1/length.
+    #[serde(deserialize_with = "null::read")]
+    pub extinction: Vec<f64>,
+    /// The control there, 1/length; empty for none, or where it cannot be made.
+    #[serde(deserialize_with = "null::read")]
+    pub control: Vec<f64>,
+    /// σ̂ there, 1/length; empty for none, or where it cannot be made.
+    #[serde(deserialize_with = "null::read")]
+    pub sampling: Vec<f64>,
+    /// Where the inequality does not hold; `None` where something else is refused.
+    pub at: Option<f64>,
+}
+
+/// More looks of the gate than this are thinned.
+const LOOKS: usize = 64;
+
+/// Draws and ln E at the looks, as a record has them: the first, the last, and those between them evenly.
+pub fn thinned(path: &[(u64, f64)]) -> Vec<[f64; 2]> {
+    let last = path.len().saturating_sub(1);
+    let few = path.len().min(LOOKS);
+    let kept = (0..few).map(|i| path[i * last / (few - 1).max(1)]);
+    kept.map(|(draws, ln_e)| [draws as f64, (ln_e * 1e3).round() / 1e3]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_keeps_its_ends_and_its_order() {
+        for looks in [0, 1, 2, 63, 64, 65, 200] {
+            let path: Vec<(u64, f64)> = (0..looks).map(|i| (i * i, i as f64 / 8.0)).collect();
+            let kept = thinned(&path);
+            assert_eq!(kept.len(), path.len().min(LOOKS));
+            assert!(kept.is_sorted_by(|a, b| a[0] < b[0]), "{kept:?}");
+            let last = path.last().map(|&(draws, ln_e)| [draws as f64, ln_e]);
+            assert_eq!(kept.last().copied(), last);
+            assert_eq!(kept.is_empty(), path.is_empty());
+        }
+    }
 }

@@ -5,17 +5,19 @@
 //! numbers as `null`: those of [`GateFinding`] may be.
 
 pub use crate::stats::verdict::{GateFinding, Verdict};
-use serde::Serialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::comparison::Comparison;
+use crate::files::null;
 
-pub use super::plot_data::{Anatomy, Curve, CurvePoint, MeasuredPoint, Sweep};
+pub use super::plot_data::{Anatomy, Course, Curve, CurvePoint, MeasuredPoint, Sweep};
 
 /// The version of the record's form: it grows when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
 
 /// A finished run, prediction or plan.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Record {
     /// What was drawn, predicted and decided.
     pub results: Results,
@@ -26,7 +28,7 @@ pub struct Record {
 }
 
 /// The part of a record that depends on nothing but the cases, the seed and the options.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Results {
     /// The version of the record's form, [`SCHEMA`].
     pub schema: u32,
@@ -40,7 +42,7 @@ pub struct Results {
     pub streams: String,
     /// How the error rate is shared, and what came of it.
     pub gate: Gate,
-    /// Whether a time limit cut the draws short; such results depend on the machine.
+    /// Whether a time limit or an interruption cut the draws short; such results depend on the machine.
     pub cut_by_time: bool,
     /// Whether the budget of draws ran out before all was decided.
     pub cut_by_budget: bool,
@@ -49,7 +51,7 @@ pub struct Results {
 }
 
 /// The error control of a run: levels fixed before the first draw, and what came of them.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Gate {
     /// K: how many scalars go through the gate and share 4/5 of α.
     pub scalars: usize,
@@ -60,8 +62,10 @@ pub struct Gate {
     /// β, the chance that a scalar passes although its bias is as large as its tolerance.
     pub beta: f64,
     /// A scalar fails at this ln E.
+    #[serde(deserialize_with = "null::read")]
     pub ln_e_limit: f64,
     /// A scalar passes when both its ln P reach this.
+    #[serde(deserialize_with = "null::read")]
     pub ln_p_limit: f64,
     /// ln of the mean e-value of all scalars: near or below 0 where all is well.
     pub ln_mean_e: Option<f64>,
@@ -76,7 +80,7 @@ pub struct Gate {
 }
 
 /// An entry of the e-BH list.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Suspect {
     /// The case.
     pub case: String,
@@ -85,11 +89,12 @@ pub struct Suspect {
     /// The check.
     pub check: String,
     /// ln of its e-value.
+    #[serde(deserialize_with = "null::endless")]
     pub ln_e: f64,
 }
 
 /// What was found for one case file.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct CaseRecord {
     /// The case's name: its path below the cases folder, without `.toml`.
     pub name: String,
@@ -103,6 +108,7 @@ pub struct CaseRecord {
     pub medium: String,
     /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
     /// planned to see.
+    #[serde(deserialize_with = "null::read")]
     pub visible_bias: Option<[f64; 2]>,
     /// How many draws its scalars took to pass, all together, in units of what is typical,
     /// `17 V/ε²` draws each.
@@ -124,7 +130,7 @@ impl CaseRecord {
 }
 
 /// One experiment (one estimator at one sweep point), one channel of its value.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Row {
     /// The estimator with its own settings, as in `single(non-terminating, a=0.7)`.
     pub estimator: String,
@@ -187,6 +193,7 @@ pub struct Row {
     pub lookups_deviation: Option<f64>,
     /// Which of `z_mean`, `z_variance` and `z_lookups` are not to be read as normal: the draws are too few,
     /// or their tails too heavy.
+    #[serde(deserialize_with = "z_scores")]
     pub not_normal: Vec<&'static str>,
     /// The p-value of the test of the whole law, where the law is known.
     pub p_law: Option<f64>,
@@ -211,9 +218,13 @@ pub struct Row {
     pub verdict: Option<Verdict>,
     /// Why, in words; empty for a plain pass.
     pub reason: String,
+    /// The fields along the ray, one for each channel of the medium, where the experiment is refused.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub courses: Vec<Course>,
     /// What each check found.
     pub findings: Vec<Finding>,
     /// `J_k = ∫ σ̂ E[(1 − W)^k]`, k = 1 … 4, of product estimators.
+    #[serde(deserialize_with = "null::read")]
     pub losses: Option<[f64; 4]>,
     /// The central moments `μ_k/T^k` of one draw in theory, k = 2, 3, 4; `None` where they are
     /// unknown or overflow.
@@ -224,6 +235,7 @@ pub struct Row {
     /// The variance of the number of lookups of one draw in theory.
     pub lookups_variance: Option<f64>,
     /// `P(0), P(1), …` lookups of one draw in theory; empty where unknown or longer than 100.
+    #[serde(deserialize_with = "null::read")]
     pub lookups_pmf: Vec<f64>,
     /// `n(2)`: with fewer draws the events that make the variance are not seen.
     pub rare_event_size: Option<f64>,
@@ -246,8 +258,21 @@ impl Row {
     }
 }
 
+/// What a row has z-scores of.
+const Z_SCORES: [&str; 3] = ["z_mean", "z_variance", "z_lookups"];
+
+/// Reads names of z-scores: there are three.
+fn z_scores<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<&'static str>, D::Error> {
+    let known = |name: &String| Z_SCORES.into_iter().find(|z| z == name);
+    let names = Vec::<String>::deserialize(from)?;
+    names
+        .iter()
+        .map(|name| known(name).ok_or_else(|| D::Error::unknown_variant(name, &Z_SCORES)))
+        .collect()
+}
+
 /// What one check found of one experiment.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Finding {
     /// The check's name in the catalogue.
     pub check: String,
@@ -263,6 +288,10 @@ pub struct Finding {
     pub p: Option<f64>,
     /// Where the gate stands, for scalars.
     pub gate: Option<GateFinding>,
+    /// Pairs of draws and ln E at the gate's looks, ascending: the last is the decision's. Of more than 64 looks an even
+    /// choice, ln E in steps of 0.001.
+    #[serde(default, deserialize_with = "null::read", skip_serializing_if = "Vec::is_empty")]
+    pub path: Vec<[f64; 2]>,
     /// The block at whose end it was decided, or where it was found.
     pub block: Option<u64>,
     /// What the check says.
@@ -272,7 +301,7 @@ pub struct Finding {
 }
 
 /// The part of a record that differs from run to run.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, Deserialize)]
 pub struct Timing {
     /// How many threads drew.
     pub threads: usize,

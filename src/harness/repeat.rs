@@ -21,7 +21,7 @@ pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
     let place = if is_built_in { case.name.clone() } else { case.path.display().to_string() };
     // Twins are numbered by the plan; a filter sees them all under one name.
     let estimator = planned.names.estimator.split(" #").next().unwrap_or_default();
-    let Options { seed, alpha, fixed, strict, kernel, .. } = plan.options;
+    let Options { seed, alpha, fixed, strict, kernel, blocks_per_look, .. } = plan.options;
     let (place, filter) = (quoted(&place), quoted(&format!("*:{estimator}")));
     let draws = planned.draws;
     let mut command = format!(
@@ -32,6 +32,9 @@ pub fn command(plan: &Plan, case: &PlannedCase, planned: &Planned) -> String {
     }
     if let Some(kernel) = kernel {
         command = format!("{command} --kernel {}", kernel.word());
+    }
+    if blocks_per_look != Options::default().blocks_per_look {
+        command = format!("{command} --blocks-per-look {blocks_per_look}");
     }
     for (flag, _) in [(" --fixed-draws", fixed), (" --strict", strict)].iter().filter(|f| f.1) {
         command.push_str(flag);

@@ -2,8 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
+use super::course::Fields;
 use super::estimator::{Defaults, Estimators};
 use super::names::Names;
+use super::plot_data::Course;
 use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
@@ -216,6 +218,33 @@ impl Scenario {
         let site = self.site(address);
         let points = self.with_control(estimator, variation, |recipe| recipe.points(&site));
         Some((ray_view, points))
+    }
+
+    /// σ_t, control and σ̂ of each channel along the ray, and at the place of interest.
+    pub fn courses(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        address: Address,
+        at: Option<f64>,
+    ) -> Vec<Course> {
+        let ask = |other: &Self| other.courses(estimator, None, address, at);
+        if let Some(courses) = self.varied(variation, ask) {
+            return courses.unwrap_or_default();
+        }
+        let parts = self.parts(estimator, variation, None, address).ok();
+        let sampling = parts.as_ref().map(|parts| {
+            let further = parts.further.iter().map(|(_, sampling)| sampling.as_ref());
+            std::iter::once(parts.sampling.as_ref()).chain(further).collect::<Vec<_>>()
+        });
+        let control = parts.as_ref().map(|parts| &parts.control);
+        let media = self.problem.media().iter().enumerate();
+        let fields = media.map(|(channel, medium)| Fields {
+            medium,
+            control,
+            sampling: sampling.as_ref().and_then(|all| *all.get(channel)?),
+        });
+        fields.filter_map(|fields| fields.course(at)).collect()
     }
 
     /// The largest `|σ_t − σ_c|` on the ray, 1/length: the natural scale of σ̂ for an estimator.

@@ -1,7 +1,8 @@
 //! What theory says of an experiment, as the rows of a record.
 
 use super::plan::{Planned, PlannedCase};
-use super::record::{Row, Verdict};
+use super::record::{Course, Row, Verdict};
+use crate::estimators::Refusal;
 
 /// A longer list of probabilities is left out of the record.
 const LONGEST_LAW: usize = 100;
@@ -19,8 +20,13 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let ready = match &planned.outcome {
         Ok(ready) => ready,
         Err(refusal) => {
-            let reason = refusal.to_string();
-            return vec![Row { verdict: Some(Verdict::Refused), reason, ..blank }];
+            let (verdict, reason) = (Some(Verdict::Refused), refusal.to_string());
+            return vec![Row {
+                verdict,
+                reason,
+                courses: courses(case, planned, refusal),
+                ..blank
+            }];
         }
     };
     let prediction = &ready.prediction;
@@ -61,6 +67,16 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
         }
     });
     rows.collect()
+}
+
+/// The fields along the ray, for the eye to see where the inequality fails.
+fn courses(case: &PlannedCase, planned: &Planned, refusal: &Refusal) -> Vec<Course> {
+    let at = match refusal {
+        Refusal::Inequality { at, .. } => Some(*at),
+        Refusal::Mismatch { .. } => None,
+    };
+    let scenario = &case.case.scenario;
+    scenario.courses(planned.estimator, planned.variation, planned.address, at)
 }
 
 /// The estimator that an experiment is by definition, where the case has it too.

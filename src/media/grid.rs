@@ -9,7 +9,8 @@
 //!
 //! | setting | meaning | unit | default |
 //! |---|---|---|---|
-//! | `file` | `"x.vol"` (Mitsuba) or `"x.npy"` (NumPy), relative to the case file | | this or `random` |
+//! | `file` | `"x.vol"` (Mitsuba), `"x.npy"` (NumPy) or `"x.vdb"` (`OpenVDB`), relative to the case file | | this or `random` |
+//! | `grid` | of a `.vdb` file: the name of a grid | | its only grid of floats |
 //! | `random` | `{ size = [nx, ny, nz], seed }`: sample (i, j, k) is hash3(i, j, k, seed)/2³² | | this or `file` |
 //! | `bounds` | `box = { low, high }` | length | the box in a `.vol` file, else required |
 //! | `extinction` | factor on every sample, ≥ 0 | 1/length | 1 |
@@ -17,12 +18,18 @@
 //! | `samples` | `"vertices"`: from corner to corner of the box, u = p(n−1); `"centres"`: in the middle of n cells, u = pn − ½ | | `"centres"` |
 //! | `border` | with `"centres"`, samples beyond the box: `"clamp"` (Mitsuba) or `"zero"` (pbrt) | | `"clamp"` |
 //!
+//! A `.vdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
+//! (i, j, k) is a sample at scale·(i, j, k) + shift of its transform. Beside the voxels that are not background stand
+//! samples of the background, which must be 0: the field falls to 0 at the next index, and is 0 beyond (`OpenVDB`'s
+//! `BoxSampler`; its `PointSampler` with `"nearest"`). A voxel has the value that is stored, whether it is active or not.
+//!
 //! Here p runs from 0 to 1 across the box. Between two planes of the lattice a ray sees a cubic,
 //! whose coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for
 //! cubics) and free flight (prefix sums and a bracketed root in one cell) use those. A cubic is the
 //! interpolation of the samples to rounding: 32 units in the last place of the largest sample, and
 //! the rounding of the place; see the test.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use super::cells::Cells;
@@ -31,7 +38,7 @@ use super::grid_file::{self, MOST_SAMPLES, Samples};
 use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body, lattice};
-use crate::catalogue::{Domain, Settings};
+use crate::catalogue::{Domain, Settings, Value};
 use crate::geometry::{Aabb, Bounds, Ray};
 use crate::numeric::{Known, Lane, Span};
 
@@ -132,9 +139,10 @@ impl Field for Grid {
         let samples = read_samples(settings);
         let interpolation =
             settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
-        let placement = read_placement(settings);
+        let is_vdb = has_vdb(settings);
+        let placement = if is_vdb { no_placement(settings) } else { read_placement(settings) };
         let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
-        let bounds = settings.has("bounds").then(|| read_bounds(settings));
+        let bounds = (!is_vdb && settings.has("bounds")).then(|| read_bounds(settings));
         let (samples, placement, factor) = (samples?, placement?, factor?);
         let interpolation = match interpolation? {
             "nearest" => Interpolation::Nearest,
@@ -184,13 +192,18 @@ fn read_samples(settings: &Settings) -> Option<Samples> {
     match (settings.has("file"), settings.has("random")) {
         (true, false) => {
             let name = settings.text("file")?;
-            let read = grid_file::read(&settings.folder.join(&name));
+            let grid = if has_vdb(settings) {
+                settings.optional("grid", |key| settings.text(key))?
+            } else {
+                None
+            };
+            let read = grid_file::read(&settings.folder.join(&name), grid.as_deref());
             read.map_err(|e| settings.fault("file", format!("{name}: {}", e.message), e.help)).ok()
         }
         (false, true) => read_random(&settings.table("random")?),
         (both, _) => {
             let found = if both { "both `file` and `random`" } else { "no samples are given" };
-            let help = "give `file = \"x.vol\"` or `random = { size = [nx, ny, nz], seed = n }`";
+            let help = "give `file = \"x.vdb\"` or `random = { size = [nx, ny, nz], seed = n }`";
             settings.fault_at(settings.span.clone(), "", found, help);
             None
         }
@@ -213,6 +226,23 @@ fn read_random(settings: &Settings) -> Option<Samples> {
     let rows = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z)));
     let values = rows.flat_map(|(y, z)| (0..nx).map(move |x| hash(x, y, z))).collect();
     Some(Samples { size, values, bounds: None })
+}
+
+/// Whether the samples are those of `OpenVDB`.
+fn has_vdb(settings: &Settings) -> bool {
+    let name = settings.entry("file").map(|entry| &entry.node.value);
+    matches!(name, Some(Value::Text(name)) if grid_file::is_vdb(Path::new(name)))
+}
+
+/// The placement of a file that says it itself.
+fn no_placement(settings: &Settings) -> Option<Placement> {
+    let given = ["bounds", "samples", "border"].into_iter().filter(|key| settings.has(key));
+    let faults = given.map(|key| {
+        let message =
+            format!("a .vdb file says itself where its voxels stand, and `{key}` has no say");
+        settings.fault(key, message, "leave it out, or move the grid by its transform");
+    });
+    (faults.count() == 0).then_some(Placement::Vertices)
 }
 
 fn read_placement(settings: &Settings) -> Option<Placement> {

@@ -1,4 +1,4 @@
-//! Voxel grids in files: Mitsuba's `.vol` and `NumPy`'s `.npy`.
+//! Voxel grids in files: Mitsuba's `.vol`, `NumPy`'s `.npy`, and `OpenVDB`'s `.vdb` (see `grid_vdb.rs`).
 //!
 //! ```text
 //! .vol   "VOL", version 3 (1 byte), then little-endian: type 1 (i32), nx ny nz channels (i32),
@@ -14,6 +14,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::Path;
 
+use super::grid_vdb;
 use crate::catalogue::number;
 use crate::files::npy;
 use crate::geometry::{Aabb, Point};
@@ -41,21 +42,30 @@ pub struct Unreadable {
 /// The largest number of samples, 1 GiB of doubles.
 pub const MOST_SAMPLES: u64 = 1 << 27;
 
-fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Unreadable> {
+pub(super) fn wrong<T>(
+    message: impl Into<String>,
+    help: impl Into<String>,
+) -> Result<T, Unreadable> {
     Err(Unreadable { message: message.into(), help: help.into() })
 }
 
-/// Reads a `.vol` or `.npy` file, by its ending.
+/// Whether a file is read as one of `OpenVDB`'s, which holds grids with names and says where they stand.
+pub fn is_vdb(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending == "vdb")
+}
+
+/// Reads a `.vol`, `.npy` or `.vdb` file, by its ending; of the last the grid of a name, or its only one.
 ///
 /// # Errors
 ///
 /// Whatever keeps the file from being a grid of finite, non-negative samples.
-pub fn read(path: &Path) -> Result<Samples, Unreadable> {
+pub fn read(path: &Path, grid: Option<&str>) -> Result<Samples, Unreadable> {
     let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    let reader: fn(File) -> Result<Samples, Unreadable> = match ending {
-        "vol" => read_vol,
-        "npy" => read_npy,
-        _ => return wrong("the file is neither .vol nor .npy", "convert it to one of the two"),
+    let reader: &dyn Fn(File) -> Result<Samples, Unreadable> = match ending {
+        "vol" => &read_vol,
+        "npy" => &read_npy,
+        "vdb" => &|file| grid_vdb::read(file, grid),
+        _ => return wrong("the file is none of .vol, .npy and .vdb", "convert it to one of them"),
     };
     let file = match File::open(path) {
         Ok(file) => file,
@@ -76,7 +86,7 @@ pub fn read(path: &Path) -> Result<Samples, Unreadable> {
 }
 
 /// The three sizes as indices, if they make a grid of a size that fits.
-fn sizes(size: [u64; 3]) -> Result<[usize; 3], Unreadable> {
+pub(super) fn sizes(size: [u64; 3]) -> Result<[usize; 3], Unreadable> {
     let [x, y, z] = size;
     let count = size.iter().try_fold(1u64, |product, &n| product.checked_mul(n));
     let fits = count.is_some_and(|count| (1..=MOST_SAMPLES).contains(&count));
@@ -173,7 +183,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).expect("written");
-        read(&path)
+        read(&path, None)
     }
 
     #[test]
@@ -237,6 +247,6 @@ mod tests {
         let longer = [&whole[..], &[0]].concat();
         assert!(written("a.npy", &longer).expect_err("longer").message.contains("longer"));
         assert!(written("a.raw", &whole).is_err());
-        assert!(read(Path::new("nowhere.vol")).is_err());
+        assert!(read(Path::new("nowhere.vol"), None).is_err());
     }
 }

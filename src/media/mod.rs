@@ -20,6 +20,7 @@ pub mod exponential;
 pub mod gaussian;
 pub mod grid;
 pub mod grid_file;
+mod grid_vdb;
 pub mod inverse;
 pub mod lattice;
 pub mod lookup;

@@ -49,6 +49,8 @@ pub struct ReferenceRecord {
     pub lookups: f64,
     /// Row after row from the top, each pixel with its channels.
     pub image: Vec<f64>,
+    /// The error of each value: measured where it was drawn, a bound where it was computed.
+    pub errors: Vec<f64>,
 }
 
 /// An estimator and what became of it.
@@ -69,6 +71,9 @@ pub struct ExposureRecord {
 pub struct Exposure {
     /// Row after row from the top, each pixel with its channels.
     pub image: Vec<f64>,
+    /// The standard error of each value, measured: zero where the volume covers nothing, and not a number where
+    /// there is one draw only.
+    pub errors: Vec<f64>,
     /// Draws per pixel.
     pub draws: f64,
     /// Lookups per pixel.
@@ -118,6 +123,7 @@ impl PictureRecord {
         let error = if is_whole { error } else { f64::NAN };
         let lookups = mean(exposed.lookups.iter().map(|&n| n as f64), covered.len());
         let image = image(view, channels, &covered, &exposed.values);
+        let errors = roots(view, channels, &covered, &exposed.square_errors);
         Self {
             name: name.to_owned(),
             title: title.to_owned(),
@@ -130,7 +136,7 @@ impl PictureRecord {
             budget,
             white: bright(&image),
             strongest: round_up(2.5 * middle),
-            reference: ReferenceRecord { how, error, lookups, image },
+            reference: ReferenceRecord { how, error, lookups, image, errors },
             exposures,
         }
     }
@@ -170,6 +176,7 @@ impl Exposure {
         let is_predicted = !exposed.predicted.is_empty();
         Self {
             image: image(view, channels, covered, &exposed.values),
+            errors: roots(view, channels, covered, &exposed.square_errors),
             draws: mean(exposed.draws.iter().map(|&n| n as f64), pixels),
             lookups,
             pilots: exposed.pilots as f64 / pixels.max(1) as f64,
@@ -189,7 +196,17 @@ fn mean(values: impl Iterator<Item = f64>, count: usize) -> f64 {
 /// The whole image: covered pixels as found, the others exactly.
 fn image(view: &View, channels: usize, covered: &[usize], values: &[f64]) -> Vec<f64> {
     let background = |pixel| std::iter::repeat_n(view.background(pixel), channels);
-    let mut image: Vec<f64> = (0..view.pixels()).flat_map(background).collect();
+    whole((0..view.pixels()).flat_map(background).collect(), channels, covered, values)
+}
+
+/// The roots of squared errors; what is not covered has none.
+fn roots(view: &View, channels: usize, covered: &[usize], squares: &[f64]) -> Vec<f64> {
+    let roots: Vec<f64> = squares.iter().map(|square| square.sqrt()).collect();
+    whole(vec![0.0; view.pixels() * channels], channels, covered, &roots)
+}
+
+/// An image with the values of the covered pixels.
+fn whole(mut image: Vec<f64>, channels: usize, covered: &[usize], values: &[f64]) -> Vec<f64> {
     for (&pixel, values) in covered.iter().zip(values.chunks_exact(channels)) {
         image[pixel * channels..][..channels].copy_from_slice(values);
     }

@@ -33,7 +33,12 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
     Ok(artifacts)
 }
 
-fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
+/// The figure of a case with a curve.
+///
+/// # Errors
+///
+/// Where there is no typeface.
+pub fn figure(case: &CaseRecord, anatomy: &Anatomy) -> Result<Sheet, ReportError> {
     let words = [&case.name, &case.medium, &anatomy.estimator].map(String::as_str).join("  ·  ");
     let size = [1200.0, 900.0];
     let Figure { face, mut sheet, .. } =

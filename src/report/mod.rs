@@ -12,6 +12,7 @@ pub mod columns;
 pub mod console;
 pub mod diff;
 pub mod failures;
+pub mod html;
 pub mod judge;
 pub mod junit;
 pub mod labels;
@@ -154,6 +155,7 @@ reports! {
     sweep_plot,
     anatomy_plot,
     record_json,
+    html,
     ;
     junit,
     markdown,

@@ -81,7 +81,12 @@ const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
     theory: |point| point.fom.recip(),
 };
 
-fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
+/// The figure of a case with a sweep.
+///
+/// # Errors
+///
+/// Where there is no typeface.
+pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];

@@ -63,7 +63,7 @@ pub fn control(record: &Record) -> Vec<String> {
     }
     facts.push(format!("seed {}", results.seed));
     if results.cut_by_time {
-        facts.push("cut short by the time limit: other machines will differ".to_owned());
+        facts.push("cut short by the time limit or by hand: other machines will differ".to_owned());
     }
     if results.cut_by_budget {
         facts.push("cut short by the budget of draws".to_owned());

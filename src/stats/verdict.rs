@@ -12,7 +12,7 @@ pub const FURTHEST: f64 = 1e8;
 
 /// What is said of an experiment, or of one check.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[cfg_attr(feature = "library", derive(serde::Serialize))]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "library", serde(rename_all = "lowercase"))]
 pub enum Verdict {
     /// Agrees with theory, and a difference of the size that matters would have been seen.
@@ -42,25 +42,33 @@ impl Verdict {
 
 /// Where the gate stands with one scalar.
 #[derive(Debug, Clone, Copy)]
-#[cfg_attr(feature = "library", derive(serde::Serialize))]
+#[cfg_attr(feature = "library", derive(serde::Serialize, serde::Deserialize))]
 pub struct GateFinding {
     /// ε: the bias that a pass excludes.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::read"))]
     pub tolerance: f64,
     /// V: the variance of the scalar in theory; it may be infinite.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::endless"))]
     pub variance: f64,
     /// The observed mean of the scalar, 0 when all is well.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::read"))]
     pub mean: f64,
     /// How many draws were planned, 27 V/ε²; infinite where none would do.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::endless"))]
     pub planned: f64,
     /// How many draws it took to decide, or were made without a decision.
     pub draws: u64,
     /// ln E, the evidence against a correct scalar.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::endless"))]
     pub ln_e: f64,
     /// The ln E at which it fails.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::read"))]
     pub ln_e_limit: f64,
     /// ln of the evidence against a bias of +ε and of −ε.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::read"))]
     pub ln_p: [f64; 2],
     /// The ln P at which it passes.
+    #[cfg_attr(feature = "library", serde(deserialize_with = "crate::files::null::read"))]
     pub ln_p_limit: f64,
     /// The draws that it would need, where more than were planned; infinite where none would do.
     /// `None` only where the plan suffices: in JSON the finding's verdict tells the two apart.

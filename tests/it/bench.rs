@@ -160,7 +160,7 @@ fn a_bench_writes_its_files_and_prints_its_table() {
         .map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();
-    assert_eq!(names, ["bench.csv", "case.error.csv", "case.png", "case.svg"]);
+    assert_eq!(names, ["bench.csv", "case.error.csv", "case.png", "case.svg", "report.html"]);
 }
 
 #[test]

@@ -108,7 +108,8 @@ fn a_failure_is_1_and_its_reports_are_written() {
     assert_says(&said(&output), &["seed 3, block 0", "repeat: "]);
     assert!(place.read("out/summary.csv").contains(",fail,"));
     assert!(place.read("out/record.json").starts_with("{\"schema\":"));
-    assert_eq!(std::fs::read_dir(place.path().join("out")).expect("a folder").count(), 2);
+    assert!(place.read("out/report.html").contains("<h1>fail: "));
+    assert_eq!(std::fs::read_dir(place.path().join("out")).expect("a folder").count(), 3);
 }
 
 #[test]

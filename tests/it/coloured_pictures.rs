@@ -5,7 +5,7 @@ use trueflight::report::render as report;
 use crate::render::{ball, found, mistakes, rendered};
 
 /// A ball of constant σ_t in each channel.
-fn coloured() -> String {
+pub fn coloured() -> String {
     let channel = |extinction: f64| {
         let bounds = "bounds.sphere = { centre = [0, 0, 0], radius = 1 }";
         format!("{{ constant = {{ extinction = {extinction}, {bounds} }} }}")

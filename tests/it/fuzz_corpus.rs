@@ -68,7 +68,7 @@ fn findings_stay_mended() {
 
 #[test]
 fn spoilt_grid_files_are_read_or_refused() {
-    for (ending, share) in [("vol", 0.2), ("npy", 0.3)] {
+    for (ending, share) in [("vol", 0.1), ("npy", 0.2), ("vdb", 0.2)] {
         assert!(reads_or_refuses(ending, &good(ending)).is_some(), "{ending}");
         let [tried, read] = for_some_time(share, |seed| {
             let mut choices = Choices(seed ^ 0x5eed);

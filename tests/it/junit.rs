@@ -137,6 +137,7 @@ fn row(verdict: Verdict) -> Row {
         z: Some(9.0),
         p: None,
         gate: None,
+        path: Vec::new(),
         block: Some(3),
         verdict,
         reason: "off: \"<&>\" ]]> \u{1} \u{1b}[31m".into(),

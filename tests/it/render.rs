@@ -342,7 +342,9 @@ mod command {
         let said = String::from_utf8(output.stdout).expect("text");
         assert_eq!(output.status.code(), Some(0), "{said}");
         assert!(said.contains("are empty and cost nothing") && said.contains("RMSE"), "{said}");
-        for file in ["ball.png", "gallery.csv", "ball/reference.pfm", "ball/2-ratio.pfm"] {
+        for file in
+            ["ball.png", "gallery.csv", "report.html", "ball/reference.pfm", "ball/2-ratio.exr"]
+        {
             assert!(place.path().join("out/gallery").join(file).exists(), "{file}");
         }
         let output = run(place.path(), "render ball.toml --out ball.toml");

@@ -66,6 +66,9 @@ fn no_file_depends_on_the_threads() {
         let [one, three] = outs.each_ref().map(|(out, _)| file(out, name));
         assert!(one == three, "{name} depends on the threads");
     }
+    // The page has the time, too.
+    let (out, _) = &outs[0];
+    assert!(String::from_utf8_lossy(&file(out, "report.html")).contains("bounds hold</h1>"));
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! bench.csv        one row per experiment and channel: times, ratios, efficiencies
+//! report.html      all of it as a page
 //! CASE.error.csv   the measured error against draws, lookups and time, with what theory expects
 //! CASE.svg, .png   the same as a log-log plot
 //! ```
@@ -12,8 +13,8 @@ pub mod error_csv;
 pub mod plot;
 pub mod rows;
 
-use crate::bench::record::Bench;
-use crate::report::{Artifact, ReportError};
+use crate::bench::record::{Bench, BenchCase};
+use crate::report::{Artifact, ReportError, html};
 
 /// Every file of a bench.
 ///
@@ -21,11 +22,18 @@ use crate::report::{Artifact, ReportError};
 ///
 /// Where an encoder or a painter gives up.
 pub fn render(bench: &Bench) -> Result<Vec<Artifact>, ReportError> {
-    let mut artifacts = vec![Artifact::text("bench.csv", rows::csv(bench)?)];
-    for case in bench.cases.iter().filter(|case| case.rows.iter().any(|row| !row.curve.is_empty()))
-    {
+    let mut artifacts = vec![
+        Artifact::text("bench.csv", rows::csv(bench)?),
+        Artifact::text("report.html", html::bench::text(bench)?),
+    ];
+    for case in plotted(bench) {
         artifacts.push(error_csv::artifact(case)?);
         artifacts.extend(plot::artifacts(bench, case)?);
     }
     Ok(artifacts)
+}
+
+/// The cases whose errors are plotted.
+pub(super) fn plotted(bench: &Bench) -> impl Iterator<Item = &BenchCase> {
+    bench.cases.iter().filter(|case| case.rows.iter().any(|row| !row.curve.is_empty()))
 }

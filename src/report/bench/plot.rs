@@ -35,7 +35,8 @@ pub(super) fn artifacts(bench: &Bench, case: &BenchCase) -> Result<Vec<Artifact>
     plots::artifacts(&case.name, "", &figure(bench, case)?)
 }
 
-fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
+/// The figure of a case.
+pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
     let shown = case.rows.iter().filter(|row| row.is_shown);
     let labels = super::console::labels(case);
     let series: Vec<Series> = shown

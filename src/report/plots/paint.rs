@@ -11,7 +11,7 @@ use crate::report::plots::font::{FAMILY, Typeface};
 use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot};
 
 /// Backends take whole numbers: an SVG counts in tenths of a pixel.
-const SVG_UNITS: u32 = 10;
+pub const SVG_UNITS: u32 = 10;
 /// A PNG is drawn at three times the size and each 2 × 2 block averaged, which smooths edges.
 const PNG_UNITS: u32 = 3;
 

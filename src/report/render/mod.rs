@@ -1,36 +1,45 @@
-//! Rendered pictures as files: a sheet of all images with their errors, the images themselves as PFM,
-//! and a table.
+//! Rendered pictures as files: a sheet of all images with their errors, the images themselves as PFM and
+//! EXR, and a table.
 
 pub mod colour;
 pub mod palette;
-pub mod pfm;
 pub mod sheet;
 pub mod table;
 
 use std::path::PathBuf;
 
+use crate::files::{exr, pfm};
 use crate::render::PictureRecord;
 use crate::render::record::{Exposure, ExposureRecord};
 use crate::report::{Artifact, ReportError};
 
-/// The files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator.
+/// What the names of an EXR's channels of standard errors begin with.
+const ERROR: &str = "standard_error.";
+
+/// The files of a picture: `NAME.png`, and `NAME/` with the reference and the image of each estimator, as PFM and, with
+/// the standard error of each value in channels beside its own, as EXR.
 ///
 /// # Errors
 ///
-/// Where the sheet cannot be painted.
+/// Where the sheet cannot be painted or an image not be encoded.
 pub fn artifacts(record: &PictureRecord) -> Result<Vec<Artifact>, ReportError> {
     let wrong = |message| ReportError::Draw { figure: record.name.clone(), message };
     let png = sheet::png(record).map_err(wrong)?;
     let mut files =
         vec![Artifact { path: PathBuf::from(format!("{}.png", record.name)), bytes: png }];
-    let mut keep = |name: &str, image: &[f64]| {
-        let path = PathBuf::from(format!("{}/{name}.pfm", record.name));
-        files.push(Artifact { path, bytes: pfm::encode(record.size, record.channels, image) });
+    let mut keep = |name: &str, image: &[f64], errors: &[f64]| -> Result<(), ReportError> {
+        let path = |ending| PathBuf::from(format!("{}/{name}.{ending}", record.name));
+        let bytes = pfm::write(record.size, record.channels, image);
+        files.push(Artifact { path: path("pfm"), bytes });
+        let images = [("", image), (ERROR, errors)];
+        let bytes = exr::write(record.size, record.channels, &images).map_err(wrong)?;
+        files.push(Artifact { path: path("exr"), bytes });
+        Ok(())
     };
-    keep("reference", &record.reference.image);
+    keep("reference", &record.reference.image, &record.reference.errors)?;
     for (number, exposure) in (1..).zip(&record.exposures) {
-        if let Ok(Exposure { image, .. }) = &exposure.outcome {
-            keep(&format!("{number}-{}", plain(exposure)), image);
+        if let Ok(Exposure { image, errors, .. }) = &exposure.outcome {
+            keep(&format!("{number}-{}", plain(exposure)), image, errors)?;
         }
     }
     Ok(files)

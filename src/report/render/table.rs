@@ -37,7 +37,9 @@ struct Row<'a> {
 /// # Errors
 ///
 /// Where the encoder gives up.
-pub fn csv(records: &[PictureRecord]) -> Result<String, ReportError> {
+pub fn csv<'a>(
+    records: impl IntoIterator<Item = &'a PictureRecord>,
+) -> Result<String, ReportError> {
     let wrong = |source| ReportError::Csv { name: "gallery.csv".into(), source };
     let mut writer = csv::Writer::from_writer(Vec::new());
     for record in records {

@@ -1,6 +1,6 @@
 //! The stress test's table on the screen, as CSV and as JSON, and single precision as CSV and a plot.
 
-mod plot;
+pub(super) mod plot;
 
 use std::fmt::Write;
 
@@ -10,7 +10,7 @@ use crate::catalogue::digits::{count, exact, short};
 use crate::report::columns::table as csv;
 use crate::report::console::layout::{Column, Field, Grid, Paint, Pen, wrapped};
 use crate::report::plots;
-use crate::report::{Artifact, ReportError};
+use crate::report::{Artifact, ReportError, html};
 use crate::stress::narrow::{Along, Curve, DRAWS};
 use crate::stress::{Row, Stress};
 
@@ -251,6 +251,7 @@ pub fn artifacts(found: &Stress) -> Result<Vec<Artifact>, ReportError> {
         artifact("stress.csv", stress),
         artifact("stress.json", json(found)?),
         artifact("single-precision.csv", narrow),
+        artifact("report.html", html::stress::text(found)?),
     ];
     let sheet = plot::figure(&found.narrow.curves)?;
     all.extend(plots::artifacts(&format!("{FOLDER}/single-precision"), "", &sheet)?);

@@ -11,7 +11,7 @@ pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     let suffix = format!(".{ending}");
     let mut file = tempfile::Builder::new().suffix(&suffix).tempfile().expect("a file");
     file.write_all(bytes).expect("written");
-    match read(file.path()) {
+    match read(file.path(), None) {
         Ok(samples) => {
             let count = samples.size.iter().product::<usize>();
             assert!(count > 0 && count as u64 <= MOST_SAMPLES);
@@ -26,8 +26,11 @@ pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     }
 }
 
-/// A small `.vol` and a small `.npy` file, to be spoilt.
+/// A small `.vol`, `.npy` or `.vdb` file, to be spoilt.
 pub fn good(ending: &str) -> Vec<u8> {
+    if ending == "vdb" {
+        return include_bytes!("../../data/vdb/moved.vdb").to_vec();
+    }
     let values = [0.5f32, 1.0, 0.0, 2.0];
     let samples = values.iter().flat_map(|x| x.to_le_bytes());
     if ending == "vol" {

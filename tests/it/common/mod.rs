@@ -93,11 +93,16 @@ pub fn verdict(row: &Row) -> Verdict {
 }
 
 /// The field along a line or ray, from the lines that a case has under its problem.
-pub fn medium(text: &str) -> Medium {
+pub fn body(text: &str) -> Body {
     let faults = RefCell::default();
     let root = source("medium", text).parse(&faults);
     let body = Body::read(&Settings::new(&root, Path::new("tests/data"), &faults));
-    body.unwrap_or_else(|| panic!("{text}: {:?}", faults.borrow())).medium()
+    body.unwrap_or_else(|| panic!("{text}: {:?}", faults.borrow()))
+}
+
+/// The same as the ray sees it.
+pub fn medium(text: &str) -> Medium {
+    body(text).medium()
 }
 
 /// Every case file of the repository.

@@ -150,10 +150,16 @@ fn files_of_a_bench() {
     let artifacts = render(&bench()).expect("renders");
     let names: Vec<String> = artifacts.iter().map(|a| a.path.display().to_string()).collect();
     let case = |ending: &str| format!("bench/eq21-sweep.{ending}");
-    assert_eq!(names, ["bench.csv".to_owned(), case("error.csv"), case("svg"), case("png")]);
+    let [rows, page] = ["bench.csv", "report.html"].map(str::to_owned);
+    assert_eq!(names, [rows, page, case("error.csv"), case("svg"), case("png")]);
     for artifact in artifacts {
         if artifact.path.extension().is_some_and(|ending| ending == "png") {
             assert!(artifact.bytes.starts_with(b"\x89PNG\r\n\x1a\n"));
+        } else if artifact.path.extension().is_some_and(|ending| ending == "html") {
+            let page = String::from_utf8(artifact.bytes).expect("text");
+            assert!(
+                page.contains("Since baseline main") && page.contains("<symbol id=\"error-0\"")
+            );
         } else {
             compare(&artifact.path, &artifact.bytes);
         }

@@ -3,8 +3,8 @@
 use trueflight::baseline::LeftOut;
 use trueflight::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use trueflight::harness::record::{
-    Anatomy, CaseRecord, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint, Record,
-    Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
+    Anatomy, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint,
+    Record, Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
 };
 
 /// Made-up laws of variance and lookups against the sampling extinction.
@@ -91,6 +91,7 @@ fn gate_finding(verdict: Verdict, reason: &str, ln_e: f64) -> Finding {
             needed: (verdict == Verdict::Inconclusive).then_some(f64::INFINITY),
             is_decided: verdict == Verdict::Fail,
         }),
+        path: vec![[4096.0, -0.25], [131_072.0, 0.5], [262_144.0, ln_e]],
         block: Some(15),
         verdict,
         reason: reason.to_owned(),
@@ -106,6 +107,7 @@ fn failed_law(channel: &str) -> Finding {
         z: None,
         p: Some(1e-9),
         gate: None,
+        path: Vec::new(),
         block: None,
         ..gate_finding(Verdict::Fail, "the increments differ from theory: p = 1e-9", 0.0)
     }
@@ -119,7 +121,14 @@ fn refused(estimator: &str, swept: f64) -> Row {
         ..Row::default()
     };
     let reason = "the majorant is 0.9: below it the chance of a real collision would exceed 1";
-    judged(row, Verdict::Refused, reason)
+    let course = Course {
+        t: vec![0.0, 1.0, 2.0, 3.0],
+        extinction: vec![0.2, 0.9, 0.6, 0.1],
+        control: Vec::new(),
+        sampling: vec![swept; 4],
+        at: Some(1.0),
+    };
+    judged(Row { courses: vec![course], ..row }, Verdict::Refused, reason)
 }
 
 fn sweep() -> CaseRecord {

@@ -9,17 +9,19 @@
 //!
 //! One file is a stack, several are one pass each.
 
-mod exr;
 mod npy;
-mod pfm;
 
 use std::path::Path;
 
 use super::error::ImageError;
-use super::picture::{Picture, Stack};
+use super::picture::{Picture, Size, Stack};
+use crate::files::{Pixels, exr, pfm};
 
 /// The relative rounding of numbers of 24 bits.
 const SINGLE: f64 = 0.5 * f32::EPSILON as f64;
+
+/// The relative rounding of numbers of 11 bits.
+const HALF: f64 = 1.0 / 2048.0;
 
 /// Reads a picture.
 ///
@@ -30,8 +32,15 @@ pub fn picture(path: &Path) -> Result<Picture, ImageError> {
     let file = path.display().to_string();
     match ending(path).as_deref() {
         Some("npy") => npy::picture(path, &file),
-        Some("pfm") => pfm::picture(&bytes(path, &file)?, &file),
-        Some("exr") => exr::picture(bytes(path, &file)?, &file),
+        Some("pfm") => {
+            let cure = "write Pf or PF, columns, rows, -1 and all values as float32";
+            of_pixels(pfm::read(&bytes(path, &file)?), ["a pfm file", cure], file)
+        }
+        Some("exr") => {
+            let cure =
+                "give a whole file with one layer of R, G, B or Y as half or float, or npy or pfm";
+            of_pixels(exr::read(bytes(path, &file)?), ["an exr file", cure], file)
+        }
         _ => Err(ImageError::Format { file }),
     }
 }
@@ -69,6 +78,17 @@ pub fn stack(paths: &[impl AsRef<Path>]) -> Result<Stack, ImageError> {
 
 fn ending(path: &Path) -> Option<String> {
     Some(path.extension()?.to_str()?.to_ascii_lowercase())
+}
+
+fn of_pixels(
+    read: Result<Pixels, String>,
+    [what, cure]: [&'static str; 2],
+    file: String,
+) -> Result<Picture, ImageError> {
+    let pixels = read.map_err(|cause| ImageError::Faulty { file, what, cause, cure })?;
+    let Pixels { size: [columns, rows], channels, values, has_halves } = pixels;
+    let rounding = if has_halves { HALF } else { SINGLE };
+    Ok(Picture { rounding, ..Picture::new(Size { rows, columns, channels }, values)? })
 }
 
 fn bytes(path: &Path, file: &str) -> Result<Vec<u8>, ImageError> {

@@ -5,64 +5,69 @@
 //! 4 bytes a value                   little-endian where the scale is negative; rows from the BOTTOM
 //! ```
 //!
-//! The size of the scale has no agreed meaning; values are read as they stand.
+//! The size of the scale has no agreed meaning: values are read as they stand, and −1 is written.
 //!
 //! Source: P. Debevec, *PFM Portable `FloatMap` Image Format*.
 
-use super::SINGLE;
-use crate::files::npy::Word;
-use crate::judge::images::error::ImageError;
-use crate::judge::images::picture::{Picture, Size};
+use super::Pixels;
+use super::npy::Word;
 
-/// Reads a picture.
-pub(super) fn picture(bytes: &[u8], file: &str) -> Result<Picture, ImageError> {
-    let faulty = |cause: String| ImageError::Faulty {
-        file: file.to_owned(),
-        what: "a pfm file",
-        cause,
-        cure: "write Pf or PF, columns, rows, -1 and all values as float32",
-    };
+/// The bytes of an image of one or three channels whose rows come from the top.
+pub fn write([columns, rows]: [usize; 2], channels: usize, image: &[f64]) -> Vec<u8> {
+    let kind = if channels > 1 { "PF" } else { "Pf" };
+    let mut bytes = format!("{kind}\n{columns} {rows}\n-1.0\n").into_bytes();
+    for row in image.chunks_exact((columns * channels).max(1)).rev() {
+        #[expect(clippy::cast_possible_truncation)] // the format's precision
+        bytes.extend(row.iter().flat_map(|&x| (x as f32).to_le_bytes()));
+    }
+    bytes
+}
+
+/// Reads a map.
+///
+/// # Errors
+///
+/// What is wrong with it.
+pub fn read(bytes: &[u8]) -> Result<Pixels, String> {
     let mut at = 0;
     let mut word = || {
         let word = word(bytes, &mut at);
-        word.ok_or_else(|| faulty("its header is not of 4 words".to_owned()))
+        word.ok_or_else(|| "its header is not of 4 words".to_owned())
     };
     let channels = match word()? {
         "Pf" => 1,
         "PF" => 3,
-        other => return Err(faulty(format!("it begins with `{other}`"))),
+        other => return Err(format!("it begins with `{other}`")),
     };
     let mut number = || {
         let word = word()?;
-        word.parse::<f64>().map_err(|_| faulty(format!("`{word}` in its header is not a number")))
+        word.parse::<f64>().map_err(|_| format!("`{word}` in its header is not a number"))
     };
     let [columns, rows, scale] = [number()?, number()?, number()?];
     let length = |x: f64| {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked first
         let length =
             (x >= 1.0 && x <= f64::from(u32::MAX) && x.fract() == 0.0).then_some(x as usize);
-        length.ok_or_else(|| faulty(format!("{x} is no number of rows or columns")))
+        length.ok_or_else(|| format!("{x} is no number of rows or columns"))
     };
-    let size = Size { rows: length(rows)?, columns: length(columns)?, channels };
+    let (rows, columns) = (length(rows)?, length(columns)?);
     if scale == 0.0 || !scale.is_finite() {
-        return Err(faulty(format!("its scale is {scale}, whose sign tells no byte order")));
+        return Err(format!("its scale is {scale}, whose sign tells no byte order"));
     }
     let values = bytes.get(at..).unwrap_or_default();
-    let count =
-        size.rows.checked_mul(size.columns).and_then(|pixels| pixels.checked_mul(4 * channels));
+    let count = rows.checked_mul(columns).and_then(|pixels| pixels.checked_mul(4 * channels));
     if Some(values.len()) != count {
-        let (found, Size { rows, columns, .. }) = (values.len(), size);
-        let cause = format!(
+        let found = values.len();
+        return Err(format!(
             "{found} bytes follow its header, not 4 for each of {channels} value(s) of {columns} × {rows} pixels"
-        );
-        return Err(faulty(cause));
+        ));
     }
     let word = if scale < 0.0 { Word::LittleSingle } else { Word::BigSingle };
-    let mut numbers = Vec::with_capacity(size.values());
-    for row in values.chunks_exact(4 * size.columns * channels).rev() {
+    let mut numbers = Vec::with_capacity(values.len() / 4);
+    for row in values.chunks_exact(4 * columns * channels).rev() {
         word.convert(row, &mut numbers);
     }
-    Ok(Picture { rounding: SINGLE, ..Picture::new(size, numbers)? })
+    Ok(Pixels { size: [columns, rows], channels, values: numbers, has_halves: false })
 }
 
 /// The next word of the header, of which no program writes longer ones than 64 bytes.
@@ -85,11 +90,23 @@ mod tests {
         let big = low.iter().chain(&high).flat_map(|x| x.to_be_bytes());
         let little: Vec<u8> = b"Pf\n2 2\n-1.0\n".iter().copied().chain(little).collect();
         let big: Vec<u8> = b"Pf 2 2 1e0\n".iter().copied().chain(big).collect();
+        assert_eq!(little, write([2, 2], 1, &[3.0, -0.5, 1.0, 2.0]));
         for bytes in [little, big] {
-            let picture = picture(&bytes, "x.pfm").expect("a picture");
-            assert_eq!(picture.values(), [3.0, -0.5, 1.0, 2.0]);
-            assert_eq!(picture.size(), Size { rows: 2, columns: 2, channels: 1 });
+            let picture = read(&bytes).expect("a picture");
+            assert_eq!(picture.values, [3.0, -0.5, 1.0, 2.0]);
+            assert_eq!((picture.size, picture.channels), ([2, 2], 1));
         }
+    }
+
+    #[test]
+    fn a_coloured_pixel_has_three_values() {
+        let image = [1.0, 2.0, 3.0, -0.5, 1.0, 1.0];
+        let bytes = write([1, 2], 3, &image);
+        assert_eq!(bytes[..12], *b"PF\n1 2\n-1.0\n");
+        // The lower row, which begins with −0.5 = 0xBF000000, comes first; then 1 = 0x3F800000, 2, 3.
+        assert_eq!([&bytes[12..16], &bytes[24..28]], [[0, 0, 0, 0xBF], [0, 0, 0x80, 0x3F]]);
+        let picture = read(&bytes).expect("a picture");
+        assert_eq!((picture.size, picture.channels, &picture.values[..]), ([1, 2], 3, &image[..]));
     }
 
     #[test]
@@ -106,8 +123,8 @@ mod tests {
             (b"Pf\n1 1\n-1\n12345", "5 bytes follow"),
             (b"PF\n4000000000 4000000000\n-1\n1234", "4 bytes follow"),
         ] {
-            let error = picture(bytes, "x.pfm").expect_err("no picture").to_string();
-            assert!(error.starts_with("x.pfm: ") && error.contains(words), "{error}");
+            let error = read(bytes).expect_err("no picture");
+            assert!(error.contains(words), "{error}");
         }
     }
 }

@@ -1,0 +1,156 @@
+//! The header of a file, what stands before each grid, and a grid's own beginning.
+
+use super::bytes::Bytes;
+use super::transform::Transform;
+use super::{Fault, damaged, wrong};
+
+/// The versions whose layout is this one.
+const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
+
+/// The type of a grid of floats; one of halves has a suffix.
+const FLOATS: &str = "Tree_float_5_4_3";
+const HALVES: &str = "_HalfFloat";
+
+/// What stands before each grid.
+pub(super) struct Entry {
+    /// Its name, with the number of those of one name that `OpenVDB` adds to it.
+    pub(super) key: String,
+    pub(super) kind: String,
+    /// The key of the grid whose tree it shares, or nothing.
+    pub(super) parent: String,
+    /// Where it begins, its blocks begin and it ends: one after the other, and after what stands before the grid.
+    pub(super) places: [usize; 3],
+}
+
+impl Entry {
+    pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
+        let [key, kind, parent] = [bytes.text()?, bytes.text()?, bytes.text()?];
+        let [begin, blocks, end] = [bytes.word()?, bytes.word()?, bytes.word()?];
+        if end > bytes.len() as u64 {
+            let (name, length) = (shown(&key), bytes.len());
+            return damaged(format!("it ends at byte {length}, and its grid {name} at byte {end}"));
+        }
+        // A grid without a tree of its own has no blocks.
+        let blocks = if parent.is_empty() { blocks } else { end };
+        let parts = [bytes.at() as u64, begin, blocks, end];
+        if !parts.is_sorted() {
+            return damaged(format!(
+                "the parts of its grid {} are not one after the other",
+                shown(&key)
+            ));
+        }
+        // None is beyond the file.
+        let places = [begin, blocks, end].map(|place| usize::try_from(place).unwrap_or(usize::MAX));
+        Ok(Self { key, kind, parent, places })
+    }
+
+    /// The name that a reader of the file knows it by: `density`, or `density[1]` where there are several of a name.
+    pub(super) fn name(&self) -> String {
+        match self.key.split_once('\x1e') {
+            Some((name, number)) => format!("{name}[{number}]"),
+            None => self.key.clone(),
+        }
+    }
+
+    /// Whether its type is that of floats.
+    pub(super) fn has_floats(&self) -> bool {
+        self.kind.strip_suffix(HALVES).unwrap_or(&self.kind) == FLOATS
+    }
+
+    /// Whether its floats are stored as halves.
+    pub(super) fn has_halves(&self) -> bool {
+        self.kind.ends_with(HALVES)
+    }
+
+    /// Its name as a list of grids shows it, with the type where that is none of floats.
+    pub(super) fn shown(&self) -> String {
+        let name = shown(&self.name());
+        if self.has_floats() { name } else { format!("{name} ({})", shown(&self.kind)) }
+    }
+}
+
+/// A text of the file as a message can show it.
+pub(super) fn shown(text: &str) -> String {
+    let short: String = text.chars().take(48).collect();
+    let rest = if short.len() < text.len() { "…" } else { "" };
+    format!("\"{}{rest}\"", short.escape_debug())
+}
+
+/// The header, and what stands before each grid.
+pub(super) fn entries(bytes: &mut Bytes) -> Result<Vec<Entry>, Fault> {
+    if !matches!(bytes.take(8), Ok(b" BDV\0\0\0\0")) {
+        return wrong("it does not begin as OpenVDB's files do", "write it by OpenVDB");
+    }
+    let version = bytes.number()?;
+    if !VERSIONS.contains(&version) {
+        let (from, to) = (VERSIONS.start(), VERSIONS.end());
+        return wrong(
+            format!("it has the version {version}"),
+            format!("versions {from} to {to} are read: write it anew by OpenVDB 10"),
+        );
+    }
+    bytes.take(8)?;
+    match bytes.byte()? {
+        0 => {
+            let help = "write it into a file, by openvdb.write or openvdb::io::File";
+            return wrong("it was written as a stream: it does not say where grids begin", help);
+        }
+        1 => {}
+        other => {
+            return damaged(format!("its offsets are marked {other}, which is neither 0 nor 1"));
+        }
+    }
+    bytes.take(36)?;
+    metadata(bytes, |_, _, _| Ok(()))?;
+    let mut entries = Vec::new();
+    for _ in 0..bytes.number()? {
+        let entry = Entry::read(bytes)?;
+        bytes.seek(entry.places[2]);
+        entries.push(entry);
+    }
+    if entries.is_empty() {
+        return wrong("it has no grid", "write one into it");
+    }
+    Ok(entries)
+}
+
+/// Reads names, types and values.
+fn metadata(
+    bytes: &mut Bytes,
+    mut tell: impl FnMut(&str, &str, &[u8]) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    for _ in 0..bytes.number()? {
+        let [name, kind] = [bytes.text()?, bytes.text()?];
+        let length = bytes.number()? as usize;
+        tell(&name, &kind, bytes.take(length)?)?;
+    }
+    Ok(())
+}
+
+/// A grid's own beginning: how it is packed, what its metadata say, and its transform.
+pub(super) struct Head {
+    pub(super) compression: u32,
+    pub(super) class: String,
+    /// How many voxels are active.
+    pub(super) voxels: Option<u64>,
+    pub(super) transform: Transform,
+}
+
+impl Head {
+    pub(super) fn read(bytes: &mut Bytes, entry: &Entry) -> Result<Self, Fault> {
+        bytes.seek(entry.places[0]);
+        let compression = bytes.number()?;
+        let (mut class, mut voxels) = (String::new(), None);
+        metadata(bytes, |name, kind, value| {
+            match (name, kind) {
+                ("class", "string") => class = String::from_utf8_lossy(value).into_owned(),
+                ("file_voxel_count", "int64") => {
+                    voxels = value.try_into().ok().map(u64::from_le_bytes);
+                }
+                _ => {}
+            }
+            Ok(())
+        })?;
+        Ok(Self { compression, class, voxels, transform: Transform::read(bytes)? })
+    }
+}

@@ -1,0 +1,128 @@
+//! `OpenVDB`'s files: sparse grids of floats, by name.
+//!
+//! ```text
+//! magic " BDV" and 4 zeros, version, library (2 u32), whether grids have offsets (1 byte), UUID (36 bytes),
+//! metadata, number of grids; then for each grid
+//!   its name, its type, the name of the grid whose tree it shares, where it begins, its blocks begin and it ends;
+//!   compression, metadata, transform, topology of the tree; then the blocks: the values of its leaves
+//! ```
+//!
+//! All numbers are little-endian; a text is its length (u32) and its bytes. Read are versions 222 to 224 (`OpenVDB` 10
+//! writes the last; this layout is that of all three), grids of the type `Tree_float_5_4_3`, their numbers as float32 or float16, packed by
+//! every scheme that the library writes: none, zip, Blosc with LZ4, with and without the mask of active values.
+//! Transforms are those along the axes: scales and translations.
+//!
+//! No count that the file announces is trusted: memory is asked for as bytes are read, and places that the file
+//! names must be those where its parts end.
+//!
+//! Source: K. Museth, *VDB: High-Resolution Sparse Volumes with Dynamic Topology*, ACM Transactions on Graphics 32
+//! (2013), for the tree; the layout is that of `openvdb/io` and `openvdb/tree` in `OpenVDB` 10.
+
+mod blosc;
+mod bytes;
+mod header;
+mod packing;
+mod transform;
+mod tree;
+
+use bytes::Bytes;
+use header::{Entry, Head, shown};
+use packing::Packing;
+pub use transform::Transform;
+pub use tree::{LEAF, Leaf, Tile, Tree};
+
+/// A grid of floats.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// Its name.
+    pub name: String,
+    /// Its class by its metadata, such as `fog volume` or `level set`; empty where none is said.
+    pub class: String,
+    /// Where its voxels stand.
+    pub transform: Transform,
+    /// Its voxels.
+    pub tree: Tree,
+}
+
+/// What is wrong with a file, and what would be right.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
+    Err(Fault { message: message.into(), help: help.into() })
+}
+
+/// What only a damaged file says.
+fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
+    wrong(message, "the file is damaged: write it anew")
+}
+
+/// Reads the grid of a name; without one, the file's only grid of floats.
+///
+/// # Errors
+///
+/// Whatever keeps the file from being one of the kind that is described above, with such a grid.
+pub fn read(file: &[u8], name: Option<&str>) -> Result<Grid, Fault> {
+    let mut bytes = Bytes::new(file);
+    let entries = header::entries(&mut bytes)?;
+    let list = || entries.iter().map(Entry::shown).take(20).collect::<Vec<_>>().join(", ");
+    let entry = match name {
+        Some(name) => entries.iter().find(|entry| entry.name() == name),
+        None => match entries.iter().filter(|entry| entry.has_floats()).collect::<Vec<_>>()[..] {
+            [] => return wrong(format!("it has no grid of floats, but {}", list()), CONVERT),
+            [only] => Some(only),
+            _ => {
+                return wrong(
+                    format!("it has several grids: {}", list()),
+                    "choose one: `grid = \"…\"`",
+                );
+            }
+        },
+    };
+    let Some(entry) = entry else {
+        let message = format!("it has no grid {}, but {}", shown(name.unwrap_or_default()), list());
+        return wrong(message, "choose one of its grids of floats");
+    };
+    if !entry.has_floats() {
+        let message =
+            format!("its grid {} has the type {}", shown(&entry.name()), shown(&entry.kind));
+        return wrong(message, CONVERT);
+    }
+    grid(&mut bytes, entry, &entries)
+}
+
+const CONVERT: &str = "a grid of the type Tree_float_5_4_3 is read: OpenVDB's FloatGrid";
+
+fn grid(bytes: &mut Bytes, entry: &Entry, entries: &[Entry]) -> Result<Grid, Fault> {
+    let own = Head::read(bytes, entry)?;
+    // A grid that shares its tree has a transform and no more.
+    let (head, owner) = if entry.parent.is_empty() {
+        (None, entry)
+    } else {
+        let owner = entries.iter().find(|other| other.key == entry.parent && other.has_floats());
+        let Some(owner) = owner.filter(|owner| owner.parent.is_empty()) else {
+            return damaged(format!(
+                "it has no grid {}, whose tree is shared",
+                shown(&entry.parent)
+            ));
+        };
+        (Some(Head::read(bytes, owner)?), owner)
+    };
+    let head = head.as_ref().unwrap_or(&own);
+    let packing = Packing::new(head.compression, owner.has_halves())?;
+    let tree = Tree::read(bytes, packing, owner.places)?;
+    if let Some(voxels) = head.voxels.filter(|&voxels| voxels != tree.active) {
+        let message =
+            format!("{voxels} voxels are announced to be active, and {} are", tree.active);
+        return wrong(
+            message,
+            "the file is damaged, or its `file_voxel_count` is another grid's: write it anew",
+        );
+    }
+    Ok(Grid { name: entry.name(), class: own.class, transform: own.transform, tree })
+}

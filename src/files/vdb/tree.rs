@@ -1,0 +1,205 @@
+//! The tree of a grid: tiles of one value, and leaves of 8³ voxels.
+//!
+//! ```text
+//! root      background (f32), numbers of tiles and of children (2 u32)
+//!           a tile: origin (3 i32), value (f32), whether it is active (1 byte); a child: origin, and
+//! 32³ of 128³ voxels    mask of children, mask of active values, values; then its children
+//! 16³ of 8³ voxels      the same
+//! leaf      mask of active values; among the blocks, in the same order, that mask and its values
+//! ```
+//!
+//! Within a node z is fastest, then y, then x. Two trees of nodes at the same place are refused.
+
+use std::collections::BTreeSet;
+
+use super::bytes::Bytes;
+use super::packing::{Packing, count_on, is_on};
+use super::{Fault, damaged, wrong};
+
+/// How many voxels a leaf has along each axis.
+pub const LEAF: i32 = 8;
+
+/// How many voxels may be in tiles that are so many.
+const MOST_VOXELS: u64 = 1 << 27;
+const MOST_TILES: usize = 1 << 12;
+
+/// Bytes of a leaf's mask.
+const MASK: usize = 64;
+
+/// The edges of tiles, in voxels: of the root, of its children and of theirs.
+const EDGES: [i32; 3] = [4096, 128, LEAF];
+
+/// A cube of one value.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tile {
+    /// Its lowest corner.
+    pub origin: [i32; 3],
+    /// Voxels along each axis.
+    pub edge: i32,
+    /// The value of all of them, active or not.
+    pub value: f32,
+}
+
+/// A cube of 8³ voxels.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leaf {
+    /// Its lowest corner.
+    pub origin: [i32; 3],
+    /// The value of each voxel, active or not: z fastest, then y, then x.
+    pub values: Vec<f32>,
+}
+
+/// All that a grid holds: what is neither tile nor leaf is background.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tree {
+    /// The value elsewhere.
+    pub background: f32,
+    /// Tiles of other values.
+    pub tiles: Vec<Tile>,
+    /// Leaves.
+    pub leaves: Vec<Leaf>,
+    /// How many voxels are active.
+    pub active: u64,
+}
+
+impl Tree {
+    /// Reads topology and blocks, which begin and end at the last two places.
+    pub(super) fn read(
+        bytes: &mut Bytes,
+        packing: Packing,
+        [_, blocks, end]: [usize; 3],
+    ) -> Result<Self, Fault> {
+        let buffers = bytes.number()?;
+        if buffers != 1 {
+            return damaged(format!("its tree has {buffers} buffers instead of one"));
+        }
+        let background = bytes.float()?;
+        let (tiles, leaves) = (Vec::new(), Vec::new());
+        let tree = Self { background, tiles, leaves, active: 0 };
+        let mut reader = Reader { bytes, packing, tree, masks: Vec::new(), filled: 0 };
+        reader.root()?;
+        if reader.bytes.at() != blocks {
+            return damaged("the topology of its tree does not end where its values begin");
+        }
+        reader.blocks()?;
+        if reader.bytes.at() != end {
+            return damaged("the values of its tree do not end where its grid does");
+        }
+        Ok(reader.tree)
+    }
+}
+
+struct Reader<'a, 'b> {
+    bytes: &'b mut Bytes<'a>,
+    packing: Packing,
+    tree: Tree,
+    /// The masks of the leaves.
+    masks: Vec<&'a [u8]>,
+    /// How many voxels the tiles of other values than the background have.
+    filled: u64,
+}
+
+impl Reader<'_, '_> {
+    fn root(&mut self) -> Result<(), Fault> {
+        let (tiles, children) = (self.bytes.number()?, self.bytes.number()?);
+        let mut origins = BTreeSet::new();
+        let mut new = |origin: [i32; 3]| {
+            if origin.iter().all(|x| x % EDGES[0] == 0) && origins.insert(origin) {
+                return Ok(origin);
+            }
+            damaged(format!("a node of its tree has its origin at {origin:?}"))
+        };
+        for _ in 0..tiles {
+            let origin = new(self.bytes.point()?)?;
+            let value = self.bytes.float()?;
+            let is_active = self.bytes.byte()?;
+            self.tile(Tile { origin, edge: EDGES[0], value }, is_active != 0)?;
+        }
+        for _ in 0..children {
+            let origin = new(self.bytes.point()?)?;
+            self.node::<5>(1, origin)?;
+        }
+        Ok(())
+    }
+
+    /// A node of `2^LOG` tiles or children along each axis, whose edge is that of the level.
+    fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Fault> {
+        let size = 1 << (3 * LOG);
+        let children = self.bytes.take(size / 8)?;
+        let active = self.bytes.take(size / 8)?;
+        let values = self.packing.values(self.bytes, active, self.tree.background)?;
+        let edge = EDGES[level];
+        let place = |at: usize| -> [i32; 3] {
+            let axis = |j: usize| at >> (LOG * (2 - j)) & ((1 << LOG) - 1);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // below 32
+            std::array::from_fn(|j| origin[j] + axis(j) as i32 * edge)
+        };
+        for (at, value) in values.into_iter().enumerate() {
+            if !is_on(children, at) {
+                self.tile(Tile { origin: place(at), edge, value }, is_on(active, at))?;
+            }
+        }
+        for at in (0..size).filter(|&at| is_on(children, at)) {
+            if level == 1 {
+                self.node::<4>(2, place(at))?;
+            } else {
+                let mask = self.bytes.take(MASK)?;
+                self.tree.active += count_on(mask) as u64;
+                self.masks.push(mask);
+                self.tree.leaves.push(Leaf { origin: place(at), values: Vec::new() });
+            }
+        }
+        Ok(())
+    }
+
+    /// Tiles do not overlap: many of them with more voxels than any medium may have are not kept, for a small file may have
+    /// very many. Of few, whoever makes a medium of them says how large it would be.
+    fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
+        let voxels = u64::from(tile.edge.unsigned_abs()).pow(3);
+        if is_active {
+            self.tree.active = self.tree.active.saturating_add(voxels);
+        }
+        if tile.value != self.tree.background {
+            self.filled = self.filled.saturating_add(voxels);
+            if self.filled > MOST_VOXELS && self.tree.tiles.len() > MOST_TILES {
+                let message = format!("its tiles fill more than {MOST_VOXELS} voxels");
+                return wrong(
+                    message,
+                    "sample it more coarsely, or cut it to the part that is needed",
+                );
+            }
+            self.tree.tiles.push(tile);
+        }
+        Ok(())
+    }
+
+    fn blocks(&mut self) -> Result<(), Fault> {
+        for (leaf, known) in self.tree.leaves.iter_mut().zip(&self.masks) {
+            let mask = self.bytes.take(known.len())?;
+            if mask != *known {
+                return damaged(format!("the leaf at {:?} has two masks that differ", leaf.origin));
+            }
+            leaf.values = self.packing.values(self.bytes, mask, self.tree.background)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tiles_are_refused_while_they_take_little_memory() {
+        // 5000 tiles of 4096³ voxels at the root: more than any medium has, and more than are worth to be kept.
+        let mut bytes = [1_u32.to_le_bytes(), 0.0_f32.to_le_bytes()].concat();
+        bytes.extend([5000_u32.to_le_bytes(), 0_u32.to_le_bytes()].concat());
+        for at in 0..5000_i32 {
+            let origin = [at * EDGES[0], 0, 0].map(i32::to_le_bytes).concat();
+            bytes.extend([&origin[..], &1.0_f32.to_le_bytes(), &[1]].concat());
+        }
+        let packing = Packing::new(0, false).expect("a packing");
+        let fault = Tree::read(&mut Bytes::new(&bytes), packing, [0, bytes.len(), bytes.len()]);
+        assert!(fault.is_err_and(|fault| fault.message.contains("tiles fill more than")));
+    }
+}

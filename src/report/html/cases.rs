@@ -1,0 +1,41 @@
+//! The cases: what each comes to, what it could have seen, and its plots.
+
+use maud::{Markup, html};
+
+use super::plots::Plot;
+use super::words;
+use crate::catalogue::digits::range;
+use crate::harness::record::{CaseRecord, Record};
+use crate::report::totals;
+
+/// A line for each case; those with plots open.
+pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
+    let cases = &record.results.cases;
+    html! {
+        section aria-labelledby="cases" {
+            h2 #cases { "Cases" }
+            p.quiet { "Each opens to its title, what it could have seen, and its plots." }
+            div.cases { @for (case, plots) in cases.iter().zip(plots) {
+                details.case {
+                    summary { b { (case.name) } " " span.quiet { (totals::words(case)) } }
+                    p { (case.title) }
+                    dl.facts { @for (name, value) in facts(case) { div { dt { (name) } dd { (value) } } } }
+                    @for plot in plots { (plot.show()) }
+                }
+            } }
+        }
+    }
+}
+
+fn facts(case: &CaseRecord) -> Vec<(&'static str, String)> {
+    let mut facts = vec![
+        ("Problem", case.problem.clone()),
+        ("Medium", case.medium.clone()),
+        ("File", case.path.clone()),
+        ("Draws", totals::draws(case)),
+        ("Visible bias", case.visible_bias.filter(words::is_known).map(range).unwrap_or_default()),
+        ("Time to verdict, in units of 17 V/ε² draws", words::number(case.pace, 3)),
+    ];
+    facts.retain(|(_, value)| !value.is_empty() && value != words::UNKNOWN);
+    facts
+}

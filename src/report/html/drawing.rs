@@ -1,0 +1,160 @@
+//! A sheet as the shapes of an SVG in few bytes: what follows each other in one look is one path, from point to
+//! point by whole tenths of a pixel.
+
+use std::fmt::Write;
+
+use maud::{Markup, html};
+use plotters::style::RGBAColor;
+
+use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot};
+
+/// Units of a pixel.
+const UNITS: f64 = 10.0;
+/// No coordinate is farther from the sheet's corner, in units.
+const FARTHEST: f64 = 1e6;
+/// What puts the middle of small letters on a line, in sizes of the em.
+const HALF_A_LETTER: f64 = 0.27;
+
+/// How a path is drawn.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    /// As a line of this width.
+    Line(i64, RGBAColor),
+    /// Filled.
+    Fill(RGBAColor),
+    /// As dots of this width.
+    Dots(i64, RGBAColor),
+}
+
+/// The view of a sheet, for the element about its shapes.
+pub fn view(sheet: &Sheet) -> String {
+    format!("0 0 {} {}", unit(sheet.width), unit(sheet.height))
+}
+
+/// The shapes, for an element with `fill="none"`: words above all others.
+pub fn shapes(sheet: &Sheet) -> Markup {
+    let mut open: Option<(Look, String)> = None;
+    let mut all = Vec::new();
+    let mut add = |look: Look, points: &[Spot]| {
+        let is_same = open.as_ref().is_some_and(|(other, _)| *other == look);
+        if !is_same {
+            all.extend(open.take().map(|(look, way)| path(look, &way)));
+        }
+        let (_, all) = open.get_or_insert_with(|| (look, String::new()));
+        *all += &way(points.iter().map(|point| point.map(unit)));
+        if matches!(look, Look::Fill(_)) {
+            all.push('z');
+        }
+    };
+    let mut texts = Vec::new();
+    for shape in &sheet.shapes {
+        match shape {
+            Shape::Path { points, width, colour } => {
+                add(Look::Line(unit(*width).max(1), *colour), points);
+            }
+            Shape::Area { points, colour } => add(Look::Fill(*colour), points),
+            Shape::Disc { at, radius, colour } => {
+                add(Look::Dots(unit(2.0 * radius), *colour), &[*at]);
+            }
+            Shape::Image(image) => pixels(image, |corners, colour| {
+                add(Look::Fill(colour), &corners);
+            }),
+            Shape::Text(label) => texts.push(text(label)),
+        }
+    }
+    all.extend(open.map(|(look, way)| path(look, &way)));
+    html! { @for path in all { (path) } @for text in texts { (text) } }
+}
+
+/// The way through points in the words of an SVG path; a single one has a length of nothing.
+pub fn way(points: impl IntoIterator<Item = [i64; 2]>) -> String {
+    let mut way = String::new();
+    let mut last: Option<[i64; 2]> = None;
+    for [x, y] in points {
+        // Writing to a string cannot fail.
+        let _ = match last {
+            None => write!(way, "M{x} {y}l"),
+            Some(last) if last == [x, y] => continue,
+            Some([x0, y0]) => {
+                let parted = if way.ends_with('l') || x < x0 { "" } else { " " };
+                let between = if y < y0 { "" } else { " " };
+                write!(way, "{parted}{}{between}{}", x - x0, y - y0)
+            }
+        };
+        last = Some([x, y]);
+    }
+    if way.ends_with('l') {
+        way.push_str("0 0");
+    }
+    way
+}
+
+fn path(look: Look, way: &str) -> Markup {
+    match look {
+        Look::Fill(colour) => {
+            html! { path fill=(hue(colour)) fill-opacity=[part(colour)] d=(way) {} }
+        }
+        Look::Line(width, colour) => html! {
+            path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width) d=(way) {}
+        },
+        Look::Dots(width, colour) => html! {
+            path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width)
+                stroke-linecap="round" d=(way) {}
+        },
+    }
+}
+
+fn text(label: &Label) -> Markup {
+    let anchor = match label.align {
+        Align::Start => None,
+        Align::Middle => Some("middle"),
+        Align::End => Some("end"),
+    };
+    let lower = HALF_A_LETTER * label.size;
+    let [x, y] = label.at;
+    let [x, y] = if label.upward { [x + lower, y] } else { [x, y + lower] }.map(unit);
+    let turn = label.upward.then(|| format!("rotate(270 {x} {y})"));
+    html! {
+        text x=(x) y=(y) text-anchor=[anchor] font-size=(unit(label.size)) fill=(hue(label.colour)) transform=[turn] {
+            (label.text)
+        }
+    }
+}
+
+/// Every pixel as a rectangle.
+fn pixels(image: &Image, mut show: impl FnMut([Spot; 4], RGBAColor)) {
+    let rows = image.pixels.len() / image.columns.max(1);
+    let corner = |column: usize, row: usize| {
+        let share = [column as f64 / image.columns as f64, row as f64 / rows as f64];
+        [0, 1].map(|i| image.at[i] + image.size[i] * share[i])
+    };
+    for (i, &[red, green, blue]) in image.pixels.iter().enumerate() {
+        let (column, row) = (i % image.columns, i / image.columns);
+        let places = [(0, 0), (1, 0), (1, 1), (0, 1)];
+        let corners = places.map(|(right, down)| corner(column + right, row + down));
+        show(corners, RGBAColor(red, green, blue, 1.0));
+    }
+}
+
+/// A colour, in three digits where they do.
+fn hue(RGBAColor(red, green, blue, _): RGBAColor) -> String {
+    let digits = [red, green, blue];
+    if digits.iter().all(|digit| digit % 17 == 0) {
+        let [red, green, blue] = digits.map(|digit| digit / 17);
+        format!("#{red:x}{green:x}{blue:x}")
+    } else {
+        format!("#{red:02x}{green:02x}{blue:02x}")
+    }
+}
+
+/// How much it covers, where not all.
+fn part(RGBAColor(.., alpha): RGBAColor) -> Option<String> {
+    (alpha < 1.0).then(|| format!("{alpha:.2}"))
+}
+
+fn unit(length: f64) -> i64 {
+    // What is not a number is at the corner; figures clip to their panels long before.
+    #[expect(clippy::cast_possible_truncation)]
+    let whole = (length * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
+    whole
+}

@@ -1,0 +1,279 @@
+//! `report.html`: whole, safe, small, and the same from a stored record.
+
+mod command;
+mod page;
+
+use std::collections::BTreeSet;
+
+use trueflight::harness::record::{Record, Row, Verdict};
+use trueflight::harness::{Case, Plan, suite, verdict};
+use trueflight::report::{html, record_json};
+
+use crate::common::{options, shipped_record};
+use crate::golden::record::record;
+use page::{Element, elements};
+
+/// What somebody might write into a case.
+const HOSTILE: &str = "</title><script>alert(1)</script><img src=x onerror=alert(2)>\"' &amp; ]]>";
+
+fn text(record: &Record) -> String {
+    html::text(record).expect("renders")
+}
+
+fn all<'a>(elements: &'a [Element], name: &str) -> Vec<&'a Element> {
+    elements.iter().filter(|element| element.name == name).collect()
+}
+
+/// The built-in suite, drawn little, with the lines of its plots.
+fn built_in() -> Record {
+    let sources = suite::suite();
+    let cases: Vec<Case> =
+        sources.iter().map(|source| Case::read(source).expect("a case")).collect();
+    let mut record = shipped_record().clone();
+    let of_name = |case: &Case| {
+        let found = record.results.cases.iter().find(|found| found.name == case.name);
+        found.expect("the suite is among the shipped cases").clone()
+    };
+    record.results.cases = cases.iter().map(of_name).collect();
+    verdict::add_curves(&Plan::new(&cases, &options(1, 16_384)), &mut record);
+    record
+}
+
+/// What holds for every page.
+fn assert_whole(html: &str, record: &Record) {
+    let elements = elements(html);
+    let ids: Vec<&str> =
+        elements.iter().filter_map(|one| one.attributes.get("id")).map(String::as_str).collect();
+    let distinct: BTreeSet<&str> = ids.iter().copied().collect();
+    assert_eq!(ids.len(), distinct.len(), "an id stands twice");
+    for element in &elements {
+        for (name, value) in &element.attributes {
+            assert!(!name.starts_with("on") && name != "src", "{name} of {}", element.name);
+            let target = match name.as_str() {
+                "href" => value.strip_prefix('#').expect("a place on the page"),
+                "aria-labelledby" => value,
+                _ => continue,
+            };
+            assert!(distinct.contains(target), "{target} is nowhere");
+        }
+    }
+    assert!(!html.contains("://") && !html.contains("url(") && !html.contains("@import"));
+    assert_eq!(all(&elements, "script").len(), 1);
+    let bodies: Vec<&Element> = all(&elements, "tbody");
+    let experiments: Vec<_> =
+        bodies.iter().filter(|body| body.attributes.contains_key("data-verdict")).collect();
+    let rows =
+        record.results.cases.iter().flat_map(|case| case.rows.iter().map(move |row| (case, row)));
+    let rows: Vec<_> = rows.collect();
+    assert_eq!(experiments.len(), rows.len());
+    for (body, (case, row)) in experiments.iter().zip(rows) {
+        for word in [&case.name, &row.estimator, &row.channel, &row.reason, &row.command] {
+            assert!(body.text.contains(word.as_str()), "{word} is not in {}", body.text);
+        }
+        let word = row.verdict.map_or("undecided", Verdict::word);
+        assert_eq!(body.attributes["data-verdict"], word);
+    }
+    for case in &record.results.cases {
+        let shown = all(&elements, "details").iter().any(|one| one.text.contains(&case.title));
+        assert!(shown, "{}", case.title);
+    }
+}
+
+#[test]
+fn a_page_is_well_formed_and_has_every_experiment() {
+    let record = record();
+    assert_whole(&text(&record), &record);
+}
+
+/// Two pages are the same, or the panic shows where they part.
+fn assert_same(one: &str, other: &str) {
+    if let Some((line, pair)) =
+        one.split('>').zip(other.split('>')).enumerate().find(|(_, (a, b))| a != b)
+    {
+        panic!("they part at tag {line}: {pair:?}");
+    }
+    assert_eq!(one.len(), other.len());
+}
+
+/// The record as it is read back from its file.
+fn read_back(record: &Record) -> Record {
+    let json = record_json::text(record).expect("renders");
+    record_json::read(json.as_bytes()).expect("reads")
+}
+
+#[test]
+fn the_page_of_the_built_in_suite_is_small_and_the_same_from_its_json() {
+    let record = built_in();
+    let rows: Vec<&Row> = record.results.cases.iter().flat_map(|case| &case.rows).collect();
+    for verdict in [Verdict::Pass, Verdict::Inconclusive, Verdict::Underpowered, Verdict::Refused] {
+        assert!(rows.iter().any(|row| row.verdict == Some(verdict)), "none is {}", verdict.word());
+    }
+    let html = text(&record);
+    assert_whole(&html, &record);
+    assert!(html.len() < 4_000_000, "{} bytes", html.len());
+    assert_same(&html, &text(&read_back(&record)));
+}
+
+#[test]
+fn numbers_that_json_cannot_hold_make_the_same_page_from_it() {
+    for odd in [f64::NAN, f64::INFINITY] {
+        let mut record = record();
+        let results = &mut record.results;
+        let gate = &mut results.gate;
+        (gate.ln_e_limit, gate.ln_p_limit) = (odd, odd);
+        for place in [&mut gate.ln_mean_e, &mut gate.smallest_margin, &mut gate.worst_bias] {
+            *place = Some(odd);
+        }
+        for case in &mut results.cases {
+            (case.visible_bias, case.pace) = (Some([0.01, odd]), Some(odd));
+            for row in &mut case.rows {
+                for place in [
+                    &mut row.mean,
+                    &mut row.standard_error,
+                    &mut row.variance,
+                    &mut row.z_mean,
+                    &mut row.z_variance,
+                    &mut row.lookups_per_draw,
+                    &mut row.predicted_variance,
+                    &mut row.fom,
+                    &mut row.detectable_bias,
+                    &mut row.predicted_kurtosis,
+                ] {
+                    *place = place.map(|_| odd);
+                }
+                for finding in &mut row.findings {
+                    finding.path.iter_mut().for_each(|look| look[1] = odd);
+                    if let Some(gate) = &mut finding.gate {
+                        (gate.variance, gate.ln_e, gate.ln_p) = (odd, odd, [odd; 2]);
+                    }
+                }
+                row.courses.iter_mut().for_each(|course| course.sampling = vec![odd; 4]);
+            }
+        }
+        let comparison = record.comparison.as_mut().expect("a comparison");
+        for change in &mut comparison.changes {
+            (change.before, change.now, change.ratio) = ([1.0, odd], [odd; 2], odd);
+            change.interval = Some([0.5, odd]);
+        }
+        let html = text(&record);
+        assert_whole(&html, &record);
+        assert_same(&html, &text(&read_back(&record)));
+    }
+}
+
+#[test]
+fn a_record_without_paths_and_fields_has_a_page() {
+    let record = record();
+    let mut json: serde_json::Value =
+        serde_json::from_str(&record_json::text(&record).expect("renders")).expect("is JSON");
+    let cases = json["results"]["cases"].as_array_mut().expect("cases");
+    let rows = cases.iter_mut().flat_map(|case| case["rows"].as_array_mut().expect("rows"));
+    for row in rows {
+        let row = row.as_object_mut().expect("a row");
+        row.remove("courses");
+        for finding in row["findings"].as_array_mut().expect("findings") {
+            finding.as_object_mut().expect("a finding").remove("path");
+        }
+    }
+    let old = record_json::read(json.to_string().as_bytes()).expect("reads");
+    let html = text(&old);
+    assert_whole(&html, &old);
+    assert!(
+        !html.contains("<figure class=\"spark\">")
+            && text(&record).contains("<figure class=\"spark\">")
+    );
+}
+
+#[test]
+fn small_plots_show_ln_e_beside_its_limit_and_where_an_inequality_fails() {
+    let elements = elements(&text(&record()));
+    let figures = all(&elements, "figure");
+    let captions: Vec<&str> = figures.iter().map(|figure| figure.text.as_str()).collect();
+    let evidence = "ln E from look to look, 4096 to 262144 draws: mean";
+    assert!(captions.iter().any(|caption| caption.contains(evidence)), "{captions:#?}");
+    let course = "From t = 0 to 3, up to 0.9 per length; it fails at t = 1: σ_t σ\u{302}";
+    assert!(captions.iter().any(|caption| caption.contains(course)), "{captions:#?}");
+    // ln E = 31.25 of 8.5 is beyond the upper edge, −0.25 of 8.5 just below the middle.
+    let lines = all(&elements, "path");
+    let way = |d: &str| lines.iter().any(|line| line.attributes["d"] == d);
+    assert!(
+        way("M0 61l333-4 67-57"),
+        "{:?}",
+        lines.iter().map(|line| &line.attributes["d"]).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn words_of_a_case_are_text_whatever_is_in_them() {
+    let mut record = record();
+    for case in &mut record.results.cases {
+        for word in [&mut case.title, &mut case.path, &mut case.problem, &mut case.medium] {
+            *word = HOSTILE.to_owned();
+        }
+        for row in &mut case.rows {
+            for word in [&mut row.estimator, &mut row.channel, &mut row.control, &mut row.reason] {
+                *word = HOSTILE.to_owned();
+            }
+            row.command = HOSTILE.to_owned();
+            for finding in &mut row.findings {
+                (finding.check, finding.channel) = (HOSTILE.to_owned(), HOSTILE.to_owned());
+                finding.reason = HOSTILE.to_owned();
+            }
+        }
+        if let Some(sweep) = &mut case.sweep {
+            sweep.axis = HOSTILE.to_owned();
+        }
+    }
+    record.results.version = HOSTILE.to_owned();
+    record.timing.level = HOSTILE.to_owned();
+    record.results.gate.triage[0].experiment = HOSTILE.to_owned();
+    record.comparison.as_mut().expect("a comparison").name = HOSTILE.to_owned();
+    let html = text(&record);
+    assert_whole(&html, &record);
+    let elements = elements(&html);
+    assert!(all(&elements, "img").is_empty());
+    let plots: Vec<_> = all(&elements, "symbol");
+    let plots: Vec<_> =
+        plots.into_iter().filter(|plot| plot.attributes["id"] != "ground").collect();
+    assert!(plots.len() == 2 && plots.iter().all(|plot| plot.text.contains("<script>alert(1)")));
+}
+
+#[test]
+fn the_first_line_is_the_verdict() {
+    let heading = |record: &Record| {
+        let elements = elements(&text(record));
+        all(&elements, "h1")[0].text.clone()
+    };
+    let mut record = record();
+    let line = heading(&record);
+    assert!(line.starts_with("fail: 3 of 11 fail, something became worse"), "{line}");
+    record.comparison = None;
+    let set = |record: &mut Record, verdicts: &[Verdict]| {
+        let rows = record.results.cases.iter_mut().flat_map(|case| &mut case.rows);
+        rows.zip(verdicts.iter().cycle()).for_each(|(row, &verdict)| row.verdict = Some(verdict));
+    };
+    set(&mut record, &[Verdict::Pass, Verdict::Inconclusive]);
+    assert_eq!(heading(&record), "inconclusive: 5 of 11 are inconclusive");
+    set(&mut record, &[Verdict::Pass, Verdict::Underpowered]);
+    assert_eq!(heading(&record), "pass: nothing of 11 fails or is inconclusive");
+    set(&mut record, &[Verdict::Refused]);
+    assert_eq!(heading(&record), "nothing was tested: none of 11 passes or fails");
+}
+
+#[test]
+fn changes_have_arrows_ratios_and_intervals() {
+    let html = text(&record());
+    let elements = elements(&html);
+    let line = |what: &str| {
+        let rows = all(&elements, "tr");
+        let found = rows.iter().find(|row| row.text.contains(what));
+        found.unwrap_or_else(|| panic!("no {what}")).text.clone()
+    };
+    let variance = line("↑ worse");
+    assert!(variance.contains("1.500") && variance.contains("[1.425, 1.575]"), "{variance}");
+    let lookups = line("↓ better");
+    assert!(lookups.contains("0.5000") && lookups.contains("[0.4750, 0.5250]"), "{lookups}");
+    let time = line("time per draw");
+    assert!(time.contains("2.000") && time.contains("unknown"), "{time}");
+    assert!(line("✗ fails over all runs").contains("ln E = 9.25 ≥ 8.5"));
+}
