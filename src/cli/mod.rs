@@ -1,7 +1,8 @@
 //! The command line: arguments, exit codes, progress, and the only prints. Floor 8.
 //!
 //! A program with media and estimators of its own has all commands by
-//! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`.
+//! `fn main() -> ExitCode { trueflight::cli::main(&catalogue) }`. Where `mpirun` begins it, `bindings/mpi` has
+//! the way to join the others for [`main_among`].
 //!
 //! | exit code | meaning |
 //! |---|---|
@@ -25,8 +26,7 @@ mod mpirun;
 mod output;
 mod plan;
 mod predict;
-#[cfg(feature = "mpi")]
-mod ranks;
+pub mod ranks;
 mod render;
 mod report;
 mod run;
@@ -40,6 +40,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand};
 
+use self::ranks::Join;
 use crate::harness::Catalogue;
 
 /// Everything that went wrong before or beside the verdicts.
@@ -103,7 +104,12 @@ enum Command {
 
 /// Runs the command that the program's arguments ask for, with this catalogue, and answers its exit code.
 pub fn main(catalogue: &Catalogue) -> ExitCode {
-    run_with(catalogue, &Cli::parse())
+    run_with(catalogue, None, &Cli::parse())
+}
+
+/// The same for a program that `mpirun` may have begun among others, and that knows how to join them.
+pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
+    run_with(catalogue, Some(join), &Cli::parse())
 }
 
 /// The same with these arguments, the first of which is the program's name.
@@ -116,12 +122,11 @@ pub fn run_as<T: Into<OsString> + Clone>(
     arguments: impl IntoIterator<Item = T>,
 ) -> Result<ExitCode, String> {
     let cli = Cli::try_parse_from(arguments).map_err(|error| error.to_string())?;
-    Ok(run_with(catalogue, &cli))
+    Ok(run_with(catalogue, None, &cli))
 }
 
-fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
-    let done = mpirun::allow(matches!(cli.command, Command::Run(_)));
-    match done.and_then(|()| carry_out(catalogue, cli)) {
+fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
+    match carry_out(catalogue, join, cli) {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
             output::complain(&error);
@@ -130,10 +135,14 @@ fn run_with(catalogue: &Catalogue, cli: &Cli) -> ExitCode {
     }
 }
 
-fn carry_out(catalogue: &Catalogue, cli: &Cli) -> anyhow::Result<u8> {
+fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Result<u8> {
+    mpirun::allow(matches!(cli.command, Command::Run(_)), join)?;
     let console = &cli.console;
     match &cli.command {
-        Command::Run(arguments) => run::main(arguments, catalogue, console),
+        Command::Run(arguments) => match join.filter(|_| mpirun::ranks() > 1) {
+            Some(join) => ranks::main(&mpirun::join(join)?, arguments, catalogue, console),
+            None => run::main(arguments, catalogue, console),
+        },
         Command::Merge(arguments) => merge::main(arguments, catalogue, console),
         Command::Check(arguments) => check::main(arguments, catalogue, console),
         Command::Predict(arguments) => predict::main(arguments, catalogue, console),

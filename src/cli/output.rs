@@ -138,7 +138,6 @@ pub fn warn(text: &str) {
 }
 
 /// What is good to know.
-#[cfg(feature = "mpi")]
 pub fn note(text: &str) {
     tell("note", text);
 }

@@ -94,10 +94,6 @@ impl Arguments {
 
 /// Draws what is asked for, or what is missing of it.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    #[cfg(feature = "mpi")]
-    if super::mpirun::ranks() > 1 {
-        return super::ranks::main(arguments, catalogue, console);
-    }
     draw(&arguments.resumed()?, Box::new(Threads), catalogue, console)
 }
 

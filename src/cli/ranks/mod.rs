@@ -1,4 +1,4 @@
-//! One run drawn by many processes, its ranks, that `mpirun` has begun.
+//! One run drawn by many processes, its ranks, that `mpirun` has begun. How they talk is a [`Link`]: the library knows of none.
 //!
 //! ```text
 //! rank 0   plans, deals pieces to all ranks and to itself, keeps and merges what they give, looks, judges, writes
@@ -12,12 +12,14 @@
 mod link;
 mod team;
 
+use std::sync::Arc;
+
 use anyhow::bail;
 use serde::{Deserialize, Serialize};
 
-use self::link::Link;
+pub use self::link::{Heard, Join, Link};
 use self::team::Team;
-use super::{Console, journal, mpirun, output, run};
+use super::{Console, journal, output, run};
 use crate::baseline::fingerprint;
 use crate::harness::draw::Block;
 use crate::harness::share::{Header, Piece};
@@ -46,30 +48,19 @@ enum Answer {
 }
 
 /// Draws what is asked for as a rank among others.
-pub fn main(
+pub(super) fn main(
+    link: &Arc<dyn Link>,
     arguments: &run::Arguments,
     catalogue: &Catalogue,
     console: &Console,
 ) -> anyhow::Result<u8> {
-    let (universe, link) = link::join()?;
-    if link.size != mpirun::ranks() {
-        bail!(
-            "{} processes were begun, but MPI knows of {}: mpirun is not that of the MPI library of this build",
-            mpirun::ranks(),
-            link.size
-        );
-    }
     // As many as processors, like that of other codes under MPI, would be as many for each rank.
     let mut arguments = arguments.clone();
     arguments.selection.threads.get_or_insert(1);
-    let done = if link.rank > 0 {
-        Ok(serve(&link, &arguments, catalogue, console))
-    } else {
-        lead(Team::new(link), &arguments, catalogue, console)
-    };
-    // All ranks wait here for each other.
-    drop(universe);
-    done
+    if link.rank() > 0 {
+        return Ok(serve(link.as_ref(), &arguments, catalogue, console));
+    }
+    lead(Team::new(Arc::clone(link)), &arguments, catalogue, console)
 }
 
 /// Has all ranks draw what is asked for, and judges it.
@@ -95,7 +86,12 @@ fn lead(
 }
 
 /// Draws what rank 0 deals, to its end. What goes wrong is told to rank 0, which tells the user.
-fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console: &Console) -> u8 {
+fn serve(
+    link: &dyn Link,
+    arguments: &run::Arguments,
+    catalogue: &Catalogue,
+    console: &Console,
+) -> u8 {
     let Order::Plan(words) = order(link) else { return 0 };
     let drawn = run::Arguments::of(&words).and_then(|asked| {
         let selection = asked.selection.clone().on_threads_of(&arguments.selection);
@@ -113,7 +109,7 @@ fn serve(link: &Link, arguments: &run::Arguments, catalogue: &Catalogue, console
     0
 }
 
-fn draw(link: &Link, plan: &Plan, header: Header) {
+fn draw(link: &dyn Link, plan: &Plan, header: Header) {
     answer(link, &Answer::Planned(Ok((header, rayon::current_num_threads()))));
     let threads = rayon::current_num_threads();
     let is_over = || link.is_stopped();
@@ -132,15 +128,131 @@ fn draw(link: &Link, plan: &Plan, header: Header) {
 }
 
 /// The next order of rank 0.
-fn order(link: &Link) -> Order {
+fn order(link: &dyn Link) -> Order {
     link.read(&link.wait())
 }
 
-fn answer(link: &Link, answer: &Answer) {
+fn answer(link: &dyn Link, answer: &Answer) {
     link.send(0, &encoded(answer));
 }
 
 /// Never empty: every message can be encoded.
 fn encoded(message: &impl Serialize) -> Vec<u8> {
     postcard::to_stdvec(message).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::VecDeque;
+    use std::fs;
+    use std::path::Path;
+    use std::sync::atomic::{AtomicBool, Ordering};
+    use std::sync::mpsc::{Receiver, Sender, channel};
+    use std::sync::{Arc, Mutex};
+    use std::thread;
+
+    use super::{Heard, Link};
+    use crate::cli::{Console, output, run};
+    use crate::harness::Catalogue;
+
+    /// A rank that is a thread.
+    #[derive(Debug)]
+    struct Thread {
+        rank: usize,
+        to: Vec<Sender<Heard>>,
+        heard: Mutex<Receiver<Heard>>,
+        is_stopped: Arc<AtomicBool>,
+        /// What is longer is not posted.
+        longest: usize,
+    }
+
+    impl Link for Thread {
+        fn rank(&self) -> usize {
+            self.rank
+        }
+
+        fn size(&self) -> usize {
+            self.to.len()
+        }
+
+        fn send(&self, to: usize, bytes: &[u8]) {
+            self.to[to].send((self.rank, bytes.to_vec())).expect("a rank that hears");
+        }
+
+        fn post(&self, to: usize, bytes: &[u8], _: usize) -> bool {
+            let is_short = bytes.len() <= self.longest;
+            if is_short {
+                self.send(to, bytes);
+            }
+            is_short
+        }
+
+        fn send_and_hear(&self, to: usize, bytes: &[u8], heard: &mut VecDeque<Heard>) {
+            heard.extend(self.hear());
+            self.send(to, bytes);
+        }
+
+        fn hear(&self) -> Option<Heard> {
+            self.heard.lock().expect("a channel").try_recv().ok()
+        }
+
+        fn abort(&self, _: u8) -> ! {
+            panic!("rank {} ends all", self.rank)
+        }
+
+        fn stop_others(&self) {
+            self.is_stopped.store(true, Ordering::Relaxed);
+        }
+
+        fn is_stopped(&self) -> bool {
+            self.is_stopped.load(Ordering::Relaxed)
+        }
+    }
+
+    fn links(ranks: usize, longest: usize) -> Vec<Arc<dyn Link>> {
+        let (to, from): (Vec<_>, Vec<_>) = (0..ranks).map(|_| channel()).unzip();
+        let is_stopped = Arc::new(AtomicBool::new(false));
+        let link = |(rank, heard)| -> Arc<dyn Link> {
+            let (to, heard, is_stopped) = (to.clone(), Mutex::new(heard), Arc::clone(&is_stopped));
+            Arc::new(Thread { rank, to, heard, is_stopped, longest })
+        };
+        from.into_iter().enumerate().map(link).collect()
+    }
+
+    /// What a run by so many ranks writes of its checks.
+    fn checks(folder: &Path, ranks: usize, longest: usize) -> String {
+        let out = folder.join(format!("{ranks}-{longest}")).display().to_string();
+        let case = folder.join("ray.toml").display().to_string();
+        let words = ["--draws=3e5", "--fixed-draws", "--fresh", "--out", &out, "--", &case];
+        let asked = run::Arguments::of(&words.map(str::to_owned)).expect("words");
+        let console = Console { color: output::When::Never, quiet: true };
+        let catalogue = Catalogue::builtin();
+        let main = |link: &Arc<dyn Link>| super::main(link, &asked, &catalogue, &console);
+        let links = links(ranks, longest);
+        thread::scope(|scope| {
+            let all: Vec<_> = links.iter().map(|link| scope.spawn(|| main(link))).collect();
+            for rank in all {
+                assert_eq!(rank.join().expect("a rank").expect("a verdict"), 0);
+            }
+        });
+        fs::read_to_string(Path::new(&out).join("checks.csv")).expect("checks")
+    }
+
+    #[test]
+    fn any_number_of_ranks_comes_to_the_same() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let case = "title = \"a ray\"
+[problem.transmittance]
+medium.constant.extinction = 0.5
+span = [0, 4]
+sampling.constant.value = 0.75
+estimators = [{ ratio = {} }, { double = {} }]
+";
+        fs::write(folder.path().join("ray.toml"), case).expect("a case");
+        let alone = checks(folder.path(), 1, 0);
+        assert!(alone.lines().count() > 4, "{alone}");
+        for (ranks, longest) in [(2, usize::MAX), (3, usize::MAX), (3, 0)] {
+            assert_eq!(checks(folder.path(), ranks, longest), alone, "{ranks} ranks");
+        }
+    }
 }

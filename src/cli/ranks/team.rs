@@ -2,8 +2,8 @@
 
 use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
-use std::sync::OnceLock;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread;
 
 use super::link::{Link, Naps};
@@ -18,7 +18,7 @@ const PORTIONS: usize = 16;
 /// Rank 0 with the others.
 #[derive(Debug)]
 pub struct Team {
-    link: Link,
+    link: Arc<dyn Link>,
     /// How many threads each rank has.
     threads: OnceLock<Vec<usize>>,
     /// How many ranks have still to say what they would draw.
@@ -29,21 +29,21 @@ pub struct Team {
 
 impl Team {
     /// Rank 0 with the others.
-    pub fn new(link: Link) -> Self {
+    pub fn new(link: Arc<dyn Link>) -> Self {
         let (threads, planning) = (OnceLock::new(), AtomicUsize::new(0));
         Self { link, threads, planning, is_told: AtomicBool::new(false) }
     }
 
     /// How many ranks there are.
     pub fn size(&self) -> usize {
-        self.link.size
+        self.link.size()
     }
 
     /// Tells the others the words that ask for the run.
     pub fn plan(&self, words: &[String]) {
         let order = encoded(&Order::Plan(words.to_owned()));
-        (1..self.link.size).for_each(|rank| self.link.send(rank, &order));
-        self.planning.store(self.link.size - 1, Ordering::Relaxed);
+        (1..self.link.size()).for_each(|rank| self.link.send(rank, &order));
+        self.planning.store(self.link.size() - 1, Ordering::Relaxed);
     }
 
     /// What a rank would draw, while there is one that has still to say so.
@@ -61,7 +61,7 @@ impl Workers for Team {
     }
 
     fn agree(&self, header: &Header) -> Result<(), String> {
-        let mut threads = vec![0; self.link.size];
+        let mut threads = vec![0; self.link.size()];
         threads[0] = rayon::current_num_threads();
         let mut faults = BTreeMap::new();
         while let Some((rank, answer)) = self.planned() {
@@ -75,7 +75,7 @@ impl Workers for Team {
                     faults.insert(rank, why);
                 }
                 Answer::Drawn(_) => {
-                    self.link.abort(&format!("rank {rank} drew what nobody asked for"))
+                    self.link.fail(&format!("rank {rank} drew what nobody asked for"))
                 }
             }
         }
@@ -164,6 +164,6 @@ impl Drop for Team {
         }
         while self.planned().is_some() {}
         let order = encoded(&Order::End);
-        (1..self.link.size).for_each(|rank| self.link.send(rank, &order));
+        (1..self.link.size()).for_each(|rank| self.link.send(rank, &order));
     }
 }

@@ -1,6 +1,6 @@
 //! Runs drawn by many ranks under `mpirun`: the same bytes as one process, and a rank that dies loses little.
 //!
-//! They need a program that is built with `--features mpi`, and its path in `TRUEFLIGHT_MPI`: `.ci/mpi` builds it.
+//! They need the program of `bindings/mpi`, and its path in `TRUEFLIGHT_MPI`: `.ci/mpi` builds it.
 
 use std::fs;
 use std::process::{Command, Output, Stdio};
@@ -36,7 +36,7 @@ fn drawing(folder: &str) -> Vec<u32> {
 }
 
 #[test]
-#[ignore = "needs mpirun and a program with --features mpi"]
+#[ignore = "needs mpirun and trueflight-mpi"]
 fn any_number_of_ranks_makes_the_bytes_of_one_process() {
     let place = Place::with(&program());
     for ranks in 1..=4 {
@@ -51,7 +51,7 @@ fn any_number_of_ranks_makes_the_bytes_of_one_process() {
 }
 
 #[test]
-#[ignore = "needs mpirun and a program with --features mpi"]
+#[ignore = "needs mpirun and trueflight-mpi"]
 fn a_rank_that_dies_ends_the_run_which_can_be_gone_on_with() {
     let place = Place::with(&program());
     // Rank 0 draws, keeps and judges; the others only draw.
@@ -110,7 +110,7 @@ fn a_rank_that_dies_ends_the_run_which_can_be_gone_on_with() {
 }
 
 #[test]
-#[ignore = "needs mpirun and a program with --features mpi"]
+#[ignore = "needs mpirun and trueflight-mpi"]
 fn ranks_that_would_draw_something_else_are_named() {
     let place = Place::with(&program());
     fs::create_dir(place.path("elsewhere")).expect("a folder");
@@ -149,7 +149,7 @@ fn ranks_that_would_draw_something_else_are_named() {
 }
 
 #[test]
-#[ignore = "needs mpirun, a program with --features mpi and two quiet processors"]
+#[ignore = "needs mpirun, trueflight-mpi and two quiet processors"]
 fn how_two_ranks_scale() {
     let place = Place::with(&program());
     println!("seconds of one process, of two ranks, their ratio");
