@@ -52,7 +52,7 @@ pub fn ends<S: Simd>(
 /// Where the lines of rays that begin in a box enter and leave it.
 #[inline(always)]
 fn faces<S: Simd>(within: &Aabb, [origin, direction]: [Points<S>; 2]) -> [f64x8<S>; 2] {
-    pack::outlined(
+    pack::aside(
         origin[0].token(),
         #[inline(always)]
         move || of_box(within, origin, direction),
@@ -79,7 +79,7 @@ pub fn chords<S: Simd>(
     rays: [Points<S>; 2],
     which: mask64x8<S>,
 ) -> [f64x8<S>; 2] {
-    pack::outlined(
+    pack::aside(
         rays[0][0].token(),
         #[inline(always)]
         move || all_chords(centre, radius, rays, which),

@@ -106,7 +106,7 @@ impl ShadowRays<'_> {
         if let Some(value) = self.volume.single_value() {
             return (-((to - from) * value)).exp();
         }
-        pack::outlined(
+        pack::aside(
             from.token(),
             #[inline(always)]
             move || {

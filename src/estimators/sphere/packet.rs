@@ -41,7 +41,7 @@ fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
 /// [`aim`], in a function of its own.
 #[inline(always)]
 fn aimed<S: Simd>(sphere: &Sphere, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
-    pack::outlined(
+    pack::aside(
         number.token(),
         #[inline(always)]
         move || aim(sphere, place, number),
