@@ -103,7 +103,8 @@ impl ShadowRays<'_> {
         line: [Points<S>; 2],
         [from, to]: [f64x8<S>; 2],
     ) -> f64x8<S> {
-        if let Some(value) = self.volume.single_value() {
+        let volume = self.volume;
+        if let Some(value) = volume.single_value() {
             return (-((to - from) * value)).exp();
         }
         pack::aside(
@@ -115,27 +116,27 @@ impl ShadowRays<'_> {
                     return (-depths).exp();
                 }
                 let (lines, [start, ..]) = (line.map(rows), rows([from; 3]));
-                to.replaced(|ends| self.one_by_one(which.to_bitmask(), &lines, ends, &start))
+                to.replaced(|ends| one_by_one(volume, which.to_bitmask(), &lines, ends, &start))
             },
         )
     }
+}
 
-    /// In closed form, ray by ray, for those whose bits are set.
-    #[inline(never)]
-    fn one_by_one(
-        &self,
-        which: u64,
-        rays: &[[[f64; WIDTH]; 3]; 2],
-        ends: &mut [f64],
-        from: &[f64],
-    ) {
-        for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
-            let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
-            let inside = Span::new(from[lane], *end);
-            let ray = Ray { origin, direction, length: f64::INFINITY };
-            let profile = self.volume.along(&ray, inside);
-            *end = Lane::exp(-profile.optical_depth(inside).value);
-        }
+/// Transmittances in closed form, ray by ray, for those whose bits are set.
+#[inline(never)]
+fn one_by_one(
+    volume: &Volume,
+    which: u64,
+    rays: &[[[f64; WIDTH]; 3]; 2],
+    ends: &mut [f64],
+    from: &[f64],
+) {
+    for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+        let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
+        let inside = Span::new(from[lane], *end);
+        let ray = Ray { origin, direction, length: f64::INFINITY };
+        let profile = volume.along(&ray, inside);
+        *end = Lane::exp(-profile.optical_depth(inside).value);
     }
 }
 
