@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::anyhow;
 use clap::Args;
 
+use super::numbers;
 use crate::baseline::{Baseline, BaselineError, Comparison, Rules, compare, fingerprint};
 use crate::harness::record::Verdict;
 use crate::harness::{Case, Record};
@@ -25,7 +26,7 @@ pub struct BaselineArguments {
     baselines: PathBuf,
     /// How much more processor time per draw is no regression, as a share; `inf` for any. Given, it is
     /// an error that no time can be compared [default: 0.25]
-    #[arg(long, value_name = "R", value_parser = share)]
+    #[arg(long, value_name = "R", value_parser = numbers::share)]
     #[arg(allow_hyphen_values = true)]
     time_tolerance: Option<f64>,
 }
@@ -156,13 +157,5 @@ impl Baselines {
         ];
         let why_not = reasons.into_iter().find(|reason| reason.0).map(|reason| reason.1);
         self.files.store(why_not, |path| run.write(path))
-    }
-}
-
-/// Reads a share of 0 or more.
-pub fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(share) if share >= 0.0 => Ok(share),
-        _ => Err("it takes a share of 0 or more, such as 0.25, or inf".into()),
     }
 }

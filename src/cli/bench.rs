@@ -6,10 +6,10 @@ use anyhow::bail;
 use clap::Args;
 use fearless_simd::Level;
 
-use super::Console;
-use super::baseline::{self, Files};
+use super::baseline::Files;
 use super::output::{self, Errors, Format};
 use super::selection::{self, Experiments};
+use super::{Console, numbers};
 use crate::bench::compare::compare;
 use crate::bench::comparison::Comparison;
 use crate::bench::record::Bench;
@@ -27,15 +27,15 @@ pub struct Arguments {
     experiments: Experiments,
     /// Draws of an experiment in a round, such as 1e6; with the default the built-in suite takes
     /// about half a minute on one core
-    #[arg(long, default_value = "32768", value_name = "N", value_parser = selection::draws)]
+    #[arg(long, default_value = "32768", value_name = "N", value_parser = numbers::draws)]
     #[arg(allow_hyphen_values = true)]
     draws: u64,
     /// Rounds; each times every experiment and its plain loop in turn
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u32>(1..=10_000))]
     rounds: u32,
     /// Threads that draw at once, so many times as many draws; with several, time is elapsed and not processor
     /// time, and the column `scaling` compares them with one: give more draws then
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::threads)]
     threads: u16,
     /// Vector hardware to draw with, of what this machine has [default: the best]
     #[arg(long, value_name = "LEVEL", value_parser = level)]
@@ -53,7 +53,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "baselines")]
     baselines: PathBuf,
     /// How much more time per draw is no regression, as a share; `inf` for any
-    #[arg(long, value_name = "R", default_value_t = 0.25, value_parser = baseline::share)]
+    #[arg(long, value_name = "R", default_value_t = 0.25, value_parser = numbers::share)]
     #[arg(allow_hyphen_values = true)]
     time_tolerance: f64,
     /// How the rows are printed

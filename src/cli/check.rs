@@ -11,11 +11,11 @@ use anyhow::Context;
 use clap::Args;
 
 use super::baseline::BaselineArguments;
-use super::drawing::{self, Budget};
+use super::numbers::Budget;
 use super::output::Errors;
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
-use super::{Console, output};
+use super::{Console, drawing, numbers, output};
 use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::{Case, Options, Record};
@@ -32,7 +32,7 @@ pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
     /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws (1e8)
-    #[arg(long, value_name = "B", value_parser = drawing::budget)]
+    #[arg(long, value_name = "B", value_parser = numbers::budget)]
     budget: Option<Budget>,
     /// What an inconclusive experiment counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]

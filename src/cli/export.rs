@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
 
-use super::{Console, output};
+use super::{Console, numbers, output};
 use crate::export::{self, ExportError, Target};
 use crate::harness::catalogue::source;
 use crate::harness::{CaseError, Catalogue};
@@ -23,7 +23,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Cells along the longest side of a field that is sampled [default: 32 in space, 256 along a line]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(2..=512))]
+    #[arg(long, value_name = "N", value_parser = numbers::whole::<u16>(2..=512))]
     cells: Option<u16>,
 }
 

@@ -8,7 +8,7 @@ use anyhow::Context;
 use clap::{Args, ValueEnum};
 
 use super::verdict::Inconclusive;
-use super::{Console, USAGE, output, selection};
+use super::{Console, USAGE, numbers, output};
 use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::case::Case;
@@ -33,13 +33,13 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     /// What the mean should be
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
-    #[arg(required_unless_present_any = ["case", "truth_image"])]
+    #[arg(required_unless_present_any = ["case", "truth_image"], value_parser = numbers::number)]
     truth: Option<f64>,
     /// The variance of one draw, or of one average with --batch; without it, it is not tested
-    #[arg(long, value_name = "V", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = numbers::number)]
     variance: Option<f64>,
     /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it
-    #[arg(long, value_name = "K", allow_hyphen_values = true)]
+    #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = numbers::number)]
     kurtosis: Option<f64>,
     /// Where all correct draws lie, as in 0,1 or 0,inf: a ground for a verdict without a variance
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
@@ -51,7 +51,7 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", requires = "case")]
     estimator: Option<String>,
     /// The swept value, where the estimator is swept
-    #[arg(long, value_name = "VALUE", requires = "case", allow_hyphen_values = true)]
+    #[arg(long, value_name = "VALUE", requires = "case", allow_hyphen_values = true, value_parser = numbers::number)]
     swept: Option<f64>,
     /// The channel of a draw, where it has several
     #[arg(long, value_name = "NAME", requires = "case")]
@@ -60,26 +60,26 @@ pub struct Arguments {
     #[arg(long, requires = "case")]
     mean_only: bool,
     /// Seed of the case's pilot rays, where σ̂ is learned from them
-    #[arg(long, default_value_t = 1, value_name = "N", requires = "case")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true, requires = "case")]
     seed: u64,
     /// Judge averages of N consecutive draws: for stratified or quasi-random draws, or passes of a
     /// renderer. --variance and --kurtosis are then those of averages; of a --case the truth is taken
     #[arg(long, default_value_t = 1, value_name = "N")]
-    #[arg(value_parser = clap::value_parser!(u64).range(1..=1 << 40))]
+    #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40))]
     batch: u64,
     /// The bias that a pass excludes, relative to the truth (absolute for a truth of 0) [default:
     /// what the file's draws can see, at most 0.05; for a pipe 0.01]
-    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     tolerance: Option<f64>,
     /// The same for the variance, relative to it [default: what the draws can see, at most 0.2]
-    #[arg(long, value_name = "E", allow_hyphen_values = true)]
+    #[arg(long, value_name = "E", allow_hyphen_values = true, value_parser = numbers::number)]
     variance_tolerance: Option<f64>,
     /// Chance that correct draws fail, all files together
-    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = selection::alpha)]
+    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha)]
     #[arg(allow_hyphen_values = true)]
     alpha: f64,
     /// What rounding may add to a draw, relative to the truth (absolute for a truth of 0)
-    #[arg(long, default_value_t = ROUNDING, value_name = "R", allow_hyphen_values = true)]
+    #[arg(long, default_value_t = ROUNDING, value_name = "R", allow_hyphen_values = true, value_parser = numbers::number)]
     rounding: f64,
     /// Column of a table, by name or by place from 0 on
     #[arg(long, value_name = "COLUMN")]
@@ -88,11 +88,11 @@ pub struct Arguments {
     #[arg(long, value_name = "COLUMN")]
     lookups: Option<String>,
     /// What the mean number of lookups should be
-    #[arg(long, value_name = "M", requires = "lookups", conflicts_with = "case")]
+    #[arg(long, value_name = "M", requires = "lookups", conflicts_with = "case", value_parser = numbers::number)]
     #[arg(allow_hyphen_values = true)]
     expected_lookups: Option<f64>,
     /// The variance of the number of lookups of one draw, or of one average with --batch
-    #[arg(long, value_name = "V", requires = "expected_lookups", allow_hyphen_values = true)]
+    #[arg(long, value_name = "V", requires = "expected_lookups", allow_hyphen_values = true, value_parser = numbers::number)]
     lookups_variance: Option<f64>,
     /// How the draws are written [default: by the file's ending]
     #[arg(long, value_enum, value_name = "FORMAT")]
@@ -101,7 +101,7 @@ pub struct Arguments {
     #[arg(long)]
     stop_early: bool,
     /// How many draws are read at most [default: all of a file, 67108864 of a pipe]
-    #[arg(long, value_name = "N", value_parser = selection::draws, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// What an inconclusive verdict counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]

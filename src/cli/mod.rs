@@ -23,6 +23,7 @@ mod judge;
 mod list;
 mod merge;
 mod mpirun;
+mod numbers;
 mod output;
 mod plan;
 mod predict;

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::bail;
 use clap::Args;
 
-use super::{Console, output, selection};
+use super::{Console, numbers, output, selection};
 use crate::catalogue::Additions;
 use crate::harness::Catalogue;
 use crate::harness::source::CaseError;
@@ -24,10 +24,10 @@ pub struct Arguments {
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Threads [default: one per processor]; pictures do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = numbers::threads)]
     threads: Option<u16>,
 }
 

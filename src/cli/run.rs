@@ -11,7 +11,7 @@ use super::baseline::BaselineArguments;
 use super::output::{self, Errors, Format};
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
-use super::{Console, drawing, journal};
+use super::{Console, drawing, journal, numbers};
 use crate::baseline::fingerprint;
 use crate::harness::blocks::Blocks;
 use crate::harness::options::DRAWS;
@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "K/N", conflicts_with_all = ["time", "save_baseline", "baseline"])]
     pub shard: Option<Share>,
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
-    #[arg(long, value_name = "T", value_parser = drawing::seconds)]
+    #[arg(long, value_name = "T", value_parser = numbers::seconds)]
     time: Option<f64>,
     #[command(flatten)]
     looks: Looks,

@@ -3,7 +3,7 @@
 use anyhow::Context;
 use clap::Args;
 
-use super::{Console, output};
+use super::{Console, numbers, output};
 use crate::estimators::Order;
 use crate::harness::case::Case;
 use crate::harness::{Amount, Catalogue, Filter, Options, Plan, suite};
@@ -22,7 +22,7 @@ pub struct Experiments {
     #[arg(long, value_name = "KERNEL", value_parser = kernel)]
     kernel: Option<Order>,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
     seed: u64,
 }
 
@@ -32,13 +32,13 @@ pub struct Selection {
     #[command(flatten)]
     experiments: Experiments,
     /// Draws per experiment, such as 1e6, whatever the cases say [default: the case's, or 4e6; check: 4e5]
-    #[arg(long, value_name = "N", value_parser = draws, allow_hyphen_values = true)]
+    #[arg(long, value_name = "N", value_parser = numbers::draws, allow_hyphen_values = true)]
     draws: Option<u64>,
     /// Chance that a correct run shows any failure
-    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = alpha, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = numbers::threads)]
     pub threads: Option<u16>,
 }
 
@@ -52,7 +52,7 @@ pub struct Looks {
     #[arg(long)]
     strict: bool,
     /// Look only after every K blocks of 16384 draws, which are kept, sent and merged as one: for very long runs
-    #[arg(long, default_value_t = 1, value_name = "K", value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    #[arg(long, default_value_t = 1, value_name = "K", value_parser = numbers::whole::<u64>(1..=1_000_000))]
     blocks_per_look: u64,
 }
 
@@ -195,24 +195,7 @@ fn distinct(cases: Vec<Case>) -> anyhow::Result<Vec<Case>> {
     Ok(kept)
 }
 
-/// A number of draws such as 4e6.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
-pub fn draws(text: &str) -> Result<u64, String> {
-    match text.parse::<f64>() {
-        Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
-        _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),
-    }
-}
-
 /// Reads a kernel's name.
 fn kernel(text: &str) -> Result<Order, String> {
     Order::of(text).ok_or_else(|| "it takes `ordered` or `order-free`".into())
-}
-
-/// Reads a probability.
-pub fn alpha(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(alpha) if alpha > 0.0 && alpha < 1.0 => Ok(alpha),
-        _ => Err("it takes a probability above 0 and below 1, such as 1e-3".into()),
-    }
 }

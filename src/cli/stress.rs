@@ -4,8 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::Console;
-use super::output;
+use super::{Console, numbers, output};
 use crate::report::{self, stress as page};
 use crate::stress::{self, Effort, PAGES};
 
@@ -16,10 +15,10 @@ pub struct Arguments {
     #[arg(long)]
     quick: bool,
     /// Seed of the random parameters
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
     seed: u64,
     /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    #[arg(long, value_name = "N", value_parser = numbers::threads)]
     threads: Option<u16>,
     /// Folder of results; report.html, tables and plot go to `stress` below it
     #[arg(long, short, default_value = "results", value_name = "DIR")]

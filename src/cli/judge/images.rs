@@ -6,7 +6,7 @@ use anyhow::{Context, bail};
 use clap::Args;
 
 use super::Shown;
-use crate::cli::{Console, USAGE, output};
+use crate::cli::{Console, USAGE, numbers, output};
 use crate::judge::images::{Claim, Judgement, Level, Wanted, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
     /// values of all passes]
     #[arg(long, value_name = "N", requires = "images")]
-    #[arg(value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX))]
     tile: Option<u32>,
     /// Write judgement.json, tiles.csv and z-map.png into a folder
     #[arg(long, value_name = "DIR", requires = "images")]

@@ -37,57 +37,36 @@ pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
 /// Where the lines of rays that begin in a body enter and leave it, for the rays that a mask names: from no later than
 /// their beginnings, to infinity where there is no boundary. The one is not before the other where a ray only grazes.
 #[inline(always)]
-pub fn ends<S: Simd>(
+pub fn ends<S: Simd>(bounds: &Bounds, rays: [Points<S>; 2], which: mask64x8<S>) -> [f64x8<S>; 2] {
+    if matches!(bounds, Bounds::Everywhere) {
+        let simd = rays[0][0].token();
+        return [f64x8::splat(simd, 0.0), f64x8::splat(simd, f64::INFINITY)];
+    }
+    pack::aside(
+        rays[0][0].token(),
+        #[inline(always)]
+        move || ends_in_place(bounds, rays, which),
+    )
+}
+
+/// The same in place, for who asks in every step.
+#[inline(always)]
+pub fn ends_in_place<S: Simd>(
     bounds: &Bounds,
     [origin, direction]: [Points<S>; 2],
     which: mask64x8<S>,
 ) -> [f64x8<S>; 2] {
     match bounds {
         Bounds::Everywhere => [origin[0].each(0.0), origin[0].each(f64::INFINITY)],
-        Bounds::Box(within) => faces(within, [origin, direction]),
+        Bounds::Box(within) => of_box(within, origin, direction),
         Bounds::Sphere { centre, radius } => chords(*centre, *radius, [origin, direction], which),
     }
-}
-
-/// Where the lines of rays that begin in a box enter and leave it.
-#[inline(always)]
-fn faces<S: Simd>(within: &Aabb, [origin, direction]: [Points<S>; 2]) -> [f64x8<S>; 2] {
-    pack::aside(
-        origin[0].token(),
-        #[inline(always)]
-        move || of_box(within, origin, direction),
-    )
-}
-
-/// How far it is to the boundary, infinite where there is none, for the rays that a mask names.
-#[inline(always)]
-pub fn exits<S: Simd>(
-    bounds: &Bounds,
-    origin: Points<S>,
-    direction: Points<S>,
-    which: mask64x8<S>,
-) -> f64x8<S> {
-    ends(bounds, [origin, direction], which)[1]
 }
 
 /// Where the lines of rays that begin in a ball enter and leave it, for the rays that a mask names; the one is
 /// not before the other where they do not.
 #[inline(always)]
 pub fn chords<S: Simd>(
-    centre: Point,
-    radius: f64,
-    rays: [Points<S>; 2],
-    which: mask64x8<S>,
-) -> [f64x8<S>; 2] {
-    pack::aside(
-        rays[0][0].token(),
-        #[inline(always)]
-        move || all_chords(centre, radius, rays, which),
-    )
-}
-
-#[inline(always)]
-fn all_chords<S: Simd>(
     centre: Point,
     radius: f64,
     [origin, direction]: [Points<S>; 2],

@@ -14,7 +14,7 @@
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use crate::estimators::Setup;
-use crate::estimators::space::exit::{Points, exits};
+use crate::estimators::space::exit::{Points, ends, ends_in_place};
 use crate::geometry::{Bounds, frame};
 use crate::kernels::packet::Request;
 use crate::kernels::packet::bank::{self, Numbers, Slots};
@@ -288,15 +288,16 @@ fn end_beyond<S: Simd>(
     flight: f64x8<S>,
 ) -> f64x8<S> {
     let all = flight.at_most(flight);
+    let rays = [place, direction];
     let Bounds::Sphere { radius, .. } = bounds else {
-        return exits(bounds, place, direction, all);
+        return ends_in_place(bounds, rays, all)[1];
     };
-    let near = exits(bounds, place, direction, !all);
+    let near = ends_in_place(bounds, rays, !all)[1];
     let is_doubtful = !flight.below(near - radius * DOUBTFUL);
     if !is_doubtful.any_true() {
         return near;
     }
-    exits(bounds, place, direction, is_doubtful)
+    ends(bounds, rays, is_doubtful)[1]
 }
 
 /// Makes draws of what walks have left.

@@ -24,14 +24,11 @@ impl World<'_> {
     #[inline(always)]
     pub fn transmittance<S: Simd>(&self, to: f64x8<S>, which: mask64x8<S>) -> f64x8<S> {
         let from = self.support.from;
-        let depth = match self.extinction {
-            Some(value) => {
-                (to.or_less(to.each(self.support.to)) - from).or_more(to.each(0.0)) * value
-            }
-            None => {
-                let medium = self.setup.problem.medium();
-                to.replaced(|ends| depths_one_by_one(medium, from, which.to_bitmask(), ends))
-            }
+        let depth = if let Some(value) = self.extinction {
+            (to.or_less(to.each(self.support.to)) - from).or_more(to.each(0.0)) * value
+        } else {
+            let medium = self.setup.problem.medium();
+            to.replaced(|ends| depths_one_by_one(medium, from, which.to_bitmask(), ends))
         };
         (-depth).exp()
     }
