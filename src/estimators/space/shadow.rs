@@ -9,13 +9,13 @@
 //! walks of the other lanes. Bit for bit what
 //! [`transmittance`](crate::estimators::single_scattering::connection::transmittance) finds.
 
-use fearless_simd::{ExtractToken, Simd, SimdBase, SimdMask, f64x8, mask64x8};
+use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::exit::{Points, rows};
 use crate::geometry::{Bounds, Point, Ray};
 use crate::kernels::packet::bank::Numbers;
 use crate::media::{Batches, Volume};
-use crate::numeric::pack::{self, WIDTH};
+use crate::numeric::pack::WIDTH;
 use crate::numeric::{Lane, Span};
 use crate::theory::single::Tracking;
 
@@ -94,49 +94,16 @@ impl ShadowRays<'_> {
         }
     }
 
-    /// In closed form, for those that a mask names.
-    #[inline(always)]
-    fn exact<S: Simd>(
-        &self,
-        field: &Batches,
-        which: mask64x8<S>,
-        line: [Points<S>; 2],
-        [from, to]: [f64x8<S>; 2],
-    ) -> f64x8<S> {
-        let volume = self.volume;
-        if let Some(value) = volume.single_value() {
-            return (-((to - from) * value)).exp();
+    /// In closed form, ray by ray, for those whose bits are set.
+    #[inline(never)]
+    fn exact(&self, which: u64, rays: &[[[f64; WIDTH]; 3]; 2], ends: &mut [f64], from: &[f64]) {
+        for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
+            let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
+            let inside = Span::new(from[lane], *end);
+            let ray = Ray { origin, direction, length: f64::INFINITY };
+            let profile = self.volume.along(&ray, inside);
+            *end = Lane::exp(-profile.optical_depth(inside).value);
         }
-        pack::aside(
-            from.token(),
-            #[inline(always)]
-            move || {
-                let [[a, b, c], [x, y, z]] = line;
-                if let Some(depths) = field.depths(&[a, b, c, x, y, z, from, to]) {
-                    return (-depths).exp();
-                }
-                let (lines, [start, ..]) = (line.map(rows), rows([from; 3]));
-                to.replaced(|ends| one_by_one(volume, which.to_bitmask(), &lines, ends, &start))
-            },
-        )
-    }
-}
-
-/// Transmittances in closed form, ray by ray, for those whose bits are set.
-#[inline(never)]
-fn one_by_one(
-    volume: &Volume,
-    which: u64,
-    rays: &[[[f64; WIDTH]; 3]; 2],
-    ends: &mut [f64],
-    from: &[f64],
-) {
-    for (lane, end) in ends.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
-        let [origin, direction] = rays.map(|rows| Point(rows.map(|row| row[lane])));
-        let inside = Span::new(from[lane], *end);
-        let ray = Ray { origin, direction, length: f64::INFINITY };
-        let profile = volume.along(&ray, inside);
-        *end = Lane::exp(-profile.optical_depth(inside).value);
     }
 }
 
@@ -168,11 +135,21 @@ impl<S: Simd> Shadows<S> {
             Tracking::Ratio { control, .. } => control,
             Tracking::Delta { .. } => 0.0,
             Tracking::Exact => {
-                if is_blocked.to_bitmask() == 0 {
+                let blocked = is_blocked.to_bitmask();
+                if blocked == 0 {
                     return (which, worth);
                 }
-                let line = [origin, light.direction];
-                let through = rays.exact(field, is_blocked, line, [from, end]);
+                if let Some(value) = rays.volume.single_value() {
+                    let through = (-((end - from) * value)).exp();
+                    return (which, worth * Lane::select(is_blocked, through, one));
+                }
+                let ([a, b, c], [x, y, z]) = (origin, light.direction);
+                if let Some(depths) = field.depths(&[a, b, c, x, y, z, from, end]) {
+                    let through = (-depths).exp();
+                    return (which, worth * Lane::select(is_blocked, through, one));
+                }
+                let (lines, [start, ..]) = ([rows(origin), rows(light.direction)], rows([from; 3]));
+                let through = end.replaced(|ends| rays.exact(blocked, &lines, ends, &start));
                 return (which, worth * Lane::select(is_blocked, through, one));
             }
         };
