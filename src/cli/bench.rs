@@ -31,11 +31,11 @@ pub struct Arguments {
     #[arg(allow_hyphen_values = true)]
     draws: u64,
     /// Rounds; each times every experiment and its plain loop in turn
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u32>(1..=10_000))]
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u32>(1..=10_000), allow_negative_numbers = true)]
     rounds: u32,
     /// Threads that draw at once, so many times as many draws; with several, time is elapsed and not processor
     /// time, and the column `scaling` compares them with one: give more draws then
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::threads)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: u16,
     /// Vector hardware to draw with, of what this machine has [default: the best]
     #[arg(long, value_name = "LEVEL", value_parser = level)]

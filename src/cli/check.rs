@@ -32,7 +32,7 @@ pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
     /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws (1e8)
-    #[arg(long, value_name = "B", value_parser = numbers::budget)]
+    #[arg(long, value_name = "B", value_parser = numbers::budget, allow_negative_numbers = true)]
     budget: Option<Budget>,
     /// What an inconclusive experiment counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]

@@ -15,7 +15,7 @@ pub struct Arguments {
 /// Prints the completions.
 pub fn main(arguments: &Arguments) -> anyhow::Result<u8> {
     let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Cli::command(), "trueflight", &mut script);
+    clap_complete::generate(arguments.shell, &mut Cli::command(), output::program(), &mut script);
     output::print(&String::from_utf8(script)?)?;
     Ok(0)
 }

@@ -1,4 +1,4 @@
-//! Drawing a plan with a bar of progress, and the limits of it.
+//! Drawing a plan with a bar of progress.
 
 use std::fs;
 use std::io::ErrorKind;

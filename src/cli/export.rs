@@ -23,7 +23,7 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
     /// Cells along the longest side of a field that is sampled [default: 32 in space, 256 along a line]
-    #[arg(long, value_name = "N", value_parser = numbers::whole::<u16>(2..=512))]
+    #[arg(long, value_name = "N", value_parser = numbers::whole::<u16>(2..=512), allow_negative_numbers = true)]
     cells: Option<u16>,
 }
 

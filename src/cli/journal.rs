@@ -30,7 +30,7 @@ pub fn path(folder: &Path) -> PathBuf {
 
 /// The command that goes on with it.
 pub fn resume(folder: &Path) -> String {
-    format!("`trueflight run --resume {}`", folder.display())
+    format!("`{} run --resume {}`", output::program(), folder.display())
 }
 
 /// What the first Ctrl-C, or the first wish to terminate, sets; the second ends the process at once.

@@ -60,12 +60,12 @@ pub struct Arguments {
     #[arg(long, requires = "case")]
     mean_only: bool,
     /// Seed of the case's pilot rays, where σ̂ is learned from them
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true, requires = "case")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true, requires = "case")]
     seed: u64,
     /// Judge averages of N consecutive draws: for stratified or quasi-random draws, or passes of a
     /// renderer. --variance and --kurtosis are then those of averages; of a --case the truth is taken
     #[arg(long, default_value_t = 1, value_name = "N")]
-    #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40))]
+    #[arg(value_parser = numbers::whole::<u64>(1..=1 << 40), allow_negative_numbers = true)]
     batch: u64,
     /// The bias that a pass excludes, relative to the truth (absolute for a truth of 0) [default:
     /// what the file's draws can see, at most 0.05; for a pipe 0.01]

@@ -108,11 +108,6 @@ pub fn main(catalogue: &Catalogue) -> ExitCode {
     run_with(catalogue, None, &Cli::parse())
 }
 
-/// The same for a program that `mpirun` may have begun among others, and that knows how to join them.
-pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
-    run_with(catalogue, Some(join), &Cli::parse())
-}
-
 /// The same with these arguments, the first of which is the program's name.
 ///
 /// # Errors
@@ -124,6 +119,11 @@ pub fn run_as<T: Into<OsString> + Clone>(
 ) -> Result<ExitCode, String> {
     let cli = Cli::try_parse_from(arguments).map_err(|error| error.to_string())?;
     Ok(run_with(catalogue, None, &cli))
+}
+
+/// [`main`] for a program that `mpirun` may have begun among others, and that knows how to join them.
+pub fn main_among(catalogue: &Catalogue, join: Join) -> ExitCode {
+    run_with(catalogue, Some(join), &Cli::parse())
 }
 
 fn run_with(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> ExitCode {
@@ -141,7 +141,11 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
     let console = &cli.console;
     match &cli.command {
         Command::Run(arguments) => match join.filter(|_| mpirun::ranks() > 1) {
-            Some(join) => ranks::main(&mpirun::join(join)?, arguments, catalogue, console),
+            Some(join) => {
+                // Who has joined must leave last, and in this thread.
+                let link = mpirun::join(join)?;
+                ranks::main(&link, arguments, catalogue, console)
+            }
             None => run::main(arguments, catalogue, console),
         },
         Command::Merge(arguments) => merge::main(arguments, catalogue, console),

@@ -24,7 +24,8 @@ pub fn allow(is_run: bool, join: Option<Join>) -> anyhow::Result<()> {
     if ranks > 1 && join.is_none() {
         bail!(
             "{ranks} processes were begun, but this program knows no MPI: \
-             begin trueflight-mpi, which `cargo build --release -p trueflight-mpi` makes, or leave out mpirun"
+             begin trueflight-mpi, which `cargo build --release -p trueflight-mpi` makes (a program of one's own \
+             calls `cli::main_among`), or leave out mpirun"
         );
     }
     Ok(())

@@ -1,7 +1,7 @@
 //! What goes to the console: results to stdout, the rest to stderr.
 
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Context;
@@ -130,6 +130,13 @@ pub fn mistakes(errors: &[CaseError], console: &Console, kind: &str) -> anyhow::
     let _ = writeln!(std::io::stderr(), "{}\n", shown.join("\n\n"));
     let mistakes: usize = errors.iter().map(CaseError::mistakes).sum();
     anyhow::anyhow!("{mistakes} mistake(s) in {} {kind}", errors.len())
+}
+
+/// What this program is called.
+pub fn program() -> String {
+    let name = std::env::args_os().next().map(PathBuf::from);
+    let stem = name.as_deref().and_then(Path::file_stem);
+    stem.map_or("trueflight".into(), |stem| stem.to_string_lossy().into_owned())
 }
 
 /// Writes a warning to stderr.

@@ -24,10 +24,10 @@ pub struct Arguments {
     #[arg(long, default_value = "results", value_name = "DIR")]
     out: PathBuf,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Threads [default: one per processor]; pictures do not depend on it
-    #[arg(long, value_name = "N", value_parser = numbers::threads)]
+    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: Option<u16>,
 }
 

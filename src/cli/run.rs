@@ -38,7 +38,7 @@ pub struct Arguments {
     #[arg(long, value_name = "K/N", conflicts_with_all = ["time", "save_baseline", "baseline"])]
     pub shard: Option<Share>,
     /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
-    #[arg(long, value_name = "T", value_parser = numbers::seconds)]
+    #[arg(long, value_name = "T", value_parser = numbers::seconds, allow_negative_numbers = true)]
     time: Option<f64>,
     #[command(flatten)]
     looks: Looks,
@@ -151,7 +151,8 @@ fn draw_share(
     if !console.quiet {
         let done = if was_finished { "was drawn before" } else { "is drawn" };
         output::print(&format!(
-            "share {share} {done}: {out}; `trueflight merge` judges all parts\n"
+            "share {share} {done}: {out}; `{} merge` judges all parts\n",
+            output::program()
         ))?;
     }
     Ok(0)

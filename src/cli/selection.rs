@@ -22,7 +22,7 @@ pub struct Experiments {
     #[arg(long, value_name = "KERNEL", value_parser = kernel)]
     kernel: Option<Order>,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
     seed: u64,
 }
 
@@ -38,7 +38,7 @@ pub struct Selection {
     #[arg(long, default_value_t = 1e-3, value_name = "A", value_parser = numbers::alpha, allow_hyphen_values = true)]
     alpha: f64,
     /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = numbers::threads)]
+    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     pub threads: Option<u16>,
 }
 
@@ -52,7 +52,7 @@ pub struct Looks {
     #[arg(long)]
     strict: bool,
     /// Look only after every K blocks of 16384 draws, which are kept, sent and merged as one: for very long runs
-    #[arg(long, default_value_t = 1, value_name = "K", value_parser = numbers::whole::<u64>(1..=1_000_000))]
+    #[arg(long, default_value_t = 1, value_name = "K", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
     blocks_per_look: u64,
 }
 

@@ -19,19 +19,19 @@ const MANY: u64 = 1000;
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// Independent runs of the calibration
-    #[arg(long, default_value_t = 400, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000))]
+    #[arg(long, default_value_t = 400, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
     runs: u64,
     /// Streams of correct foreign draws of each law
-    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000))]
+    #[arg(long, default_value_t = 5, value_name = "N", value_parser = numbers::whole::<u64>(1..=1_000_000), allow_negative_numbers = true)]
     streams: u64,
     /// Calibrate with 10 000 independent runs, and judge 1000 streams of each law
     #[arg(long, conflicts_with_all = ["runs", "streams"])]
     long: bool,
     /// Seed of the mutants' draws
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = numbers::threads)]
+    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Also write the tables as CSV into this folder
     #[arg(long, value_name = "DIR")]

@@ -15,10 +15,10 @@ pub struct Arguments {
     #[arg(long)]
     quick: bool,
     /// Seed of the random parameters
-    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = numbers::seed, allow_negative_numbers = true)]
     seed: u64,
     /// Threads [default: one per processor]; results do not depend on it
-    #[arg(long, value_name = "N", value_parser = numbers::threads)]
+    #[arg(long, value_name = "N", value_parser = numbers::threads, allow_negative_numbers = true)]
     threads: Option<u16>,
     /// Folder of results; report.html, tables and plot go to `stress` below it
     #[arg(long, short, default_value = "results", value_name = "DIR")]

@@ -91,7 +91,7 @@ impl Link for Joined {
             let process = world.process_at_rank(named(to));
             let mut sending = process.immediate_send_with_tag(scope, bytes, MESSAGE);
             while let Err(open) = sending.test() {
-                heard.extend(next(&world));
+                heard.extend(next(&world, MESSAGE));
                 sending = open;
             }
         });
@@ -100,7 +100,7 @@ impl Link for Joined {
 
     fn hear(&self) -> Option<Heard> {
         let (_turn, world) = self.talk();
-        next(&world)
+        next(&world, MESSAGE)
     }
 
     fn abort(&self, code: u8) -> ! {
@@ -120,9 +120,10 @@ impl Link for Joined {
         }
         // Who finds others talking learns it the next time.
         let Ok(_turn) = self.turn.try_lock() else { return false };
-        let told = SimpleCommunicator::world().any_process().immediate_probe_with_tag(STOP);
-        self.is_stopped.store(told.is_some(), Ordering::Relaxed);
-        told.is_some()
+        if next(&SimpleCommunicator::world(), STOP).is_some() {
+            self.is_stopped.store(true, Ordering::Relaxed);
+        }
+        self.is_stopped.load(Ordering::Relaxed)
     }
 }
 
@@ -132,6 +133,8 @@ impl Drop for Joined {
             // Nobody shall wait for a rank that cannot go on.
             self.abort(101);
         }
+        // MPI may end only when all that was sent has been received.
+        while next(&SimpleCommunicator::world(), STOP).is_some() {}
     }
 }
 
@@ -141,8 +144,9 @@ impl Debug for Joined {
     }
 }
 
-fn next(world: &SimpleCommunicator) -> Option<Heard> {
-    let found = world.any_process().immediate_matched_probe_with_tag(MESSAGE)?;
+/// What has come of a kind, if anything.
+fn next(world: &SimpleCommunicator, kind: i32) -> Option<Heard> {
+    let found = world.any_process().immediate_matched_probe_with_tag(kind)?;
     let (bytes, status) = found.matched_receive_vec::<u8>();
     Some((number(status.source_rank()), bytes))
 }

@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
     /// values of all passes]
     #[arg(long, value_name = "N", requires = "images")]
-    #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX))]
+    #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,
     /// Write judgement.json, tiles.csv and z-map.png into a folder
     #[arg(long, value_name = "DIR", requires = "images")]

@@ -22,6 +22,10 @@ pub type Heard = (usize, Vec<u8>);
 pub type Join = fn() -> Result<Arc<dyn Link>, String>;
 
 /// This rank's place among the others. What one rank says to another arrives in the order in which it is said.
+///
+/// Many threads talk at once. The last owner lets go in the thread that joined, when all is said: ranks may wait for each
+/// other there. A link that is dropped while its thread panics must end all ranks, for the others wait for what this one
+/// owes them.
 pub trait Link: Debug + Send + Sync {
     /// Its number, from 0.
     fn rank(&self) -> usize;
@@ -54,7 +58,7 @@ pub trait Link: Debug + Send + Sync {
 
 impl dyn Link + '_ {
     /// Waits for the next message: it comes, or all ranks are ended.
-    pub fn wait(&self) -> Heard {
+    pub(super) fn wait(&self) -> Heard {
         let mut naps = Naps::default();
         loop {
             if let Some(heard) = self.hear() {
@@ -65,13 +69,13 @@ impl dyn Link + '_ {
     }
 
     /// Ends all ranks, and says why, so that none waits for ever.
-    pub fn fail(&self, why: &str) -> ! {
+    pub(super) fn fail(&self, why: &str) -> ! {
         output::complain(&anyhow!("rank {}: {why}", self.rank()));
         self.abort(USAGE)
     }
 
     /// What a message says. One that cannot be read ends all ranks: it comes from another program.
-    pub fn read<T: DeserializeOwned>(&self, (from, bytes): &Heard) -> T {
+    pub(super) fn read<T: DeserializeOwned>(&self, (from, bytes): &Heard) -> T {
         postcard::from_bytes(bytes).unwrap_or_else(|_| {
             self.fail(&format!(
                 "cannot read what rank {from} says: it is another version of this program"

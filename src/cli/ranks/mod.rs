@@ -162,6 +162,8 @@ mod tests {
         to: Vec<Sender<Heard>>,
         heard: Mutex<Receiver<Heard>>,
         is_stopped: Arc<AtomicBool>,
+        /// Whether one has ended all.
+        is_over: Arc<AtomicBool>,
         /// What is longer is not posted.
         longest: usize,
     }
@@ -193,10 +195,12 @@ mod tests {
         }
 
         fn hear(&self) -> Option<Heard> {
+            assert!(!self.is_over.load(Ordering::Relaxed), "another rank has ended all");
             self.heard.lock().expect("a channel").try_recv().ok()
         }
 
         fn abort(&self, _: u8) -> ! {
+            self.is_over.store(true, Ordering::Relaxed);
             panic!("rank {} ends all", self.rank)
         }
 
@@ -209,12 +213,21 @@ mod tests {
         }
     }
 
+    impl Drop for Thread {
+        fn drop(&mut self) {
+            if thread::panicking() {
+                self.is_over.store(true, Ordering::Relaxed);
+            }
+        }
+    }
+
     fn links(ranks: usize, longest: usize) -> Vec<Arc<dyn Link>> {
         let (to, from): (Vec<_>, Vec<_>) = (0..ranks).map(|_| channel()).unzip();
-        let is_stopped = Arc::new(AtomicBool::new(false));
+        let [is_stopped, is_over] = [(); 2].map(|()| Arc::new(AtomicBool::new(false)));
         let link = |(rank, heard)| -> Arc<dyn Link> {
-            let (to, heard, is_stopped) = (to.clone(), Mutex::new(heard), Arc::clone(&is_stopped));
-            Arc::new(Thread { rank, to, heard, is_stopped, longest })
+            let (to, heard) = (to.clone(), Mutex::new(heard));
+            let (is_stopped, is_over) = (Arc::clone(&is_stopped), Arc::clone(&is_over));
+            Arc::new(Thread { rank, to, heard, is_stopped, is_over, longest })
         };
         from.into_iter().enumerate().map(link).collect()
     }
@@ -227,10 +240,11 @@ mod tests {
         let asked = run::Arguments::of(&words.map(str::to_owned)).expect("words");
         let console = Console { color: output::When::Never, quiet: true };
         let catalogue = Catalogue::builtin();
-        let main = |link: &Arc<dyn Link>| super::main(link, &asked, &catalogue, &console);
+        let main = &|link: &Arc<dyn Link>| super::main(link, &asked, &catalogue, &console);
         let links = links(ranks, longest);
         thread::scope(|scope| {
-            let all: Vec<_> = links.iter().map(|link| scope.spawn(|| main(link))).collect();
+            let begin = |link| scope.spawn(move || main(&link));
+            let all: Vec<_> = links.into_iter().map(begin).collect();
             for rank in all {
                 assert_eq!(rank.join().expect("a rank").expect("a verdict"), 0);
             }

@@ -36,6 +36,8 @@ pub fn dot<L: Lane>([a, b, c]: [L; 3], [x, y, z]: [L; 3]) -> L {
 
 /// Where the lines of rays that begin in a body enter and leave it, for the rays that a mask names: from no later than
 /// their beginnings, to infinity where there is no boundary. The one is not before the other where a ray only grazes.
+///
+/// On AVX2 it is a function of its own.
 #[inline(always)]
 pub fn ends<S: Simd>(bounds: &Bounds, rays: [Points<S>; 2], which: mask64x8<S>) -> [f64x8<S>; 2] {
     if matches!(bounds, Bounds::Everywhere) {

@@ -273,7 +273,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
     }
 }
 
-/// [`Phase::cosine`], in a function of its own.
+/// [`Phase::cosine`], in a function of its own on AVX2.
 #[inline(always)]
 fn cosine_of<S: Simd>(phase: &Phase, number: f64x8<S>) -> f64x8<S> {
     pack::aside(
@@ -283,7 +283,7 @@ fn cosine_of<S: Simd>(phase: &Phase, number: f64x8<S>) -> f64x8<S> {
     )
 }
 
-/// [`frame::turned_lanes`], in a function of its own.
+/// [`frame::turned_lanes`], in a function of its own on AVX2.
 #[inline(always)]
 fn turned<S: Simd>(direction: Points<S>, cosine: f64x8<S>, turns: f64x8<S>) -> Points<S> {
     pack::aside(

@@ -75,7 +75,7 @@ fn a_rank_that_dies_ends_the_run_which_can_be_gone_on_with() {
         assert!(killed.expect("kill").success());
         let output = run.wait_with_output().expect("it ends");
         assert!(!output.status.success(), "{}", said(&output));
-        let told = format!("trueflight run --resume {folder}");
+        let told = format!("trueflight-mpi run --resume {folder}` under mpirun");
         assert!(said(&output).contains(&told), "{}", said(&output));
         assert!(blocks.exists() && drawing(&folder).is_empty());
     }
