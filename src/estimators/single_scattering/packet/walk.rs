@@ -3,8 +3,8 @@
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use crate::estimators::Setup;
+use crate::media::Control;
 use crate::media::course::{Course, Even};
-use crate::media::{Control, Medium};
 use crate::numeric::{Lane, Span};
 use crate::problems::{Problem, SingleScattering};
 
@@ -27,8 +27,14 @@ impl World<'_> {
         let depth = if let Some(value) = self.extinction {
             (to.or_less(to.each(self.support.to)) - from).or_more(to.each(0.0)) * value
         } else {
-            let medium = self.setup.problem.medium();
-            to.replaced(|ends| depths_one_by_one(medium, from, which.to_bitmask(), ends))
+            let (bits, medium) = (which.to_bitmask(), self.setup.problem.medium());
+            to.replaced(|elements| {
+                for (lane, to) in elements.iter_mut().enumerate() {
+                    if bits >> lane & 1 == 1 {
+                        *to = medium.optical_depth(Span::new(from, *to)).value;
+                    }
+                }
+            })
         };
         (-depth).exp()
     }
@@ -40,15 +46,6 @@ impl World<'_> {
             Control::None => to.each(1.0),
             control => (-control.depths(self.support.from, to)).exp(),
         }
-    }
-}
-
-/// Optical depths from the ray's origin to places, for those whose bits are set. It takes no [`World`]: one that was handed
-/// on as a whole would be kept in memory by all that is inlined.
-#[inline(never)]
-fn depths_one_by_one(medium: &Medium, from: f64, which: u64, to: &mut [f64]) {
-    for (_, to) in to.iter_mut().enumerate().filter(|(lane, _)| which >> lane & 1 == 1) {
-        *to = medium.optical_depth(Span::new(from, *to)).value;
     }
 }
 
