@@ -138,22 +138,6 @@ fn usage_is_2() {
 }
 
 #[test]
-fn numbers_that_no_option_takes_are_told_what_it_takes() {
-    let place = Place::new(&[]);
-    for (arguments, takes) in [
-        ("run --threads -1", "'--threads <N>': it takes a whole number from 1 to 1024"),
-        ("run --seed 1.5", "'--seed <N>': it takes a whole number from 0 to 18446744073709551615"),
-        ("run --blocks-per-look 0", "'--blocks-per-look <K>': it takes a whole number from 1 to"),
-        ("bench --rounds many", "'--rounds <N>': it takes a whole number from 1 to 10000"),
-        ("judge --truth half", "'--truth <T>': it takes a number, such as"),
-    ] {
-        let output = place.run(arguments);
-        assert_eq!(code(&output), 2, "trueflight {arguments}");
-        assert_says(&stderr(&output), &[takes]);
-    }
-}
-
-#[test]
 fn unknown_cases_are_2_and_the_message_says_what_would_be_right() {
     let place = Place::new(&[]);
     for command in ["run", "predict", "plan"] {

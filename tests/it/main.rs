@@ -29,6 +29,7 @@ mod manual;
 mod media_laws;
 mod moments;
 mod mutants;
+mod numbers;
 mod optical_depth;
 mod own_pages;
 mod packets;
