@@ -149,7 +149,7 @@ pub fn outlined<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
 
 /// Computes [`outlined`] where a pack takes several registers, and in place elsewhere.
 #[inline(always)]
-pub fn aside<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
+pub fn outlined_if_narrow<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
     if const { size_of::<S::f64s>() >= size_of::<f64x8<S>>() } {
         return compute();
     }

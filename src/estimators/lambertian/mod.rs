@@ -150,7 +150,7 @@ impl Walked for Lambertian {
 /// [`Lambertian::boundary_lanes`], in a function of its own on AVX2.
 #[inline(always)]
 fn on_boundary<S: Simd>(problem: &Lambertian, numbers: [f64x8<S>; 2]) -> [Points<S>; 2] {
-    pack::aside(
+    pack::outlined_if_narrow(
         numbers[0].token(),
         #[inline(always)]
         move || problem.boundary_lanes(numbers),

@@ -44,7 +44,7 @@ pub fn ends<S: Simd>(bounds: &Bounds, rays: [Points<S>; 2], which: mask64x8<S>) 
         let simd = rays[0][0].token();
         return [f64x8::splat(simd, 0.0), f64x8::splat(simd, f64::INFINITY)];
     }
-    pack::aside(
+    pack::outlined_if_narrow(
         rays[0][0].token(),
         #[inline(always)]
         move || ends_in_place(bounds, rays, which),

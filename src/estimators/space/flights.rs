@@ -131,7 +131,7 @@ impl<S: Simd> Flights<S> {
     /// In which cells those that a mask names are, and how far it is to the planes ahead; for the others as it was.
     #[inline(always)]
     fn cells_entered(mut self, ground: &Ground, which: mask64x8<S>) -> (Points<S>, Points<S>) {
-        pack::aside(
+        pack::outlined_if_narrow(
             self.t.token(),
             #[inline(always)]
             move || {
@@ -190,7 +190,7 @@ impl<S: Simd> Flights<S> {
         which: mask64x8<S>,
         depth: f64x8<S>,
     ) -> (Self, mask64x8<S>, f64x8<S>) {
-        pack::aside(
+        pack::outlined_if_narrow(
             depth.token(),
             #[inline(always)]
             move || self.across_cells(ground, which, depth),

@@ -63,7 +63,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
             turns: none,
             begins: none,
         };
-        pack::aside(
+        pack::outlined_if_narrow(
             simd,
             #[inline(always)]
             || {
@@ -276,7 +276,7 @@ impl<S: Simd, const SUMS: usize> Pack<S, SUMS> {
 /// [`Phase::cosine`], in a function of its own on AVX2.
 #[inline(always)]
 fn cosine_of<S: Simd>(phase: &Phase, number: f64x8<S>) -> f64x8<S> {
-    pack::aside(
+    pack::outlined_if_narrow(
         number.token(),
         #[inline(always)]
         move || phase.cosine(number),
@@ -286,7 +286,7 @@ fn cosine_of<S: Simd>(phase: &Phase, number: f64x8<S>) -> f64x8<S> {
 /// [`frame::turned_lanes`], in a function of its own on AVX2.
 #[inline(always)]
 fn turned<S: Simd>(direction: Points<S>, cosine: f64x8<S>, turns: f64x8<S>) -> Points<S> {
-    pack::aside(
+    pack::outlined_if_narrow(
         turns.token(),
         #[inline(always)]
         move || frame::turned_lanes(direction, cosine, turns),

@@ -167,7 +167,7 @@ impl<S: Simd> Pack<S> {
             densities: Densities::new(simd),
             keep: Keep::new(simd),
         };
-        pack::aside(
+        pack::outlined_if_narrow(
             simd,
             #[inline(always)]
             || pack.begin_anew(world, all),
@@ -249,7 +249,7 @@ impl<S: Simd> Pack<S> {
         let (scatterers, hero, direction) = (&world.scatterers, self.hero, self.direction);
         let number = self.numbers.uniform_where(which);
         let turns = self.numbers.uniform_where(which);
-        let (cosine, turned) = pack::aside(
+        let (cosine, turned) = pack::outlined_if_narrow(
             turns.token(),
             #[inline(always)]
             move || {

@@ -41,7 +41,7 @@ fn meets_light<L: Lane>(sphere: &Sphere, at: &Departure<L>) -> L::Mask {
 /// [`aim`], in a function of its own on AVX2.
 #[inline(always)]
 fn aimed<S: Simd>(sphere: &Sphere, place: Points<S>, number: f64x8<S>) -> Aim<f64x8<S>> {
-    pack::aside(
+    pack::outlined_if_narrow(
         number.token(),
         #[inline(always)]
         move || aim(sphere, place, number),

@@ -13,7 +13,8 @@
 //! Transforms are those along the axes: scales and translations.
 //!
 //! No count that the file announces is trusted: memory is asked for as bytes are read, and places that the file
-//! names must be those where its parts end.
+//! names must be those where its parts end. The crate `vdb-rs` (0.6) does trust them, panics at other versions, and
+//! needs a C compiler.
 //!
 //! Source: K. Museth, *VDB: High-Resolution Sparse Volumes with Dynamic Topology*, ACM Transactions on Graphics 32
 //! (2013), for the tree; the layout is that of `openvdb/io` and `openvdb/tree` in `OpenVDB` 10.

@@ -77,7 +77,7 @@ impl<S: Simd> Points<'_, S> {
 /// [`MainPart::point`].
 #[inline(always)]
 fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
-    pack::aside(
+    pack::outlined_if_narrow(
         u.token(),
         #[inline(always)]
         move || main.point(u),
@@ -87,7 +87,7 @@ fn point_of<S: Simd>(main: MainPart, u: f64x8<S>) -> f64x8<S> {
 /// [`MainPart::density`].
 #[inline(always)]
 fn density_of<S: Simd>(main: MainPart, s: f64x8<S>) -> f64x8<S> {
-    pack::aside(
+    pack::outlined_if_narrow(
         s.token(),
         #[inline(always)]
         move || main.density(s),
