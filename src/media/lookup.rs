@@ -10,7 +10,7 @@
 
 use fearless_simd::{ExtractToken, Level, Simd, SimdBase, f64x8};
 
-use super::{Extinction, Field, Medium};
+use super::{Extinction, Field, Inlined, Medium};
 use crate::geometry::{Bounds, Point};
 use crate::numeric::pack::{self, Task, WIDTH, in_fused_code};
 use crate::numeric::twin::PAIR;
@@ -87,9 +87,14 @@ impl<F: Extinction> Batch for OneByOne<'_, F> {
     }
 
     fn all(&self, t: &mut [f64]) {
-        for t in t {
-            *t = self.one(*t);
-        }
+        in_fused_code(
+            #[inline(always)]
+            || {
+                for t in t {
+                    *t = self.0.extinction(*t);
+                }
+            },
+        );
     }
 }
 
@@ -98,19 +103,20 @@ pub struct Lookups<'a> {
     batch: Box<dyn Batch + 'a>,
     single_value: Option<f64>,
     is_costly: bool,
+    inlined: Option<Inlined<'a>>,
     /// The fields of the channels after the first.
     further: Vec<Lookups<'a>>,
 }
 
 impl<'a> Lookups<'a> {
     /// Those of a field on the hardware of a level.
-    pub fn new<F: Extinction>(field: &'a F, level: Level) -> Self {
+    pub fn new<F: Extinction + 'static>(field: &'a F, level: Level) -> Self {
         let (single_value, is_costly) = (field.single_value(), field.is_costly());
         let batch = match pack::on_wide(level, Compile(field)) {
             Ok(batch) => batch,
             Err(Compile(field)) => Box::new(OneByOne(field)),
         };
-        Self { batch, single_value, is_costly, further: Vec::new() }
+        Self { batch, single_value, is_costly, inlined: Inlined::of(field), further: Vec::new() }
     }
 
     /// Those of one field for each channel: of the first, and of others.
@@ -134,6 +140,12 @@ impl<'a> Lookups<'a> {
     /// See [`Extinction::is_costly`].
     pub fn is_costly(&self) -> bool {
         self.is_costly
+    }
+
+    /// The field by its type, where some kernels have its formula in their loops.
+    #[inline(always)]
+    pub fn inlined(&self) -> Option<Inlined<'a>> {
+        self.inlined
     }
 
     /// `σ_t` at the distances of two packs.

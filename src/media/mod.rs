@@ -21,6 +21,7 @@ pub mod gaussian;
 pub mod grid;
 pub mod grid_file;
 mod grid_vdb;
+pub mod inlined;
 pub mod inverse;
 pub mod lattice;
 pub mod lookup;
@@ -51,6 +52,7 @@ pub use body::Body;
 pub use control::Control;
 pub use course::Course;
 pub use cursor::Cursor;
+pub use inlined::Inlined;
 pub use inverse::Inverse;
 pub use lookup::{Batches, Lookups, Points};
 pub use majorants::Majorants;
@@ -84,7 +86,7 @@ pub trait LookUp: Send + Sync {
     fn lookups(&self, level: Level) -> Lookups<'_>;
 }
 
-impl<F: Extinction> LookUp for F {
+impl<F: Extinction + 'static> LookUp for F {
     fn at(&self, t: f64) -> f64 {
         in_fused_code(
             #[inline(always)]

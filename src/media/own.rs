@@ -39,14 +39,14 @@ impl<F: Fn(f64) -> f64 + Send + Sync + 'static> Formula<F> {
     }
 }
 
-impl<F: Fn(f64) -> f64 + Send + Sync> Extinction for Formula<F> {
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> Extinction for Formula<F> {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
         t.map(&self.at)
     }
 }
 
-impl<F: Fn(f64) -> f64 + Send + Sync> OpticalDepth for Formula<F> {
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> OpticalDepth for Formula<F> {
     fn optical_depth(&self, span: Span) -> Known {
         let mut total = [Sum::default(), Sum::default()];
         let ends = span.cut(self.breaks(span));
@@ -63,7 +63,7 @@ impl<F: Fn(f64) -> f64 + Send + Sync> OpticalDepth for Formula<F> {
     }
 }
 
-impl<F: Fn(f64) -> f64 + Send + Sync> FreeFlight for Formula<F> {}
+impl<F: Fn(f64) -> f64 + Send + Sync + 'static> FreeFlight for Formula<F> {}
 
 /// So many panels are looked at before any of them is halved.
 const PANELS: f64 = 64.0;
@@ -162,26 +162,26 @@ pub struct Chord<F> {
     ray: Ray,
 }
 
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync> Chord<F> {
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Chord<F> {
     fn value(&self, t: f64) -> f64 {
         (self.at)(self.ray.at(t).0)
     }
 }
 
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync> Extinction for Chord<F> {
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Extinction for Chord<F> {
     #[inline(always)]
     fn extinction<L: Lane>(&self, t: L) -> L {
         t.map(|t| self.value(t))
     }
 }
 
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync> OpticalDepth for Chord<F> {
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> OpticalDepth for Chord<F> {
     fn optical_depth(&self, span: Span) -> Known {
         integral(|t| self.value(t), span)
     }
 }
 
-impl<F: Fn([f64; 3]) -> f64 + Send + Sync> FreeFlight for Chord<F> {}
+impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> FreeFlight for Chord<F> {}
 
 impl<F: Fn([f64; 3]) -> f64 + Send + Sync + 'static> Field for SpaceFormula<F> {
     type Profile = Chord<F>;

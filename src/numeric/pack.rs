@@ -147,10 +147,15 @@ pub fn outlined<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
     simd.vectorize(compute)
 }
 
+/// Whether a pack fits into one register.
+pub const fn is_one_register<S: Simd>() -> bool {
+    size_of::<S::f64s>() >= size_of::<f64x8<S>>()
+}
+
 /// Computes [`outlined`] where a pack takes several registers, and in place elsewhere.
 #[inline(always)]
 pub fn outlined_if_narrow<S: Simd, R>(simd: S, compute: impl FnOnce() -> R) -> R {
-    if const { size_of::<S::f64s>() >= size_of::<f64x8<S>>() } {
+    if const { is_one_register::<S>() } {
         return compute();
     }
     outlined(simd, compute)

@@ -66,10 +66,22 @@ impl Weights<'_> {
     ) -> bool {
         let whole = count / PAIR * PAIR;
         let mut sum = Packs::splat(simd, 0.0);
-        for from in (0..whole).step_by(PAIR) {
-            let collisions = collisions(from);
-            sum = sum + collisions.met.residual;
-            self.collide_packs(simd, rule, first + from, &collisions);
+        if R::DECIDES {
+            for from in (0..whole).step_by(PAIR) {
+                let collisions = collisions(from);
+                sum = sum + collisions.met.residual;
+                self.decide_packs(simd, rule, first + from, &collisions);
+            }
+        } else {
+            // All of them survive, where they are.
+            let (pairs, _) = self.values[first..first + whole].as_chunks_mut();
+            for (number, weights) in pairs.iter_mut().enumerate() {
+                let collisions = collisions(number * PAIR);
+                sum = sum + collisions.met.residual;
+                let outcomes = collisions.decide(rule, Packs::from_slice(simd, weights));
+                outcomes.weight.store_slice(weights);
+            }
+            self.survivors += whole;
         }
         let mut is_unknown = is_none(sum) != 0;
         if whole < count {
@@ -82,14 +94,14 @@ impl Weights<'_> {
     }
 
     #[inline(always)]
-    fn collide_packs<S: Simd, R: Collision>(
+    fn decide_packs<S: Simd, R: Collision>(
         &mut self,
         simd: S,
         rule: &R,
         from: usize,
         collisions: &Collisions<S>,
     ) {
-        if R::DECIDES && !R::WEIGHS {
+        if !R::WEIGHS {
             // They have the weight that they began with.
             let outcomes = collisions.decide(rule, Packs::splat(simd, 1.0));
             self.survivors += outcomes.survived.count_ones() as usize;
@@ -101,14 +113,9 @@ impl Weights<'_> {
             return;
         };
         let outcomes = collisions.decide(rule, Packs::from_slice(simd, places));
-        if R::DECIDES {
-            let mut pair = [0.0; PAIR];
-            outcomes.weight.store_slice(&mut pair);
-            self.keep(&pair, outcomes.survived);
-        } else {
-            outcomes.weight.store_slice(places);
-            self.survivors += PAIR;
-        }
+        let mut pair = [0.0; PAIR];
+        outcomes.weight.store_slice(&mut pair);
+        self.keep(&pair, outcomes.survived);
     }
 
     /// The last of them do not fill two packs.

@@ -27,6 +27,7 @@
 //! [`CountLaw::in_layers`]: crate::theory::CountLaw::in_layers
 
 pub mod collisions;
+mod layer;
 pub mod walks;
 
 use fearless_simd::{Level, Simd, SimdBase, u64x8};
@@ -36,10 +37,19 @@ use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task, WIDTH};
 use crate::numeric::twin::PAIR;
 use crate::rng::{Lanes, Xoshiro};
-pub use walks::{OrderFree, Request, Streams, product};
+pub use walks::{OrderFree, Request, product};
 
 /// Collisions that are looked up together: their numbers stay in the first-level cache.
 pub const BATCH: usize = 512;
+
+/// The streams of a layer.
+#[derive(Clone, Copy)]
+pub struct Streams<'a> {
+    /// Where collisions lie.
+    pub places: &'a Lanes,
+    /// What becomes of the walks; not looked at where chance does not decide.
+    pub decisions: &'a Lanes,
+}
 
 /// What is known of each collision of a batch.
 #[repr(align(64))]

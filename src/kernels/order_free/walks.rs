@@ -1,18 +1,19 @@
 //! The walks of one order-free request: what becomes of them at its collisions.
 
-use fearless_simd::{Level, Simd, f64x8, u64x8};
+use fearless_simd::{Level, Simd, f64x8};
 use rand_distr::{Binomial, Distribution};
 
 use super::collisions::{Collisions, Weights};
-use super::{BATCH, Sites};
+use super::layer::{Layer, Site};
+use super::{BATCH, Sites, Streams};
 use crate::kernels::DrawBuffer;
 use crate::media::{Control, Lookups, Placement};
+use crate::numeric::Twin;
 use crate::numeric::pack::{self, Task};
 use crate::numeric::twin::PAIR;
-use crate::numeric::{Lane, Twin};
 use crate::problems::Problem;
+use crate::rng::Stream;
 use crate::rng::xoshiro::SCALE;
-use crate::rng::{Lanes, Stream, Xoshiro};
 use crate::setup::Setup;
 use crate::theory::rules::{Collision, Met};
 
@@ -43,15 +44,6 @@ pub trait OrderFree {
 
     /// All have met theirs.
     fn close(&mut self, layer: u32);
-}
-
-/// The streams of a layer.
-#[derive(Clone, Copy)]
-pub struct Streams<'a> {
-    /// Where collisions lie.
-    pub places: &'a Lanes,
-    /// What becomes of the walks; not looked at where chance does not decide.
-    pub decisions: &'a Lanes,
 }
 
 /// What is to be drawn.
@@ -198,8 +190,8 @@ impl<R: Collision> OrderFree for Walks<'_, R> {
             return false; // It would have lost digits.
         }
         let weights = Weights { values: &mut self.weights[..self.walking], survivors: 0 };
-        let (rule, places) = (&self.rule, [from, unit]);
-        let layer = Layer { rule, medium, places, sampling, subtracted, streams, weights };
+        let site = Site { from, unit, sampling, subtracted };
+        let layer = Layer { rule: &self.rule, medium, site, streams, weights };
         let Ok((survivors, is_unknown)) = pack::on_wide(level, layer) else { return false };
         self.survivors = survivors;
         self.is_unknown |= is_unknown;
@@ -261,81 +253,6 @@ impl<R: Collision> Task for Batch<'_, R> {
         );
         (weights.survivors, is_unknown)
     }
-}
-
-/// Collisions of one request that are looked up by one call.
-const ALONE: usize = 256;
-
-/// All walks, each at one more collision that is looked up for it alone; σ̂ and control have one value.
-struct Layer<'a, R> {
-    rule: &'a R,
-    medium: &'a Lookups<'a>,
-    /// Where they may be: from here on, in steps of so much.
-    places: [f64; 2],
-    sampling: f64,
-    subtracted: f64,
-    streams: Streams<'a>,
-    weights: Weights<'a>,
-}
-
-impl<R: Collision> Task for Layer<'_, R> {
-    type Output = (usize, bool);
-
-    /// Answers how many have survived, and whether some residual was no number.
-    #[inline(always)]
-    fn run<S: Simd>(self, simd: S) -> (usize, bool) {
-        let Self { rule, medium, places: [from, unit], sampling, subtracted, streams, mut weights } =
-            self;
-        let mut places: Xoshiro<u64x8<S>> = streams.places.awake(simd);
-        let mut decisions: Xoshiro<u64x8<S>> = streams.decisions.awake(simd);
-        let [from, unit, sampling, mean_free_path, subtracted] =
-            [from, unit, sampling, 1.0 / sampling, subtracted].map(|x| Twin::splat(simd, x));
-        let count = weights.values.len();
-        if let Some(value) = medium.single_value() {
-            let residual = Twin::splat(simd, value) - subtracted;
-            let is_unknown = weights.collide(
-                simd,
-                rule,
-                0,
-                count,
-                #[inline(always)]
-                |_| {
-                    let decision = if R::DECIDES { integers(&mut decisions) * SCALE } else { unit };
-                    Collisions { met: Met { residual, sampling, mean_free_path }, decision }
-                },
-            );
-            return (weights.survivors, is_unknown);
-        }
-        let mut is_unknown = false;
-        let mut looked_up = [[0.0; PAIR]; ALONE / PAIR];
-        for first in (0..count).step_by(ALONE) {
-            let many = ALONE.min(count - first);
-            let batch = &mut looked_up[..many.div_ceil(PAIR)];
-            for pair in &mut *batch {
-                integers(&mut places).times_plus(unit, from).store_slice(pair);
-            }
-            medium.replace_all(batch.as_flattened_mut());
-            is_unknown |= weights.collide(
-                simd,
-                rule,
-                first,
-                many,
-                #[inline(always)]
-                |from| {
-                    let decision = if R::DECIDES { integers(&mut decisions) * SCALE } else { unit };
-                    let residual = Twin::from_slice(simd, &batch[from / PAIR]) - subtracted;
-                    Collisions { met: Met { residual, sampling, mean_free_path }, decision }
-                },
-            );
-        }
-        (weights.survivors, is_unknown)
-    }
-}
-
-/// The next two packs of numbers, uniform among the integers below `2^53`.
-#[inline(always)]
-fn integers<S: Simd>(streams: &mut Xoshiro<u64x8<S>>) -> Twin<f64x8<S>> {
-    Twin(streams.integer(), streams.integer())
 }
 
 /// How likely a walk with so many collisions has no more of them.

@@ -32,7 +32,7 @@ mod survival;
 use fearless_simd::{Simd, SimdBase, SimdMask, f64x8, mask64x8, u64x8};
 
 use super::DrawBuffer;
-use crate::media::{Control, Lookups, Piecewise};
+use crate::media::{Control, Extinction, Lookups, Piecewise};
 use crate::numeric::Twin;
 use crate::numeric::pack::WIDTH;
 use crate::rng::{LANES, Stream, Streams, Xoshiro};
@@ -143,6 +143,12 @@ trait Walks<S: Simd> {
 #[inline(always)]
 fn ends<S: Simd>(inside: mask64x8<S>, goes_on: mask64x8<S>) -> Ends {
     Ends { ended: (!goes_on).to_bitmask(), escaped: (!inside).to_bitmask() }
+}
+
+/// `σ_t` of a field whose type is known, with the bits of [`Lookups::pair`].
+#[inline(always)]
+fn extinctions<S: Simd>(field: &impl Extinction, places: Twin<f64x8<S>>) -> Twin<f64x8<S>> {
+    Twin(field.extinction(places.0), field.extinction(places.1))
 }
 
 /// What a pack of walks does in [`STEPS`] steps. The walks and their streams are not part of it: beside

@@ -8,11 +8,11 @@ use std::marker::PhantomData;
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
 use super::survival::Survivals;
-use super::{Ends, Numbers, Request, Walks, ends, pays, run};
+use super::{Ends, Numbers, Request, Walks, ends, extinctions, pays, run};
 use crate::kernels::packet::event_queue::{Reader, Row};
 use crate::kernels::walk::Invariant;
 use crate::media::course::{Course, Even, Pieces};
-use crate::media::{Control, Lookups, Piecewise};
+use crate::media::{Control, Inlined, Lookups, Piecewise};
 use crate::numeric::pack::{self, Task};
 use crate::numeric::{Lane, Twin};
 use crate::setup::Setup;
@@ -50,39 +50,77 @@ impl<R: Collision> Task for Product<'_, '_, R> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { sampling, control, begin, rule, medium, request } = self;
-        let (site, subtracted) = (Site { rule, begin }, Subtracted::new(simd, control));
+        let (sampling, medium) = (self.sampling, self.medium);
         let Some(even) = sampling.even() else {
-            return walk(
+            return self.through(
                 simd,
-                site,
                 Pieces::new(simd, sampling),
                 #[inline(always)]
-                |places| subtracted.from(medium.pair(simd, places), places),
-                request,
+                |places| medium.pair(simd, places),
             );
         };
         let course = Even::new(simd, even);
-        if let (Some(value), Some(control)) = (medium.single_value(), control.single_value()) {
+        if let (Some(value), Some(control)) = (medium.single_value(), self.control.single_value()) {
             let residual = Twin::splat(simd, value - control);
-            walk(
+            return walk(
                 simd,
-                site,
+                self.site(),
                 course,
                 #[inline(always)]
                 |_| residual,
-                request,
-            );
-        } else {
-            walk(
-                simd,
-                site,
-                course,
-                #[inline(always)]
-                |places| subtracted.from(medium.pair(simd, places), places),
-                request,
+                self.request,
             );
         }
+        match medium.inlined() {
+            Some(Inlined::Eq21(field)) if const { pack::is_one_register::<S>() && !R::WEIGHS } => {
+                self.through(
+                    simd,
+                    course,
+                    #[inline(always)]
+                    |places| extinctions(field, places),
+                );
+            }
+            Some(Inlined::Grid(field)) if const { pack::is_one_register::<S>() && !R::DECIDES } => {
+                self.through(
+                    simd,
+                    course,
+                    #[inline(always)]
+                    |places| extinctions(field, places),
+                );
+            }
+            _ => self.through(
+                simd,
+                course,
+                #[inline(always)]
+                |places| medium.pair(simd, places),
+            ),
+        }
+    }
+}
+
+impl<'a, R: Collision> Product<'a, '_, R> {
+    #[inline(always)]
+    fn site(&self) -> Site<'a, R> {
+        Site { rule: self.rule, begin: self.begin }
+    }
+
+    /// Walks a course through the medium and its control, whose σ_t is looked up so.
+    #[inline(always)]
+    fn through<S: Simd, C: Course<S> + Copy>(
+        self,
+        simd: S,
+        course: C,
+        look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>> + Copy,
+    ) {
+        let subtracted = Subtracted::new(simd, self.control);
+        walk(
+            simd,
+            self.site(),
+            course,
+            #[inline(always)]
+            |places| subtracted.from(look_up(places), places),
+            self.request,
+        );
     }
 }
 

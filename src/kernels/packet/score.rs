@@ -5,13 +5,13 @@
 
 use fearless_simd::{Level, Simd, SimdBase, SimdMask, f64x8, mask64x8};
 
-use super::{Ends, Numbers, Request, Walks, ends, run};
+use super::{Ends, Numbers, Request, Walks, ends, extinctions, run};
 use crate::kernels::packet::event_queue::{Reader, Row};
 use crate::kernels::scoring::{Score, Share};
 use crate::media::course::{Course, Even};
-use crate::media::{Lookups, even};
-use crate::numeric::Lane;
+use crate::media::{Inlined, Lookups, even};
 use crate::numeric::pack::{self, Task};
+use crate::numeric::{Lane, Twin};
 use crate::setup::Setup;
 
 /// The draws of a next-flight estimator, on the hardware of a level; a request is handed back where the
@@ -43,30 +43,58 @@ impl<H: Share> Task for Scored<'_, '_, H> {
 
     #[inline(always)]
     fn run<S: Simd>(self, simd: S) {
-        let Self { sampling, unit, share, medium, request } = self;
-        let from = f64x8::splat(simd, sampling.from);
-        let end = f64x8::splat(simd, sampling.to);
-        let rate = f64x8::splat(simd, sampling.value);
-        let fresh = Score::open(share.of((end - from) * rate));
-        let (course, inside) = (Even::new(simd, sampling), mask64x8::splat(simd, true));
-        run(
+        let medium = self.medium;
+        match medium.inlined() {
+            Some(Inlined::Eq21(field)) if const { pack::is_one_register::<S>() } => self.along(
+                simd,
+                #[inline(always)]
+                |places| extinctions(field, places),
+            ),
+            _ => self.along(
+                simd,
+                #[inline(always)]
+                |places| medium.pair(simd, places),
+            ),
+        }
+    }
+}
+
+impl<H: Share> Scored<'_, '_, H> {
+    #[inline(always)]
+    fn along<S: Simd>(
+        self,
+        simd: S,
+        extinctions: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>> + Copy,
+    ) {
+        let Self { sampling, unit, share, request, .. } = self;
+        pack::outlined(
             simd,
             #[inline(always)]
-            || Scores {
-                share,
-                unit,
-                from,
-                end,
-                rate,
-                course,
-                inside,
-                t: from,
-                fresh,
-                score: fresh,
+            move || {
+                let from = f64x8::splat(simd, sampling.from);
+                let end = f64x8::splat(simd, sampling.to);
+                let rate = f64x8::splat(simd, sampling.value);
+                let fresh = Score::open(share.of((end - from) * rate));
+                let (course, inside) = (Even::new(simd, sampling), mask64x8::splat(simd, true));
+                run(
+                    simd,
+                    #[inline(always)]
+                    || Scores {
+                        share,
+                        unit,
+                        from,
+                        end,
+                        rate,
+                        course,
+                        inside,
+                        t: from,
+                        fresh,
+                        score: fresh,
+                    },
+                    extinctions,
+                    request,
+                );
             },
-            #[inline(always)]
-            |places| medium.pair(simd, places),
-            request,
         );
     }
 }
