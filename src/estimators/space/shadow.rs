@@ -27,6 +27,8 @@ pub struct ShadowRays<'a> {
     pub bounds: Bounds,
     /// How the transmittance is found.
     pub tracking: Tracking,
+    /// `1/σ̂`; 1 where nothing is tracked.
+    mean_free_path: f64,
 }
 
 /// Light as a point sees it, or eight.
@@ -85,13 +87,14 @@ pub struct Shadows<S: Simd> {
     worth: f64x8<S>,
 }
 
-impl ShadowRays<'_> {
-    /// σ̂; 1 where nothing is tracked.
-    fn sampling(&self) -> f64 {
-        match self.tracking {
+impl<'a> ShadowRays<'a> {
+    /// Those through a volume, from within bounds.
+    pub fn new(volume: &'a Volume, bounds: Bounds, tracking: Tracking) -> Self {
+        let sampling = match tracking {
             Tracking::Ratio { sampling, .. } | Tracking::Delta { sampling } => sampling,
             Tracking::Exact => 1.0,
-        }
+        };
+        Self { volume, bounds, tracking, mean_free_path: 1.0 / sampling }
     }
 
     /// In closed form, ray by ray, for those whose bits are set.
@@ -173,7 +176,7 @@ impl<S: Simd> Shadows<S> {
         [a, b, c]: Points<S>,
         depth: f64x8<S>,
     ) -> (Points<S>, mask64x8<S>) {
-        self.t += depth * (1.0 / rays.sampling());
+        self.t += depth * rays.mean_free_path;
         let ([x, y, z], t) = (self.direction, self.t);
         ([a + x * t, b + y * t, c + z * t], self.on & !self.end.at_most(t))
     }
@@ -199,8 +202,8 @@ impl<S: Simd> Shadows<S> {
         };
         let mut ends = self.on & !inside;
         match rays.tracking {
-            Tracking::Ratio { sampling, control } => {
-                let kept = zero.each(1.0) - (extinction - control) * (1.0 / sampling);
+            Tracking::Ratio { control, .. } => {
+                let kept = zero.each(1.0) - (extinction - control) * rays.mean_free_path;
                 self.through = Lane::select(inside, self.through * kept, self.through);
             }
             Tracking::Delta { sampling } => {

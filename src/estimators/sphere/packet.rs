@@ -90,7 +90,7 @@ impl<const CASTS: bool> Tally<1> for Seekers<'_, CASTS> {
         let Sphere { centre, radius, .. } = *self.sphere;
         let volume = &*self.sphere.scene.volume;
         let bounds = Bounds::Sphere { centre, radius };
-        CASTS.then_some(ShadowRays { volume, bounds, tracking: self.shadow })
+        CASTS.then(|| ShadowRays::new(volume, bounds, self.shadow))
     }
 
     fn parallel(&self) -> Option<Point> {

@@ -45,9 +45,8 @@ pub fn walks<'a>(
         _ => None,
     };
     let volume = setup.problem.volume();
-    let bounds = volume.bounds();
-    let rays = ShadowRays { volume, bounds, tracking };
-    let is_box = matches!(bounds, Bounds::Box(_));
+    let rays = ShadowRays::new(volume, volume.bounds(), tracking);
+    let is_box = matches!(rays.bounds, Bounds::Box(_));
     let is_tracked = matches!(kind, Kind::Points { camera, .. } if camera != CameraTracking::Exact);
     let is_single = setup.control.single_value().is_some();
     // One cheap sample alone, and a main part of many pieces beside a tracked camera
