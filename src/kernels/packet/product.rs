@@ -56,7 +56,7 @@ impl<R: Collision> Task for Product<'_, '_, R> {
                 simd,
                 Pieces::new(simd, sampling),
                 #[inline(always)]
-                |places| medium.pair(simd, places),
+                move |places| medium.pair(simd, places),
             );
         };
         let course = Even::new(simd, even);
@@ -67,7 +67,7 @@ impl<R: Collision> Task for Product<'_, '_, R> {
                 self.site(),
                 course,
                 #[inline(always)]
-                |_| residual,
+                move |_| residual,
                 self.request,
             );
         }
@@ -77,7 +77,7 @@ impl<R: Collision> Task for Product<'_, '_, R> {
                     simd,
                     course,
                     #[inline(always)]
-                    |places| extinctions(field, places),
+                    move |places| extinctions(field, places),
                 );
             }
             Some(Inlined::Grid(field)) if const { pack::is_one_register::<S>() && !R::DECIDES } => {
@@ -85,14 +85,14 @@ impl<R: Collision> Task for Product<'_, '_, R> {
                     simd,
                     course,
                     #[inline(always)]
-                    |places| extinctions(field, places),
+                    move |places| extinctions(field, places),
                 );
             }
             _ => self.through(
                 simd,
                 course,
                 #[inline(always)]
-                |places| medium.pair(simd, places),
+                move |places| medium.pair(simd, places),
             ),
         }
     }
@@ -118,7 +118,7 @@ impl<'a, R: Collision> Product<'a, '_, R> {
             self.site(),
             course,
             #[inline(always)]
-            |places| subtracted.from(look_up(places), places),
+            move |places| subtracted.from(look_up(places), places),
             self.request,
         );
     }

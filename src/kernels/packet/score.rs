@@ -48,12 +48,12 @@ impl<H: Share> Task for Scored<'_, '_, H> {
             Some(Inlined::Eq21(field)) if const { pack::is_one_register::<S>() } => self.along(
                 simd,
                 #[inline(always)]
-                |places| extinctions(field, places),
+                move |places| extinctions(field, places),
             ),
             _ => self.along(
                 simd,
                 #[inline(always)]
-                |places| medium.pair(simd, places),
+                move |places| medium.pair(simd, places),
             ),
         }
     }
