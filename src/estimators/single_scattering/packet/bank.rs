@@ -58,7 +58,9 @@ pub fn walks<'a>(
     }
     let in_space = volume.batches(level, is_box);
     let (support, extinction) = (setup.problem.medium().support(), medium.single_value());
-    let world = World { setup, support, extinction };
+    let constants = extinction.zip(setup.control.single_value());
+    let kept = constants.map(|(extinction, control)| 1.0 - (extinction - control) / even.value);
+    let world = World { setup, support, extinction, kept };
     let frame = Frame { world, even, rays, in_space, medium };
     match kind {
         Kind::Points { camera, from_source, .. } => {

@@ -17,6 +17,8 @@ pub struct World<'a> {
     pub support: Span,
     /// σ_t, where it has one value.
     pub extinction: Option<f64>,
+    /// `1 − (σ_t − σ_c)/σ̂`, where it has one value: no step has to divide.
+    pub kept: Option<f64>,
 }
 
 impl World<'_> {
@@ -93,6 +95,9 @@ impl<'a, S: Simd> Walk<'a, S> {
     /// `1 − (σ_t − σ_c)/σ̂` there.
     #[inline(always)]
     pub fn kept(&self, world: &World, extinction: f64x8<S>) -> f64x8<S> {
+        if let Some(kept) = world.kept {
+            return extinction.each(kept);
+        }
         let control = world.setup.control.extinction(self.t);
         extinction.each(1.0) - (extinction - control) / self.course.sampling()
     }
