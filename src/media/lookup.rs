@@ -3,7 +3,7 @@
 //! What happens at a collision is compiled once per estimator and level of hardware, what σ_t is at a
 //! place once per field and level. A kernel writes the places of a batch, one call answers `σ_t` at all
 //! of them, and the kernel goes on: kernels and fields add up, they do not multiply. This is the
-//! *look up* of event-based tracking.
+//! *look up* of event-based tracking. A few kernels have the formula of a few fields in them: [`Inlined`].
 //!
 //! Source: F. B. Brown, W. R. Martin, *Monte Carlo methods for radiation transport analysis on vector
 //! computers*, Progress in Nuclear Energy 14 (1984).

@@ -16,7 +16,7 @@ use crate::rng::xoshiro::SCALE;
 use crate::theory::rules::{Collision, Met};
 
 /// Collisions that are looked up by one call.
-const BATCH: usize = 256;
+const PER_CALL: usize = 256;
 
 /// The walks, and what they meet.
 pub struct Layer<'a, R> {
@@ -24,8 +24,8 @@ pub struct Layer<'a, R> {
     pub rule: &'a R,
     /// The medium.
     pub medium: &'a Lookups<'a>,
-    /// Where collisions are, and what is known there.
-    pub site: Site,
+    /// What all collisions have in common.
+    pub common: Common,
     /// The streams of the layer.
     pub streams: Streams<'a>,
     /// The walks.
@@ -34,10 +34,10 @@ pub struct Layer<'a, R> {
 
 /// What all collisions have in common.
 #[derive(Clone, Copy)]
-pub struct Site {
-    /// They lie from this distance on,
+pub struct Common {
+    /// The least distance at which one may lie.
     pub from: f64,
-    /// in steps of so much: what the integers of a stream are multiplied by.
+    /// The step between possible distances: what the integers of a stream are multiplied by.
     pub unit: f64,
     /// `σ̂`.
     pub sampling: f64,
@@ -45,7 +45,7 @@ pub struct Site {
     pub subtracted: f64,
 }
 
-impl Site {
+impl Common {
     #[inline(always)]
     fn places<S: Simd>(self, simd: S, streams: &mut Xoshiro<u64x8<S>>) -> Twin<f64x8<S>> {
         integers(streams).times_plus(Twin::splat(simd, self.unit), Twin::splat(simd, self.from))
@@ -91,7 +91,7 @@ impl<R: Collision> Task for Layer<'_, R> {
 impl<R: Collision> Layer<'_, R> {
     #[inline(always)]
     fn through_one_value<S: Simd>(&mut self, simd: S, value: f64) -> bool {
-        let (site, count) = (self.site, self.weights.values.len());
+        let (common, count) = (self.common, self.weights.values.len());
         let mut deciding = self.streams.decisions.awake(simd);
         self.weights.collide(
             simd,
@@ -100,7 +100,7 @@ impl<R: Collision> Layer<'_, R> {
             count,
             #[inline(always)]
             |_| {
-                let met = site.met(simd, Twin::splat(simd, value));
+                let met = common.met(simd, Twin::splat(simd, value));
                 Collisions { met, decision: decisions::<S, R>(simd, &mut deciding) }
             },
         )
@@ -109,11 +109,11 @@ impl<R: Collision> Layer<'_, R> {
     /// A field whose formula is in the loop.
     #[inline(always)]
     fn through<S: Simd>(&mut self, simd: S, field: &impl Extinction) -> bool {
-        let (site, count) = (self.site, self.weights.values.len());
+        let (common, count) = (self.common, self.weights.values.len());
         let mut placing = self.streams.places.awake(simd);
         let mut deciding = self.streams.decisions.awake(simd);
         // Found while the lookups before are made.
-        let mut next = (site.places(simd, &mut placing), decisions::<S, R>(simd, &mut deciding));
+        let mut next = (common.places(simd, &mut placing), decisions::<S, R>(simd, &mut deciding));
         self.weights.collide(
             simd,
             self.rule,
@@ -122,8 +122,8 @@ impl<R: Collision> Layer<'_, R> {
             #[inline(always)]
             |_| {
                 let (t, decision) = next;
-                next = (site.places(simd, &mut placing), decisions::<S, R>(simd, &mut deciding));
-                Collisions { met: site.met(simd, field.extinction(t)), decision }
+                next = (common.places(simd, &mut placing), decisions::<S, R>(simd, &mut deciding));
+                Collisions { met: common.met(simd, field.extinction(t)), decision }
             },
         )
     }
@@ -131,16 +131,16 @@ impl<R: Collision> Layer<'_, R> {
     /// Any field, a call for a batch.
     #[inline(always)]
     fn through_calls<S: Simd>(&mut self, simd: S) -> bool {
-        let (site, count) = (self.site, self.weights.values.len());
+        let (common, count) = (self.common, self.weights.values.len());
         let mut placing = self.streams.places.awake(simd);
         let mut deciding = self.streams.decisions.awake(simd);
         let mut is_unknown = false;
-        let mut looked_up = [[0.0; PAIR]; BATCH / PAIR];
-        for first in (0..count).step_by(BATCH) {
-            let many = BATCH.min(count - first);
+        let mut looked_up = [[0.0; PAIR]; PER_CALL / PAIR];
+        for first in (0..count).step_by(PER_CALL) {
+            let many = PER_CALL.min(count - first);
             let batch = &mut looked_up[..many.div_ceil(PAIR)];
             for pair in &mut *batch {
-                site.places(simd, &mut placing).store_slice(pair);
+                common.places(simd, &mut placing).store_slice(pair);
             }
             self.medium.replace_all(batch.as_flattened_mut());
             is_unknown |= self.weights.collide(
@@ -150,7 +150,7 @@ impl<R: Collision> Layer<'_, R> {
                 many,
                 #[inline(always)]
                 |from| {
-                    let met = site.met(simd, Twin::from_slice(simd, &batch[from / PAIR]));
+                    let met = common.met(simd, Twin::from_slice(simd, &batch[from / PAIR]));
                     Collisions { met, decision: decisions::<S, R>(simd, &mut deciding) }
                 },
             );

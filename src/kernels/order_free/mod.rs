@@ -19,7 +19,7 @@
 //! Where the collisions of a layer lie is the same for every σ̂ that is constant, whatever control
 //! and rule. Experiments that find their random numbers at one address can so share all lookups:
 //! each makes the draws that it would make alone ([`draw`]). One that is alone, with one σ̂ and one
-//! σ_c, notes no places: two packs of its walks are looked up and decided at once.
+//! σ_c, keeps 256 of its collisions at hand only (`layer.rs`).
 //!
 //! Source: the layers are the multinomial histogram of N, drawn bin by bin; binomial numbers by
 //! `rand_distr`.

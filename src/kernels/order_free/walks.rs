@@ -4,7 +4,7 @@ use fearless_simd::{Level, Simd, f64x8};
 use rand_distr::{Binomial, Distribution};
 
 use super::collisions::{Collisions, Weights};
-use super::layer::{Layer, Site};
+use super::layer::{Common, Layer};
 use super::{BATCH, Sites, Streams};
 use crate::kernels::DrawBuffer;
 use crate::media::{Control, Lookups, Placement};
@@ -190,8 +190,8 @@ impl<R: Collision> OrderFree for Walks<'_, R> {
             return false; // It would have lost digits.
         }
         let weights = Weights { values: &mut self.weights[..self.walking], survivors: 0 };
-        let site = Site { from, unit, sampling, subtracted };
-        let layer = Layer { rule: &self.rule, medium, site, streams, weights };
+        let common = Common { from, unit, sampling, subtracted };
+        let layer = Layer { rule: &self.rule, medium, common, streams, weights };
         let Ok((survivors, is_unknown)) = pack::on_wide(level, layer) else { return false };
         self.survivors = survivors;
         self.is_unknown |= is_unknown;

@@ -104,7 +104,7 @@ impl<'a, R: Collision> Product<'a, '_, R> {
         Site { rule: self.rule, begin: self.begin }
     }
 
-    /// Walks a course through the medium and its control, whose σ_t is looked up so.
+    /// Walks a course through the medium and its control; `look_up` answers σ_t.
     #[inline(always)]
     fn through<S: Simd, C: Course<S> + Copy>(
         self,

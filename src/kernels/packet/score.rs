@@ -60,12 +60,9 @@ impl<H: Share> Task for Scored<'_, '_, H> {
 }
 
 impl<H: Share> Scored<'_, '_, H> {
+    /// Walks along the ray; `look_up` answers σ_t.
     #[inline(always)]
-    fn along<S: Simd>(
-        self,
-        simd: S,
-        extinctions: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>> + Copy,
-    ) {
+    fn along<S: Simd>(self, simd: S, look_up: impl Fn(Twin<f64x8<S>>) -> Twin<f64x8<S>> + Copy) {
         let Self { sampling, unit, share, request, .. } = self;
         pack::outlined(
             simd,
@@ -91,7 +88,7 @@ impl<H: Share> Scored<'_, '_, H> {
                         fresh,
                         score: fresh,
                     },
-                    extinctions,
+                    look_up,
                     request,
                 );
             },
