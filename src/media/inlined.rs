@@ -2,18 +2,18 @@
 //!
 //! Kernels look a field up by one call for a batch of distances, see [`super::lookup`]. The call is felt where a
 //! lookup is cheap, a pack fills one register, and each step waits for it. `cargo bench --bench kernels` on Zen 5
-//! (AVX-512), the time of a draw over that with [`Inlined::of`] answering `None`:
+//! (AVX-512), the time of a draw over that with [`Inlined::of`] answering `None`, both programs in turn, medians of three:
 //!
 //! | kernel | field | time |
 //! |---|---|--:|
-//! | Woodcock, order-free | Eq. 21 | 0.85 to 0.86 |
-//! | Woodcock, along the ray | Eq. 21 | 0.88 to 0.89 |
-//! | next-flight (and unidirectional MIS, by the same loop), along the ray | Eq. 21 | 0.89 to 0.90 |
-//! | ratio, order-free | Eq. 21 | 0.90 to 0.91 |
-//! | ratio, along the ray | 128³ grid | 0.91 to 0.93 |
+//! | Woodcock, order-free | Eq. 21 | 0.86 |
+//! | Woodcock, along the ray | Eq. 21 | 0.89 |
+//! | next-flight, along the ray; unidirectional MIS has the same loop | Eq. 21 | 0.90 |
+//! | ratio, order-free | Eq. 21 | 0.92 |
+//! | ratio, along the ray | 128³ grid | 0.89 |
 //!
-//! Each line is a loop that is compiled once more for each rule, so this list stays short. On AVX2, where a pack takes two registers,
-//! none of them gains a tenth.
+//! Each line is a loop that is compiled once more for each rule, so this list stays short. On AVX2, where a pack takes
+//! two registers, none of them gains a tenth.
 
 use std::any::Any;
 
