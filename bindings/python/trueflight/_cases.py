@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _trueflight
+from ._arrays import host, is_foreign
 from ._errors import Error, shown
 
 Case = str | os.PathLike[str] | dict[str, Any]
@@ -91,8 +92,8 @@ def sweep(
         raise Error(f"{found} cannot be swept; give the values of one of: {', '.join(_SWEEPS)}")
     [(what, points)] = values.items()
     try:
-        numbers = [float(x) for x in np.atleast_1d(np.asarray(points, dtype=np.float64))]
-    except (TypeError, ValueError, OverflowError) as error:
+        numbers = [float(x) for x in np.atleast_1d(np.asarray(host(points), dtype=np.float64))]
+    except Exception as error:
         raise Error(f"{what} = {shown(points)} are no numbers; give a list of numbers") from error
     asked = as_case(case) | {"sweep": (what.replace("_", "-"), numbers)}
     wanted = _wanted(draws, seed, alpha, filter, threads)
@@ -139,6 +140,11 @@ def probability(what: str, number: Any) -> float:
 
 def _plain(place: str, value: Any) -> Any:
     """What stands at a place of a dict, as JSON has it: NumPy's numbers and arrays and paths, too."""
+    if is_foreign(value):
+        try:
+            value = host(value)
+        except Exception as error:
+            raise Error(f"{place} is {type(value).__name__}, which NumPy cannot read: {error}; give a list") from error
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, os.PathLike):

@@ -8,8 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _draws
+from ._arrays import Array, host, is_array
+from ._arrays import rounding as rounding_of
 from ._cases import as_case, probability, whole
-from ._draws import Array, Chunk
+from ._draws import Chunk
 from ._errors import DrawsError, Error, shown
 from ._trueflight import Judging
 from ._verdict import Verdict
@@ -48,8 +50,10 @@ def check(
 
     ``source`` is one of
 
-    - an array of n draws, shape (n,), or of n draws of k values, shape (n, k): NumPy, anything with DLPack on the CPU, or a
-      buffer. Any real dtype; float64 and float32 side by side are read in place, others some at a time;
+    - an array of n draws, shape (n,), or of n draws of k values, shape (n, k): NumPy, anything with DLPack or
+      ``__cuda_array_interface__``, a column of pandas, Polars or Arrow, or a buffer. Any real dtype; float64 and float32 side
+      by side are read in place, others some at a time. Arrays on a GPU (CuPy, PyTorch, Numba, JAX) are copied to the host in
+      pieces of 2**20 numbers;
     - a callable ``f(n)`` or ``f(n, rng)`` that answers n draws in such an array; ``rng`` is a ``numpy.random.Generator`` from
       seed and name. It is called until all is decided, for 2**24 draws at most;
     - an iterator of draws, or of such arrays.
@@ -78,7 +82,7 @@ def check(
         at most; for callables and iterators without ``draws`` 1 % of the mean.
     ``rounding``
         What rounding may add to a draw, relative to the truth: 3.6e-13, for arrays of float32 and float16 eight times the
-        dtype's epsilon.
+        dtype's epsilon, for bfloat16 and float8 half of it (one rounding, of the draw that is stored).
     ``batch``
         Judges averages of so many consecutive draws, for draws that depend on their neighbours.
     ``alpha``, ``draws``, ``seed``, ``name``
@@ -117,11 +121,11 @@ def check(
     # An array is read to its end, and so is what was announced; else the drawing stops when all is decided.
     is_whole = length is not None
     judging, form = None, None
-    for values, counts in chunks:
+    for values, counts, precision in chunks:
         if judging is None:
             form = _form(values, counts)
             _not_too_wide(called, values)
-            judging = _open(asked, form, length, values.dtype)
+            judging = _open(asked, form, length, precision)
         elif _form(values, counts) != form:
             raise Error(f"check `{called}`: draws of {_words(_form(values, counts))} after {_words(form)}; give all alike")
         _absorb(judging, values, counts)
@@ -134,13 +138,12 @@ def check(
 
 def _chunks(name: str, source: Any, draws: int | None, seed: int) -> tuple[Iterator[Chunk], int | None]:
     """The draws, and how many there are, where that is known."""
-    if callable(source) and not _draws.is_array(source):
+    if callable(source) and not is_array(source):
         return _draws.from_callable(name, source, draws, seed), draws
-    if _draws.is_pair(source) or _draws.is_array(source) or isinstance(source, tuple):
-        values, counts = _draws.chunk(name, source)
-        _not_transposed(name, values)
-        cut = values[:draws], None if counts is None else counts[:draws]
-        return iter([cut] if len(values) else []), len(cut[0]) or None
+    if _draws.is_pair(source) or is_array(source) or isinstance(source, tuple):
+        chunks, shape = _draws.from_array(name, source, draws)
+        _not_transposed(name, shape)
+        return chunks, min(shape[0], shape[0] if draws is None else draws) or None
     if isinstance(source, Iterable):
         return _draws.from_iterator(name, source, draws), draws
     kind = type(source).__name__
@@ -165,18 +168,16 @@ def _not_too_wide(name: str, values: Array) -> None:
         raise Error(f"check `{name}`: draws of {count} values each; {cure}")
 
 
-def _not_transposed(name: str, values: Array) -> None:
+def _not_transposed(name: str, shape: tuple[int, ...]) -> None:
     """Whether an array has a draw for each value at least."""
-    if values.ndim == 2 and 0 < len(values) < values.shape[1]:
-        one = "1 draw" if len(values) == 1 else f"{len(values)} draws"
-        found = f"{one} of {values.shape[1]} values each, fewer draws than values"
+    if len(shape) == 2 and 0 < shape[0] < shape[1]:
+        one = "1 draw" if shape[0] == 1 else f"{shape[0]} draws"
+        found = f"{one} of {shape[1]} values each, fewer draws than values"
         raise Error(f"check `{name}`: {found}; a row is a draw: did you mean draws.T?")
 
 
-def _open(asked: dict[str, Any], form: tuple[int, bool], length: int | None, dtype: np.dtype[Any]) -> Judging:
-    rounding = asked["rounding"]
-    if rounding is None and dtype.kind == "f" and dtype.itemsize < 8:
-        rounding = 8.0 * float(np.finfo(dtype).eps)
+def _open(asked: dict[str, Any], form: tuple[int, bool], length: int | None, precision: str) -> Judging:
+    rounding = rounding_of(precision) if asked["rounding"] is None else asked["rounding"]
     values, counts = form
     return Judging(asked | {"values": values, "counts": counts, "draws": length, "rounding": rounding})
 
@@ -211,8 +212,8 @@ def _numbers(what: str, given: Values | None) -> list[float] | None:
     if isinstance(given, np.ma.MaskedArray):
         raise Error(f"{what} is a masked array; fill or drop what is masked")
     try:
-        array = np.atleast_1d(np.asarray(given))
-    except ValueError as error:
+        array = np.atleast_1d(host(given))
+    except Exception as error:
         raise Error(f"{what} = {shown(given)} is no number; {cure}") from error
     if array.ndim != 1 or not len(array):
         raise Error(f"{what} has shape {np.shape(array)}; {cure}")

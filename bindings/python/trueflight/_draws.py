@@ -7,80 +7,63 @@ import inspect
 import itertools
 import zlib
 from collections.abc import Callable, Iterable, Iterator
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
-from ._errors import DrawsError, Error
+from ._arrays import Array, dimensions, local, pieces, small_format, taken
+from ._errors import Error
 from ._trueflight import BLOCK, MOST
 
-Array = npt.NDArray[Any]
-Chunk = tuple[Array, Array | None]
+Shape = tuple[int, ...]
 
 # So many draws a callable is asked for at a time: its arrays stay in the cache, and a call costs little beside them.
 AT_ONCE = 4 * BLOCK
 
 
-def is_array(source: Any) -> bool:
-    """Whether all draws are there at once."""
-    if isinstance(source, np.ndarray | list | str):
-        return True
-    if any(hasattr(source, name) for name in ("__array__", "__array_interface__", "__dlpack__")):
-        return True
-    try:
-        return memoryview(source) is not None
-    except TypeError:
-        return False
+class Chunk(NamedTuple):
+    """Draws that came together: shape (n,) or (n, k)."""
+
+    draws: Array
+    lookups: Array | None
+    """Shape (n,)."""
+    precision: str
+    """Name of the type that the draws had, as in ``bfloat16``."""
 
 
 def is_pair(source: Any) -> bool:
     """Whether these are draws with their lookups."""
-    return isinstance(source, tuple) and len(source) == 2 and np.ndim(source[0]) > 0
+    return isinstance(source, tuple) and len(source) == 2 and dimensions(source[0]) > 0
 
 
-def numbers(name: str, what: str, made: Any) -> Array:
-    """Real numbers as an array of NumPy's, without a copy where they are one, or lie in a buffer."""
-    if isinstance(made, np.ma.MaskedArray):
-        cure = f"fill its masked {what} (filled), or drop them (compressed)"
-        raise DrawsError(f"check `{name}`: the {what} are a masked array; {cure}")
-    try:
-        if hasattr(made, "__dlpack__") and not hasattr(made, "__array__"):
-            array = np.from_dlpack(made)
-        else:
-            array = np.asarray(made)
-    except ValueError as error:
-        raise DrawsError(f"check `{name}`: the {what} are no array: {error}; give numbers of one shape") from error
-    if array.dtype.kind not in "fiub":
-        kind = _kind(array)
-        raise DrawsError(f"check `{name}`: the {what} are {kind}, not real numbers; give an array of floats")
-    return array
+def from_array(name: str, source: Any, draws: int | None = None, count: int | None = None) -> tuple[Iterator[Chunk], Shape]:
+    """The draws of an array, or of one with its lookups, and its shape.
 
-
-def _kind(array: Array) -> str:
-    """What an array has in place of real numbers."""
-    if array.dtype.kind != "O":
-        return array.dtype.name
-    if array.ndim == 0:
-        return type(array.item()).__name__
-    first = f", the first is {type(array.flat[0]).__name__}" if array.size else ""
-    return f"Python objects (dtype object{first})"
-
-
-def chunk(name: str, made: Any, count: int | None = None) -> Chunk:
-    """One chunk, of so many draws if that is known."""
-    draws, lookups = made if is_pair(made) else (made, None)
-    draws = numbers(name, "draws", draws)
+    ``draws`` is the largest number of rows that are taken, ``count`` the number that was asked for. Arrays on another device
+    come to the host some at a time.
+    """
+    given, told = source if is_pair(source) else (source, None)
+    values, lookups = taken(name, "draws", given), None if told is None else taken(name, "lookups", told)
+    shape = tuple(int(size) for size in values.shape)
     wanted = "(n,) or (n, k)" if count is None else f"({count},) or ({count}, k)"
-    if draws.ndim not in (1, 2) or (count is not None and len(draws) != count) or draws.shape[1:] == (0,):
+    if len(shape) not in (1, 2) or (count is not None and shape[0] != count) or shape[1:] == (0,):
         asked = "" if count is None else f", but {count} draws were asked for"
-        raise Error(f"check `{name}`: draws of shape {draws.shape}{asked}; give an array of shape {wanted}")
-    if lookups is not None:
-        lookups = numbers(name, "lookups", lookups)
-        if lookups.shape != draws.shape[:1]:
-            found = f"lookups of shape {lookups.shape} for {len(draws)} draws"
-            raise Error(f"check `{name}`: {found}; give one for each draw, shape ({len(draws)},)")
-    return draws, lookups
+        raise Error(f"check `{name}`: draws of shape {shape}{asked}; give an array of shape {wanted}")
+    if lookups is not None and tuple(lookups.shape) != shape[:1]:
+        found = f"lookups of shape {tuple(lookups.shape)} for {shape[0]} draws"
+        raise Error(f"check `{name}`: {found}; give one for each draw, shape ({shape[0]},)")
+    return _chunks(name, values, lookups, small_format(given), draws), shape
+
+
+def _chunks(name: str, values: Any, lookups: Any, kind: str, draws: int | None) -> Iterator[Chunk]:
+    # If only the lookups are on another device, their pieces are those of the draws, too.
+    is_told = lookups is not None and isinstance(values, np.ndarray)
+    for first, last in pieces(lookups if is_told else values):
+        last = last if draws is None else min(last, draws)
+        if first < last:
+            told = None if lookups is None else local(name, "lookups", lookups, first, last)
+            made = local(name, "draws", values, first, last)
+            yield Chunk(made, told, kind or made.dtype.name)
 
 
 def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: int) -> Iterator[Chunk]:
@@ -90,7 +73,7 @@ def from_callable(name: str, make: Callable[..., Any], draws: int | None, seed: 
     left = MOST if draws is None else draws
     while left > 0:
         count = min(left, AT_ONCE)
-        yield chunk(name, make(count, *arguments), count)
+        yield from from_array(name, make(count, *arguments), count=count)[0]
         left -= count
 
 
@@ -100,19 +83,18 @@ def from_iterator(name: str, source: Iterable[Any], draws: int | None) -> Iterat
     iterator = iter(source)
     for first in iterator:
         rest: Iterable[Any] = itertools.chain([first], iterator)
-        if np.ndim(first) > 0 or is_pair(first):
+        if dimensions(first) > 0 or is_pair(first):
             # Arrays, to the end.
             for made in rest:
-                values, lookups = chunk(name, made)
-                values, lookups = values[:left], None if lookups is None else lookups[:left]
-                left -= len(values)
-                yield values, lookups
+                chunks, shape = from_array(name, made, left)
+                yield from chunks
+                left -= min(left, shape[0])
                 if left == 0:
                     return
             return
         some = list(itertools.islice(rest, min(left, BLOCK)))
         left -= len(some)
-        yield chunk(name, some)
+        yield from from_array(name, some)[0]
         if left == 0:
             return
 
