@@ -5,6 +5,7 @@
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
 pub mod additions;
+mod choices;
 pub mod digits;
 #[cfg(test)]
 pub mod fixture;

@@ -10,30 +10,33 @@ use std::ops::{Range, RangeInclusive};
 use std::path::Path;
 
 use super::additions::{self, Additions};
-use super::words::{brief, number, quoted, suggestion, whole};
+use super::choices::Form;
+use super::words::{meant, number, quoted, whole};
 use super::{Domain, Entry, Fault, Value};
 
 /// A table that is being read.
 #[derive(Debug)]
 pub struct Settings<'a> {
-    table: &'a [Entry],
+    pub(super) table: &'a [Entry],
     /// Where the table, or the key that names it, stands.
     pub span: Range<usize>,
     /// The path of the table, as in `problem.transmittance.ray`.
     pub path: String,
     /// The folder that relative file names start from.
     pub folder: &'a Path,
-    faults: &'a RefCell<Vec<Fault>>,
+    pub(super) faults: &'a RefCell<Vec<Fault>>,
     additions: &'a Additions,
     asked: RefCell<Vec<&'static str>>,
+    pub(super) form: Form<'a>,
 }
 
 impl<'a> Settings<'a> {
     /// Reads the top-level table of a file in `folder`; mistakes go to `faults`.
     pub fn new(root: &'a [Entry], folder: &'a Path, faults: &'a RefCell<Vec<Fault>>) -> Self {
-        let asked = RefCell::default();
+        let (asked, form) = (RefCell::default(), Form::Table);
         let additions = &additions::NONE;
-        Self { table: root, span: 0..0, path: String::new(), folder, faults, additions, asked }
+        let path = String::new();
+        Self { table: root, span: 0..0, path, folder, faults, additions, asked, form }
     }
 
     /// The same with pages of the program's own.
@@ -100,7 +103,7 @@ impl<'a> Settings<'a> {
         self.fault_at(span, key, message, help);
     }
 
-    fn path_of(&self, key: &str) -> String {
+    pub(super) fn path_of(&self, key: &str) -> String {
         match (self.path.as_str(), key) {
             ("", key) => key.to_owned(),
             (path, "") => path.to_owned(),
@@ -120,8 +123,7 @@ impl<'a> Settings<'a> {
     pub(super) fn required(&self, key: &'static str, wanted: &str) -> Option<&'a Entry> {
         let entry = self.entry(key);
         if entry.is_none() {
-            let message = format!("`{key}` is missing");
-            self.fault_at(self.span.clone(), "", message, format!("add `{key}`, {wanted}"));
+            self.missing(key, wanted);
         }
         entry
     }
@@ -186,38 +188,6 @@ impl<'a> Settings<'a> {
         Some(text.clone())
     }
 
-    /// One of some words that must be there.
-    pub fn word(&self, key: &'static str, words: &[&'static str]) -> Option<&'static str> {
-        let wanted = format!("one of {}", quoted(words));
-        let entry = self.required(key, &wanted)?;
-        self.word_of(entry, words, &wanted)
-    }
-
-    /// One of some words, or `default` where the key is absent.
-    pub fn word_or(
-        &self,
-        key: &'static str,
-        words: &[&'static str],
-        default: &'static str,
-    ) -> Option<&'static str> {
-        let wanted = format!("one of {}", quoted(words));
-        self.entry(key).map_or(Some(default), |entry| self.word_of(entry, words, &wanted))
-    }
-
-    fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
-        let Value::Text(text) = &entry.node.value else {
-            self.wrong(entry, wanted);
-            return None;
-        };
-        let word = words.iter().find(|word| *word == text).copied();
-        if word.is_none() {
-            let message = format!("`{}` is \"{}\"", entry.key, brief(text));
-            let help = suggestion(text, words, wanted);
-            self.fault_at(entry.node.span.clone(), &entry.key, message, help);
-        }
-        word
-    }
-
     /// `true` or `false`, or `default` where the key is absent.
     pub fn flag_or(&self, key: &'static str, default: bool) -> Option<bool> {
         let Some(entry) = self.entry(key) else { return Some(default) };
@@ -239,78 +209,7 @@ impl<'a> Settings<'a> {
         self.entry(key).and_then(|entry| self.open(entry))
     }
 
-    /// The tables of a list that must be there.
-    pub fn tables(&self, key: &'static str) -> Option<Vec<Settings<'a>>> {
-        let entry = self.required(key, "a list of tables")?;
-        let Value::Array(items) = &entry.node.value else {
-            self.wrong(entry, "a list of tables");
-            return None;
-        };
-        let mut tables = Vec::with_capacity(items.len());
-        for (index, item) in items.iter().enumerate() {
-            let path = self.path_of(&format!("{key}[{index}]"));
-            if let Value::Table(table) = &item.value {
-                tables.push(self.child(table, item.span.clone(), path));
-            } else {
-                let message = format!("{} stands in `{key}`", item.value.kind());
-                let help = "each entry is a table, as in { ratio = {} }";
-                self.fault_at(item.span.clone(), key, message, help);
-            }
-        }
-        Some(tables)
-    }
-
-    /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Answers
-    /// the position of the name and the table behind it.
-    pub fn choice(&self, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        self.choice_among(names, names)
-    }
-
-    /// The same where some names are known only to say what is wrong with them: hints list what is `offered`.
-    pub(crate) fn choice_among(
-        &self,
-        names: &[String],
-        offered: &[String],
-    ) -> Option<(usize, Settings<'a>)> {
-        let list = quoted(offered);
-        let [entry] = self.table else {
-            let (span, message) = match self.table {
-                [] => (self.span.clone(), "nothing is chosen here".to_owned()),
-                [_, second, ..] => {
-                    (second.key_span.clone(), format!("`{}` is one too many", second.key))
-                }
-                [_] => unreachable!("one entry is matched above"),
-            };
-            self.fault_at(span, "", message, format!("choose one of {list}"));
-            return None;
-        };
-        let Some(index) = names.iter().position(|name| *name == entry.key) else {
-            let message = format!("`{}` is not known here", entry.key);
-            let words: Vec<&str> = offered.iter().map(String::as_str).collect();
-            let help = suggestion(&entry.key, &words, &format!("one of {list}"));
-            self.fault_at(entry.key_span.clone(), "", message, help);
-            return None;
-        };
-        self.open(entry).map(|settings| (index, settings))
-    }
-
-    /// A table that must be there and chooses one of several names, as in `phase.isotropic = {}`.
-    pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
-        self.chosen_among(key, names, names)
-    }
-
-    /// The same where hints list what is `offered` of the names.
-    pub fn chosen_among(
-        &self,
-        key: &'static str,
-        names: &[String],
-        offered: &[String],
-    ) -> Option<(usize, Settings<'a>)> {
-        let entry = self.required(key, &format!("one of {}", quoted(offered)))?;
-        self.open(entry)?.choice_among(names, offered)
-    }
-
-    fn open(&self, entry: &'a Entry) -> Option<Settings<'a>> {
+    pub(super) fn open(&self, entry: &'a Entry) -> Option<Settings<'a>> {
         let Value::Table(table) = &entry.node.value else {
             self.wrong(entry, "a table, as in { … }");
             return None;
@@ -318,9 +217,14 @@ impl<'a> Settings<'a> {
         Some(self.child(table, entry.key_span.clone(), self.path_of(&entry.key)))
     }
 
-    fn child(&self, table: &'a [Entry], span: Range<usize>, path: String) -> Settings<'a> {
-        let asked = RefCell::default();
-        Settings { table, span, path, asked, ..*self }
+    pub(super) fn child(
+        &self,
+        table: &'a [Entry],
+        span: Range<usize>,
+        path: String,
+    ) -> Settings<'a> {
+        let (asked, form) = (RefCell::default(), Form::Table);
+        Settings { table, span, path, asked, form, ..*self }
     }
 
     /// Reports every key that was never asked for.
@@ -331,7 +235,7 @@ impl<'a> Settings<'a> {
             let help = if asked.is_empty() {
                 "this table takes no keys: write {}".to_owned()
             } else {
-                suggestion(&entry.key, &asked, &format!("the keys are {}", quoted(&asked)))
+                meant(&entry.key, &asked, &format!("the keys are {}", quoted(&asked)))
             };
             self.fault_at(entry.key_span.clone(), "", message, help);
         }

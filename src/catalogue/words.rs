@@ -39,6 +39,40 @@ pub fn suggestion(written: &str, words: &[&str], otherwise: &str) -> String {
     }
 }
 
+/// Words that other programs and papers use, and the keys of case files for the same thing, the likeliest first.
+const SYNONYMS: [(&[&str], &[&str]); 13] = [
+    (
+        &["sigma", "sigma-hat", "majorant", "mu-bar", "sigma-max", "sigma-bar", "rate"],
+        &["sampling"],
+    ),
+    (
+        &["sigma", "sigma-t", "mu-t", "mu", "density", "sigma-maj", "attenuation"],
+        &["extinction", "medium", "volume"],
+    ),
+    (&["sigma-c", "mu-c", "control-variate"], &["control"]),
+    (&["value", "sigma-t", "values"], &["extinction", "medium", "volume"]),
+    (&["field", "media", "grid", "profile"], &["medium", "volume"]),
+    (&["omega", "a", "single-scattering-albedo", "sigma-s"], &["albedo", "albedos"]),
+    (&["g", "phase-function", "anisotropy"], &["g", "phase"]),
+    (&["estimator", "trackers", "methods", "algorithms"], &["estimators"]),
+    (&["samples", "spp", "paths", "n"], &["draws"]),
+    (&["length", "range", "interval", "extent"], &["span", "ray"]),
+    (&["eps", "epsilon", "tolerances"], &["tolerance"]),
+    (&["name", "description"], &["title"]),
+    (&["bound", "aabb", "bbox", "bounding-box"], &["bounds"]),
+];
+
+/// The key of a table that was probably meant: a near one, or the one that says what the word says elsewhere.
+pub fn meant(written: &str, keys: &[&str], otherwise: &str) -> String {
+    let plain = written.to_lowercase().replace('_', "-");
+    let named = SYNONYMS.iter().filter(|(words, _)| words.contains(&plain.as_str()));
+    let mut known = named.flat_map(|(_, meant)| meant.iter()).filter(|key| keys.contains(key));
+    match known.next() {
+        Some(key) => format!("did you mean `{key}`? ({otherwise})"),
+        None => suggestion(written, keys, otherwise),
+    }
+}
+
 /// The number of letters to insert, delete or replace (V. Levenshtein, 1966).
 fn distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();

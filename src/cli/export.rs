@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 
 use super::{Console, numbers, output};
-use crate::export::{self, ExportError, Target};
+use crate::export::{self, ExportError, Target, Wishes};
 use crate::harness::catalogue::source;
 use crate::harness::{CaseError, Catalogue};
 
@@ -25,6 +25,12 @@ pub struct Arguments {
     /// Cells along the longest side of a field that is sampled [default: 32 in space, 256 along a line]
     #[arg(long, value_name = "N", value_parser = numbers::whole::<u16>(2..=512), allow_negative_numbers = true)]
     cells: Option<u16>,
+    /// Channels of a case that has several, from 1 and at most three, such as 1,3 [default: all]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', value_parser = numbers::whole::<u16>(1..=8), allow_negative_numbers = true)]
+    channels: Option<Vec<u16>>,
+    /// Write a homogeneous medium as a heterogeneous one, to test how Mitsuba tracks through that
+    #[arg(long)]
+    heterogeneous: bool,
 }
 
 /// Whom scenes are written for.
@@ -44,10 +50,15 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         Renderer::Mitsuba => Target::Mitsuba,
         Renderer::Pbrt => Target::Pbrt,
     };
-    let cells = arguments.cells.map(usize::from);
-    let exported = source
-        .map_err(ExportError::Case)
-        .and_then(|source| export::export(catalogue, &source, target, cells, &arguments.out));
+    let channels = arguments.channels.as_ref();
+    let wishes = Wishes {
+        cells: arguments.cells.map(usize::from),
+        channels: channels.map(|list| list.iter().copied().map(usize::from).collect()),
+        heterogeneous: arguments.heterogeneous,
+    };
+    let exported = source.map_err(ExportError::Case).and_then(|source| {
+        export::export_with(catalogue, &source, target, &wishes, &arguments.out)
+    });
     let exported = match exported {
         Ok(exported) => exported,
         Err(ExportError::Case(error @ CaseError::Faulty { .. })) => {

@@ -3,15 +3,16 @@
 //! One orthographic camera whose rays are all the same, a box filter and one sample a pixel, so that every pixel is
 //! one sample; `-D integrator=volpathmis`, `-D sampling=false`, `-D width=…`, `-D height=…` and `-D seed=…` change
 //! what they say. Fields are `gridvolume`s placed by `to_world`: corners in `.vol` files may be those of something
-//! else. Roulette is off, for it would change the law of a sample.
+//! else. Roulette is off, for it would change the law of a sample. Channels are red, green and blue of the variants
+//! `…_rgb`, which take them as they are: `raw` keeps grids of three channels from being turned into spectra.
 //!
 //! Source: W. Jakob et al., *Mitsuba 3 renderer* (2022), its plugin reference.
 
 use std::fmt::Write;
 
 use super::sampled::FILE as GRID;
-use super::scene::{Body, Light, Scene, View};
-use crate::geometry::{Aabb, Point};
+use super::scene::{Light, Scene, View};
+use crate::geometry::{Aabb, Bounds, Point};
 use crate::phase::Phase;
 
 /// A number of single precision with all of its digits.
@@ -38,7 +39,7 @@ pub fn text(scene: &Scene, view: &View) -> String {
   <medium id="medium" type="{}">
     <boolean name="sample_emitters" value="$sampling"/>
 "#,
-        if scene.grid().is_some() { "heterogeneous" } else { "homogeneous" },
+        if scene.is_homogeneous() { "homogeneous" } else { "heterogeneous" },
     );
     medium(scene, &mut text);
     camera(scene, &mut text);
@@ -49,13 +50,12 @@ pub fn text(scene: &Scene, view: &View) -> String {
 
 /// What is within the medium's element.
 fn medium(scene: &Scene, text: &mut String) {
-    match &scene.body {
-        Body::Grid(grid) => {
-            let Aabb { low, high } = grid.bounds;
-            let filter = if grid.nearest { "nearest" } else { "trilinear" };
-            let _ = write!(
-                text,
-                r#"    <volume name="sigma_t" type="gridvolume">
+    if let Some(grid) = scene.grids().first() {
+        let Aabb { low, high } = grid.bounds;
+        let filter = if grid.nearest { "nearest" } else { "trilinear" };
+        let _ = write!(
+            text,
+            r#"    <volume name="sigma_t" type="gridvolume">
       <string name="filename" value="{GRID}"/>
       <string name="filter_type" value="{filter}"/>
       <string name="wrap_mode" value="clamp"/>
@@ -66,15 +66,21 @@ fn medium(scene: &Scene, text: &mut String) {
       </transform>
     </volume>
 "#,
-                vector("scale", high - low),
-                vector("translate", low),
-            );
+            vector("scale", high - low),
+            vector("translate", low),
+        );
+    } else {
+        let mut extinctions: Vec<f64> =
+            scene.channels.iter().map(|channel| channel.field.peak()).collect();
+        // Constant volumes hold numbers from 0 to 1: up to Mitsuba 3.4 it refuses others.
+        let scale = scene.peak();
+        if scale > 1.0 {
+            extinctions.iter_mut().for_each(|extinction| *extinction /= scale);
+            let _ = writeln!(text, "    <float name=\"scale\" value=\"{}\"/>", number(scale));
         }
-        Body::Ball { extinction, .. } => {
-            let _ = writeln!(text, "    {}", value("sigma_t", *extinction));
-        }
+        let _ = writeln!(text, "    {}", value("sigma_t", &extinctions));
     }
-    let _ = writeln!(text, "    {}", value("albedo", scene.albedo));
+    let _ = writeln!(text, "    {}", value("albedo", &scene.albedos()));
     let phase = match scene.phase {
         Phase::Isotropic(_) => "<phase type=\"isotropic\"/>".to_owned(),
         Phase::Rayleigh(_) => "<phase type=\"rayleigh\"/>".to_owned(),
@@ -85,11 +91,13 @@ fn medium(scene: &Scene, text: &mut String) {
     let _ = writeln!(text, "    {phase}\n  </medium>");
 }
 
-/// A number that is the same for all colours and everywhere.
-fn value(name: &str, x: f64) -> String {
+/// A colour that is the same everywhere; the last channel stands for those that are not there.
+fn value(name: &str, channels: &[f64]) -> String {
+    let colour =
+        [0, 1, 2].map(|n| channels.get(n).or(channels.last()).copied().unwrap_or_default());
+    let colour = colour.map(number).join(" ");
     format!(
-        "<volume name=\"{name}\" type=\"constvolume\"><rgb name=\"value\" value=\"{0} {0} {0}\"/></volume>",
-        number(x)
+        "<volume name=\"{name}\" type=\"constvolume\"><rgb name=\"value\" value=\"{colour}\"/></volume>"
     )
 }
 
@@ -138,8 +146,11 @@ fn boundary(scene: &Scene, text: &mut String) {
     let null =
         "    <bsdf type=\"null\"/>\n    <ref name=\"interior\" id=\"medium\"/>\n  </shape>\n";
     let Aabb { low, high } = scene.bounds();
-    match &scene.body {
-        Body::Grid(_) => {
+    match scene.shape {
+        Bounds::Sphere { centre, radius } => {
+            let _ = write!(text, "{}{null}", ball(centre, radius));
+        }
+        Bounds::Box(_) | Bounds::Everywhere => {
             let (half, middle) = ((high - low) * 0.5, (high + low) * 0.5);
             let _ = write!(
                 text,
@@ -148,9 +159,6 @@ fn boundary(scene: &Scene, text: &mut String) {
                 vector("scale", half),
                 vector("translate", middle),
             );
-        }
-        Body::Ball { centre, radius, .. } => {
-            let _ = write!(text, "{}{null}", ball(*centre, *radius));
         }
     }
     if !scene.has_mirrors {
@@ -220,7 +228,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
             )
         }
         Light::Core { radius } => {
-            let Body::Ball { centre, .. } = scene.body else { return };
+            let Bounds::Sphere { centre, .. } = scene.shape else { return };
             // What meets it stays in the medium: it is no boundary.
             format!("{}{black}{area}", ball(centre, radius))
         }

@@ -12,6 +12,7 @@
 //! Files are made in a temporary folder and moved when all are there.
 
 pub mod error;
+mod fields;
 pub mod mitsuba;
 pub mod pbrt;
 pub mod reading;
@@ -68,15 +69,23 @@ pub struct Exported {
     pub truth: Truth,
 }
 
-/// Writes a case of a catalogue as a scene into a folder, which is made if it is not there.
-///
-/// `cells` is the number of cells along the longest side of a field that is sampled; without it 32 in space and
-/// 256 along a line. A grid keeps its own.
+/// How a case becomes a scene.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Wishes {
+    /// The number of cells along the longest side of a field that is sampled; without it 32 in space and 256 along a
+    /// line. A grid keeps its own.
+    pub cells: Option<usize>,
+    /// The channels, from 1, of a case that has several: 1 to 3 of them, in this order; without it all.
+    pub channels: Option<Vec<usize>>,
+    /// Whether a homogeneous medium is written as a heterogeneous one, to test how a renderer tracks through that.
+    pub heterogeneous: bool,
+}
+
+/// Writes a case of a catalogue as a scene, with a number of cells and all else by default.
 ///
 /// # Errors
 ///
-/// A case that is wrong, that the target cannot show, or whose answer theory does not know, and files that cannot be
-/// written. Nothing is left behind then.
+/// See [`export_with`].
 pub fn export(
     catalogue: &Catalogue,
     source: &Source,
@@ -84,7 +93,23 @@ pub fn export(
     cells: Option<usize>,
     out: &Path,
 ) -> Result<Exported, ExportError> {
-    let scene = reading::read(catalogue, source, target, cells)?;
+    export_with(catalogue, source, target, &Wishes { cells, ..Wishes::default() }, out)
+}
+
+/// Writes a case of a catalogue as a scene into a folder, which is made if it is not there.
+///
+/// # Errors
+///
+/// A case that is wrong, that the target cannot show, or whose answer theory does not know, and files that cannot be
+/// written. Nothing is left behind then.
+pub fn export_with(
+    catalogue: &Catalogue,
+    source: &Source,
+    target: Target,
+    wishes: &Wishes,
+    out: &Path,
+) -> Result<Exported, ExportError> {
+    let scene = reading::read(catalogue, source, target, wishes)?;
     let was_there = out.exists();
     let written = write(&scene, out);
     if written.is_err() && !was_there {
@@ -108,17 +133,32 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
         names.push(name);
         written
     };
-    if let Some(grid) = scene.grid() {
-        put(sampled::FILE.into(), &grid.vol())?;
+    let grids = scene.grids();
+    if !grids.is_empty() {
+        put(sampled::FILE.into(), &sampled::vol(&grids))?;
+    }
+    if grids.len() > 1 {
+        for (channel, grid) in grids.iter().enumerate() {
+            put(sampled::file_of(channel), &sampled::vol(&[grid]))?;
+        }
     }
     put(theory::FILE.into(), theory::case(scene).as_bytes())?;
     let truth = truth::of(scene, &theory::ask(scene, stage.path())?);
-    for (question, view) in truth.questions.iter().zip(&scene.views) {
-        let text = match scene.target {
-            Target::Mitsuba => mitsuba::text(scene, view),
-            Target::Pbrt => pbrt::text(scene, view),
+    for (view, channel) in scene.asked() {
+        let name = scene.file(view, channel);
+        if !truth.questions.iter().any(|question| question.scene == name) {
+            continue;
+        }
+        let text = match (scene.target, channel) {
+            // All channels are in one scene.
+            (Target::Mitsuba, Some(2..)) => continue,
+            (Target::Mitsuba, _) => mitsuba::text(scene, view),
+            (Target::Pbrt, Some(channel)) => {
+                pbrt::text(&scene.of_channel(channel - 1), view, &name)
+            }
+            (Target::Pbrt, None) => pbrt::text(scene, view, &name),
         };
-        put(question.scene.clone(), text.as_bytes())?;
+        put(name, text.as_bytes())?;
     }
     put(truth::FILE.into(), truth.json()?.as_bytes())?;
     let older = older(out, &names);
@@ -132,7 +172,8 @@ fn older(out: &Path, names: &[String]) -> Vec<PathBuf> {
     let is_old = |path: &PathBuf| {
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         let is_scene = path.extension().is_some_and(|end| end == "xml" || end == "pbrt");
-        (is_scene || name == sampled::FILE) && !names.iter().any(|own| *own == name)
+        let is_field = name.starts_with("density") && name.ends_with(".vol");
+        (is_scene || is_field) && !names.iter().any(|own| *own == name)
     };
     let mut older: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     older.retain(is_old);
@@ -163,12 +204,23 @@ pub fn single(x: f64) -> f64 {
 }
 
 impl Scene {
-    /// The name of a scene file.
-    fn file(&self, view: &scene::View) -> String {
-        let ending = match self.target {
-            Target::Mitsuba => "xml",
-            Target::Pbrt => "pbrt",
+    /// The name of a scene file, of one of several channels where pictures have none.
+    fn file(&self, view: &scene::View, channel: Option<usize>) -> String {
+        match (self.target, channel) {
+            (Target::Mitsuba, _) => format!("{}.xml", view.name),
+            (Target::Pbrt, None) => format!("{}.pbrt", view.name),
+            (Target::Pbrt, Some(channel)) => format!("{}-{channel}.pbrt", view.name),
+        }
+    }
+
+    /// What is asked: each picture, and each of its channels, from 1, where there are several.
+    fn asked(&self) -> Vec<(&scene::View, Option<usize>)> {
+        let channels: Vec<Option<usize>> = if self.is_coloured() {
+            (1..=self.channels.len()).map(Some).collect()
+        } else {
+            vec![None]
         };
-        format!("{}.{ending}", view.name)
+        let of_view = |view| channels.iter().map(move |channel| (view, *channel));
+        self.views.iter().flat_map(of_view).collect()
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! Grids are `uniformgrid` media, which are zero beyond the box: between the outermost samples and its faces σ_t falls
 //! to half, and `truth.json` is of that. Lights have the colour (1, 1, 1). pbrt draws wavelengths for each sample, so
-//! that a sample has a colour and a law of its own: only its mean is known.
+//! that a sample has a colour and a law of its own: only its mean is known. It has no channels: where a case has several,
+//! each is a scene of its own, grey.
 //!
 //! Source: M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 4th edition (2023), and the description
 //! of its scene format.
@@ -10,15 +11,15 @@
 use std::fmt::Write;
 
 use super::mitsuba::number;
-use super::scene::{Body, Light, Scene, View};
-use crate::geometry::{Aabb, Point};
+use super::scene::{Channel, Field, Light, Scene, View};
+use crate::geometry::{Aabb, Bounds, Point};
 use crate::phase::Phase;
 
 /// Scatterings of a path that is not meant to end.
 const DEEP: u32 = 1_000_000;
 
-/// The text of a scene file.
-pub fn text(scene: &Scene, view: &View) -> String {
+/// The text of a scene file of a name: of the first channel.
+pub fn text(scene: &Scene, view: &View, file: &str) -> String {
     let ([_, up, onward], half) = (scene.axes(), number(scene.aperture()));
     let mut text = format!(
         "LookAt {} {} {}\n\
@@ -31,7 +32,7 @@ pub fn text(scene: &Scene, view: &View) -> String {
         triple(scene.eye),
         triple(scene.eye + onward),
         triple(up),
-        view.name,
+        file.trim_end_matches(".pbrt"),
         scene.scatterings.unwrap_or(DEEP),
     );
     if scene.is_inside {
@@ -45,9 +46,9 @@ pub fn text(scene: &Scene, view: &View) -> String {
     }
     light(scene, view.light, &mut text);
     text.push_str("AttributeBegin\nMaterial \"interface\"\nMediumInterface \"medium\" \"\"\n");
-    match &scene.body {
-        Body::Grid(grid) => text.push_str(&cuboid(grid.bounds)),
-        Body::Ball { centre, radius, .. } => text.push_str(&ball(*centre, *radius)),
+    match scene.shape {
+        Bounds::Sphere { centre, radius } => text.push_str(&ball(centre, radius)),
+        Bounds::Box(_) | Bounds::Everywhere => text.push_str(&cuboid(scene.bounds())),
     }
     text + "AttributeEnd\n"
 }
@@ -67,9 +68,9 @@ fn medium(scene: &Scene) -> String {
         _ => 0.0,
     };
     let mut text = "MakeNamedMedium \"medium\" ".to_owned();
-    let a = scene.albedo;
-    let [absorbs, scatters] = match &scene.body {
-        Body::Grid(grid) => {
+    let Channel { field, albedo: a } = &scene.channels[0];
+    let [absorbs, scatters] = match field {
+        Field::Grid(grid) => {
             let [nx, ny, nz] = grid.size;
             let Aabb { low, high } = grid.bounds;
             let values: Vec<String> = grid.values.iter().map(|&x| number(f64::from(x))).collect();
@@ -81,9 +82,9 @@ fn medium(scene: &Scene) -> String {
                 triple(high),
                 values.join(" "),
             );
-            [1.0 - a, a]
+            [1.0 - a, *a]
         }
-        Body::Ball { extinction, .. } => {
+        Field::Even(extinction) => {
             text.push_str("\"string type\" \"homogeneous\"\n  ");
             [(1.0 - a) * extinction, a * extinction]
         }
@@ -115,11 +116,11 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
     let lines = match light {
         Light::Everywhere => "LightSource \"infinite\" \"rgb L\" [ 1 1 1 ]\n".to_owned(),
         Light::Point { position, power } => {
-            let within = match &scene.body {
-                Body::Grid(_) => inside(scene.bounds(), position),
-                Body::Ball { centre, radius, .. } => (position - *centre).norm() <= *radius,
+            let medium = if scene.shape.contains(position) {
+                "MediumInterface \"\" \"medium\"\n"
+            } else {
+                ""
             };
-            let medium = if within { "MediumInterface \"\" \"medium\"\n" } else { "" };
             format!(
                 "AttributeBegin\n{medium}LightSource \"point\" \"rgb I\" [ 1 1 1 ] \"float scale\" [ {} ] \"point3 from\" \
                  [ {} ]\nAttributeEnd\n",
@@ -128,7 +129,7 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
             )
         }
         Light::Core { radius } => {
-            let Body::Ball { centre, .. } = scene.body else { return };
+            let Bounds::Sphere { centre, .. } = scene.shape else { return };
             format!(
                 "AttributeBegin\nMediumInterface \"\" \"medium\"\nMaterial \"diffuse\" {}\n\
                  AreaLightSource \"diffuse\" \"rgb L\" [ 1 1 1 ]\n{}AttributeEnd\n",
@@ -140,8 +141,4 @@ fn light(scene: &Scene, light: Light, text: &mut String) {
         Light::Above | Light::Below => return,
     };
     text.push_str(&lines);
-}
-
-fn inside(Aabb { low, high }: Aabb, place: Point) -> bool {
-    (0..3).all(|axis| (low.0[axis]..=high.0[axis]).contains(&place.0[axis]))
 }

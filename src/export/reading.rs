@@ -2,34 +2,34 @@
 //!
 //! | problem | scene |
 //! |---|---|
-//! | `transmittance` | the field as layers along the ray, or the grid itself, black, in front of light from all sides |
-//! | `furnace` | the field in a box, white, in light from all sides; the ray begins outside |
-//! | `slab` | layers between mirrors, which is an infinite slab; light from above (reflectance) or below (transmittance) |
-//! | `single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
+//! | `transmittance`, `spectral-transmittance` | the field as layers along the ray, or the grid itself, black, in front of light from all sides |
+//! | `furnace`, `spectral-furnace` | the field in a box, white, in light from all sides; the ray begins outside |
+//! | `slab`, `spectral-slab`, `chromatic-slab` | layers between mirrors, which is an infinite slab; light from above (reflectance) or below (transmittance) |
+//! | `single-scattering`, `spectral-single-scattering` | the field in a box with a point light; the ray goes on to where it leaves the box |
 //! | `sphere` | a homogeneous ball in light from all sides, or about a black sphere that shines |
+//!
+//! A homogeneous medium is written as one, in a box or a ball.
+
+use std::sync::Arc;
 
 use super::error::ExportError;
-use super::sampled::Sampled;
-use super::scene::{Body, Light, Scene, View};
-use super::{Target, single};
+use super::fields::{Fields, Reader, Unsuitable, lobe, one_phase, unread};
+use super::scene::{Channel, Light, Scene, View};
+use super::{Target, Wishes, single};
 use crate::catalogue::Settings;
-use crate::geometry::{Aabb, Bounds, Point, Ray};
+use crate::geometry::{Bounds, Point, Ray};
 use crate::harness::sweep::What;
 use crate::harness::{Catalogue, Source};
-use crate::media::{self, Volume, grid_file};
+use crate::media::{self, Medium, Volume};
 use crate::phase::Phase;
-use crate::phase::henyey_greenstein::HenyeyGreenstein;
 use crate::phase::isotropic::Isotropic;
 use crate::problems::single_scattering::Lamp;
-use crate::problems::slab::Light as Incidence;
+use crate::problems::slab::{Incidence, Light as Side};
 use crate::problems::sphere::{Light as BallLight, Sought};
-use crate::problems::{Furnace, Problem, SingleScattering, Slab, Sphere, Transmittance};
-
-/// Cells along the longest side of a field in space, and along a line.
-const CELLS: [usize; 2] = [32, 256];
-
-/// What is in the way, and which case would do.
-type Unsuitable = (String, &'static str);
+use crate::problems::{
+    ChromaticSlab, Furnace, Problem, SingleScattering, Slab, SpectralFurnace, SpectralSlab, Sphere,
+    Transmittance, spectral_furnace,
+};
 
 /// Reads a case as a scene.
 ///
@@ -40,18 +40,26 @@ pub fn read(
     catalogue: &Catalogue,
     source: &Source,
     target: Target,
-    cells: Option<usize>,
+    wishes: &Wishes,
 ) -> Result<Scene, ExportError> {
     let case = catalogue.read(source)?;
-    let reader = Reader { name: source.name.clone(), target, cells };
+    let reader = Reader { name: source.name.clone(), target, wishes };
     let scene = source.read_as(catalogue.additions(), |root| {
         let problem = root.table("problem")?;
+        let settings = |key: &'static str| problem.table(key);
         Some(match case.problem.as_str() {
-            "transmittance" => reader.transmittance(&problem.table("transmittance")?),
-            "furnace" => reader.furnace(&problem.table("furnace")?),
-            "slab" => reader.slab(&problem.table("slab")?),
-            "single-scattering" => reader.single_scattering(&problem.table("single-scattering")?),
-            "sphere" => reader.sphere(&problem.table("sphere")?),
+            "transmittance" => reader.transmittance(&settings("transmittance")?),
+            "spectral-transmittance" => reader.transmittance(&settings("spectral-transmittance")?),
+            "furnace" => reader.furnace(&settings("furnace")?),
+            "spectral-furnace" => reader.spectral_furnace(&settings("spectral-furnace")?),
+            "slab" => reader.slab(&settings("slab")?),
+            "spectral-slab" => reader.spectral_slab(&settings("spectral-slab")?),
+            "chromatic-slab" => reader.chromatic_slab(&settings("chromatic-slab")?),
+            "single-scattering" => reader.single_scattering(&settings("single-scattering")?),
+            "spectral-single-scattering" => {
+                reader.spectral_single_scattering(&settings("spectral-single-scattering")?)
+            }
+            "sphere" => reader.sphere(&settings("sphere")?),
             _ => Err((
                 format!("renderers do not answer what `{}` asks", case.problem),
                 "take a case of transmittance, furnace, slab, single-scattering or sphere",
@@ -68,7 +76,7 @@ pub fn read(
         if varies {
             return Err(("it sweeps its medium".into(), "leave `sweep` out of a copy of the case"));
         }
-        if !scene.grid().is_none_or(Sampled::is_extinction) {
+        if !scene.channels.iter().all(|channel| channel.field.is_extinction()) {
             let why = "a sample of σ_t is no number of single precision from 0 to 3e38";
             return Err((why.into(), "take other units of length"));
         }
@@ -84,6 +92,10 @@ pub fn read(
             let cure = "take a case with `phase.isotropic` or `phase.henyey-greenstein`";
             return Err(("pbrt has no Rayleigh scattering".into(), cure));
         }
+        if target == Target::Pbrt && wishes.heterogeneous {
+            let why = "pbrt's heterogeneous media are grids, which fall to zero at their border";
+            return Err((why.into(), "leave --heterogeneous out"));
+        }
         Ok(scene)
     });
     checked.map_err(|(why, cure)| ExportError::Unsuitable {
@@ -94,151 +106,194 @@ pub fn read(
     })
 }
 
-/// What all scenes of a case have in common.
-struct Reader {
-    name: String,
-    target: Target,
-    cells: Option<usize>,
-}
-
-impl Reader {
-    /// A scene with one picture.
-    fn scene(&self, problem: &'static str, body: Body, ray: [Point; 2], light: Light) -> Scene {
+impl Reader<'_> {
+    /// A black scene with one picture, in light from all sides.
+    fn scene(&self, problem: &'static str, fields: Fields, ray: [Point; 2], light: Light) -> Scene {
         let [eye, direction] = ray.map(|point| Point(point.0.map(single)));
-        let (name, notes) = ("radiance", Vec::new());
-        let name = if problem == "transmittance" { problem } else { name };
+        let name = if problem == "transmittance" { problem } else { "radiance" };
+        let Fields { shape, fields } = fields;
+        let is_inside = shape.contains(eye);
+        let channels: Vec<Channel> =
+            fields.into_iter().map(|field| Channel { field, albedo: 0.0 }).collect();
         let mut scene = Scene {
             case: self.name.clone(),
             problem,
             target: self.target,
-            body,
-            albedo: 1.0,
+            shape,
+            channels,
+            is_heterogeneous: false,
             phase: Phase::Isotropic(Isotropic),
             eye,
             direction,
-            is_inside: false,
+            is_inside,
             has_mirrors: false,
             scatterings: None,
             views: vec![View { name, light }],
-            notes,
+            notes: Vec::new(),
         };
-        scene.is_inside = match &scene.body {
-            Body::Grid(grid) => Bounds::Box(grid.bounds).contains(eye),
-            &Body::Ball { centre, radius, .. } => Bounds::Sphere { centre, radius }.contains(eye),
-        };
+        scene.is_heterogeneous = self.wishes.heterogeneous && scene.grids().is_empty();
+        scene.notes.extend(self.remarks(&scene));
         scene
     }
 
-    /// A volume in a box, or a homogeneous ball.
-    fn body(&self, volume: &Volume, settings: &Settings) -> Result<Body, Unsuitable> {
-        if let (Bounds::Sphere { centre, radius }, Some(extinction)) =
-            (volume.bounds(), volume.single_value())
-        {
-            let centre = Point(centre.0.map(single));
-            return Ok(Body::Ball {
-                centre,
-                radius: single(radius),
-                extinction: single(extinction),
-            });
-        }
-        let Some(bounds) = volume.bounds().enclosing_box() else {
-            let cure = "give it `bounds.box = { low, high }`";
-            return Err(("its medium fills all of space".into(), cure));
-        };
-        let own = own_grid(settings);
-        let size = own.map_or_else(|| cells(bounds, self.cells.unwrap_or(CELLS[0])), |own| own.0);
-        let nearest = own.is_some_and(|own| own.1) && self.target == Target::Mitsuba;
-        Ok(Body::Grid(Sampled::of_volume(volume, bounds, size, nearest)))
-    }
-
     fn transmittance(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
-        let body = media::Body::read_for(settings, Transmittance::RAY);
-        let body = body.ok_or_else(unread)?;
-        let medium = body.medium();
-        if medium.support().is_empty() {
+        // Only one medium needs no length of its ray, and has a page to ask for it.
+        let body = media::Body::read_for(settings, Transmittance::RAY).ok_or_else(unread)?;
+        let bodies = self.chosen(body.channels().iter().collect())?;
+        let media: Vec<Medium> = bodies.iter().map(|body| body.medium()).collect();
+        if media[0].support().is_empty() {
             return Err(("the ray misses the medium".into(), "take a ray that meets it"));
         }
-        let crossing = match &body {
-            media::Body::Volume { volume, ray, .. } if own_grid(settings).is_some() => {
-                let [low, high] = [ray.origin, ray.at(ray.length)];
-                let ends_outside = [low, high].iter().all(|&end| !volume.bounds().contains(end));
-                ends_outside.then_some((volume, ray))
+        let own = self.own_grids(settings, body.channels().len())?;
+        let ends_outside = |volume: &Volume, ray: &Ray| {
+            let [low, high] = [ray.origin, ray.at(ray.length)];
+            [low, high].iter().all(|&end| !volume.bounds().contains(end))
+        };
+        let mut volumes: Vec<Arc<Volume>> = Vec::new();
+        let mut crossing = None;
+        for body in &bodies {
+            if let media::Body::Volume { volume, ray, .. } = body
+                && own.is_some()
+                && ends_outside(&**volume, ray)
+            {
+                volumes.push(volume.clone());
+                crossing = Some(ray);
             }
-            _ => None,
-        };
+        }
         let light = Light::Everywhere;
-        let scene = if let Some((volume, ray)) = crossing {
-            let body = self.body(&**volume, settings)?;
-            self.scene("transmittance", body, [ray.origin, ray.direction], light)
-        } else {
-            let grid = Sampled::of_line(&medium, self.cells.unwrap_or(CELLS[1]));
-            let eye = Point([0.0, 0.0, -grid.bounds.high.0[2] / 8.0]);
-            let ray = [eye, Point([0.0, 0.0, 1.0])];
-            self.scene("transmittance", Body::Grid(grid), ray, light)
-        };
-        Ok(Scene { albedo: 0.0, ..scene })
+        if let (Some(ray), true) = (crossing, volumes.len() == bodies.len()) {
+            let fields = self.in_space(&volumes, own)?;
+            return Ok(self.scene("transmittance", fields, [ray.origin, ray.direction], light));
+        }
+        let fields = self.along(&media);
+        let eye = Point([0.0, 0.0, -fields.length() / 8.0]);
+        Ok(self.scene("transmittance", fields, [eye, Point([0.0, 0.0, 1.0])], light))
     }
 
     fn furnace(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
         let body = media::Body::read_for(settings, Furnace::RAY).ok_or_else(unread)?;
         let furnace = Furnace::read(Some(&body), settings).ok_or_else(unread)?;
-        let body = self.body(&*furnace.scene.volume, settings)?;
-        let scene =
-            self.scene("furnace", body, [furnace.entry, furnace.direction], Light::Everywhere);
+        let fields = self.in_space(&[furnace.scene.volume], self.own_grids(settings, 1)?)?;
+        let is_white = furnace.scene.albedo.even() == Some(1.0);
+        let ray = [furnace.entry, furnace.direction];
+        Ok(self.white(fields, ray, lobe(furnace.scene.phase), is_white))
+    }
+
+    fn spectral_furnace(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
+        let body = media::Body::read_for(settings, SpectralFurnace::RAY).ok_or_else(unread)?;
+        let furnace = SpectralFurnace::read(Some(&body), settings).ok_or_else(unread)?;
+        let own = self.own_grids(settings, furnace.channels.len())?;
+        let (volumes, albedos, phase) = self.scatterers(furnace.channels)?;
+        let fields = self.in_space(&volumes, own)?;
+        let is_white = albedos.iter().all(|&albedo| albedo == 1.0);
+        Ok(self.white(fields, [furnace.entry, furnace.direction], phase, is_white))
+    }
+
+    /// A white medium in light from all sides, seen from outside.
+    fn white(&self, fields: Fields, ray: [Point; 2], phase: Phase, is_white: bool) -> Scene {
+        let mut scene = self.scene("furnace", fields, ray, Light::Everywhere);
         let bounds = scene.bounds();
         let diagonal = (bounds.high - bounds.low).norm();
         let way = scene.direction * (2.0 * diagonal);
         let ray =
             Ray { origin: scene.eye - way, direction: scene.direction, length: f64::INFINITY };
         let entry = ray.at(Bounds::Box(bounds).clip(&ray).from);
-        let eye = Point((entry - scene.direction * (0.25 * diagonal)).0.map(single));
-        let mut notes = vec!["the ray begins outside the box".to_owned()];
-        if furnace.scene.albedo.even() != Some(1.0) {
-            notes.push("the medium is white here: absorbing ones would have to emit light".into());
+        scene.eye = Point((entry - scene.direction * (0.25 * diagonal)).0.map(single));
+        scene.is_inside = false;
+        scene.phase = phase;
+        scene.channels.iter_mut().for_each(|channel| channel.albedo = 1.0);
+        scene.notes.push("the ray begins outside the box".to_owned());
+        if !is_white {
+            let note = "the medium is white here: absorbing ones would have to emit light";
+            scene.notes.push(note.into());
         }
-        let phase = lobe(furnace.scene.phase);
-        Ok(Scene { eye, is_inside: false, phase, notes, ..scene })
+        scene
     }
 
     fn slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
         let body = media::Body::read_for(settings, Slab::RAY).ok_or_else(unread)?;
         let slab = Slab::read(Some(&body), settings).ok_or_else(unread)?;
-        let Incidence::Collimated(cosine) = slab.incidence.light else {
+        self.layers(vec![(slab.medium().clone(), slab.albedo, slab.incidence)])
+    }
+
+    fn spectral_slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
+        let body = media::Body::read_for(settings, SpectralSlab::RAY).ok_or_else(unread)?;
+        let slab = SpectralSlab::read(Some(&body), settings).ok_or_else(unread)?;
+        let albedos = slab.colours.albedos.iter();
+        let channel = |&albedo: &f64| (slab.medium().clone(), albedo, slab.incidence);
+        self.layers(albedos.map(channel).collect())
+    }
+
+    fn chromatic_slab(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
+        let body = media::Body::read_for(settings, ChromaticSlab::RAY).ok_or_else(unread)?;
+        let slab = ChromaticSlab::read(Some(&body), settings).ok_or_else(unread)?;
+        let albedos = slab.colours.albedos.iter().copied();
+        let channels = slab.media().iter().cloned().zip(albedos).zip(&slab.incidences);
+        self.layers(channels.map(|((medium, albedo), &light)| (medium, albedo, light)).collect())
+    }
+
+    /// An infinite slab by the medium, albedo, and incidence of each channel.
+    fn layers(&self, channels: Vec<(Medium, f64, Incidence)>) -> Result<Scene, Unsuitable> {
+        let channels = self.chosen(channels)?;
+        let phases: Vec<Phase> = channels.iter().map(|channel| channel.2.phase).collect();
+        let Side::Collimated(cosine) = channels[0].2.light else {
             let cure = "take one with `incidence.collimated`, such as slab/known-bugs";
             return Err(("its light is diffuse, and a pixel has one direction".into(), cure));
         };
-        let grid = Sampled::of_line(slab.medium(), self.cells.unwrap_or(CELLS[1]));
+        let phase = one_phase(&phases)?;
+        let media: Vec<Medium> = channels.iter().map(|channel| channel.0.clone()).collect();
+        let fields = self.along(&media);
         let direction = Point([(1.0 - cosine * cosine).sqrt(), 0.0, cosine]);
-        let eye = direction * (-grid.bounds.high.0[2] / 8.0);
-        let scene = self.scene("slab", Body::Grid(grid), [eye, direction], Light::Above);
+        let eye = direction * (-fields.length() / 8.0);
+        let mut scene = self.scene("slab", fields, [eye, direction], Light::Above);
+        for (channel, (_, albedo, _)) in scene.channels.iter_mut().zip(channels) {
+            channel.albedo = single(albedo);
+        }
         let views = [("reflectance", Light::Above), ("transmittance", Light::Below)];
-        Ok(Scene {
-            albedo: single(slab.albedo),
-            phase: lobe(slab.incidence.phase),
-            has_mirrors: true,
-            views: views.map(|(name, light)| View { name, light }).into(),
-            ..scene
-        })
+        let views = views.map(|(name, light)| View { name, light }).into();
+        Ok(Scene { phase, has_mirrors: true, views, ..scene })
     }
 
     fn single_scattering(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
         let body = media::Body::read_for(settings, SingleScattering::RAY).ok_or_else(unread)?;
         let problem = SingleScattering::read(Some(&body), settings).ok_or_else(unread)?;
-        let (lamp, phase) = (Lamp::read(settings), Phase::read(settings));
-        let (lamp, phase) = (lamp.ok_or_else(unread)?, phase.ok_or_else(unread)?);
-        let media::Body::Volume { ray, .. } = &body else { return Err(unread()) };
+        let media::Body::Volume { volume, ray, .. } = &body else { return Err(unread()) };
+        let phase = lobe(Phase::read(settings).ok_or_else(unread)?);
+        let fields = self.in_space(&[volume.clone()], self.own_grids(settings, 1)?)?;
+        self.lit(settings, fields, ray, (vec![problem.albedo()], phase))
+    }
+
+    fn spectral_single_scattering(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
+        let body = media::Body::read(settings).ok_or_else(unread)?;
+        let channels = spectral_furnace::read_channels(Some(&body), settings).ok_or_else(unread)?;
+        let media::Body::Volume { ray, .. } = &body.channels()[0] else { return Err(unread()) };
+        let own = self.own_grids(settings, channels.len())?;
+        let (volumes, albedos, phase) = self.scatterers(channels)?;
+        let fields = self.in_space(&volumes, own)?;
+        self.lit(settings, fields, ray, (albedos, phase))
+    }
+
+    /// A medium beside a point light, which is scattered once at most.
+    fn lit(
+        &self,
+        settings: &Settings,
+        fields: Fields,
+        ray: &Ray,
+        (albedos, phase): (Vec<f64>, Phase),
+    ) -> Result<Scene, Unsuitable> {
+        let lamp = Lamp::read(settings).ok_or_else(unread)?;
         let light = Light::Point {
             position: Point(lamp.position.0.map(single)),
             power: single(lamp.power),
         };
-        let body = self.body(problem.volume(), settings)?;
-        let scene = self.scene("single-scattering", body, [ray.origin, ray.direction], light);
-        let mut notes = Vec::new();
+        let mut scene = self.scene("single-scattering", fields, [ray.origin, ray.direction], light);
         if Bounds::Box(scene.bounds()).contains(ray.at(ray.length)) {
-            notes.push("the ray goes on to where it leaves the box".into());
+            scene.notes.push("the ray goes on to where it leaves the box".into());
         }
-        let albedo = single(problem.albedo());
-        Ok(Scene { albedo, phase: lobe(phase), scatterings: Some(1), notes, ..scene })
+        for (channel, albedo) in scene.channels.iter_mut().zip(albedos) {
+            channel.albedo = single(albedo);
+        }
+        Ok(Scene { phase, scatterings: Some(1), ..scene })
     }
 
     fn sphere(&self, settings: &Settings) -> Result<Scene, Unsuitable> {
@@ -252,8 +307,8 @@ impl Reader {
                 cure,
             ));
         }
-        let ball = self.body(&*sphere.scene.volume, settings)?;
-        if matches!(ball, Body::Grid(_)) {
+        let fields = self.in_space(&[sphere.scene.volume.clone()], self.own_grids(settings, 1)?)?;
+        if !matches!(fields.shape, Bounds::Sphere { .. }) {
             let why = "a ball whose σ_t varies is none once it is sampled to a grid";
             return Err((why.into(), cure));
         }
@@ -262,49 +317,8 @@ impl Reader {
             BallLight::Environment | BallLight::Distant(_) => Light::Everywhere,
         };
         let albedo = sphere.scene.albedo.even().unwrap_or_default();
-        let scene = self.scene("sphere", ball, [ray.origin, ray.direction], light);
-        Ok(Scene { albedo: single(albedo), ..scene })
+        let mut scene = self.scene("sphere", fields, [ray.origin, ray.direction], light);
+        scene.channels[0].albedo = single(albedo);
+        Ok(scene)
     }
-}
-
-/// Mistakes in case files are found before.
-fn unread() -> Unsuitable {
-    ("it cannot be read".into(), "run `trueflight plan` on it")
-}
-
-/// A phase function whose number is of single precision.
-fn lobe(phase: Phase) -> Phase {
-    match phase {
-        Phase::HenyeyGreenstein(lobe) => {
-            HenyeyGreenstein::new(single(lobe.g())).map_or(phase, Phase::HenyeyGreenstein)
-        }
-        other => other,
-    }
-}
-
-/// How many cubic cells a box has along each axis, with so many along the longest.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `most`
-fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
-    let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);
-    let longest = edges.iter().copied().fold(0.0, f64::max);
-    edges.map(|edge| ((edge / longest * most as f64).round() as usize).max(1))
-}
-
-/// The size of a grid of samples in the middle of cells, and whether the nearest is taken.
-fn own_grid(settings: &Settings) -> Option<([usize; 3], bool)> {
-    let grid = settings.table_if("volume")?.table_if("grid")?;
-    if grid.word_or("samples", &["centres", "vertices"], "centres")? == "vertices" {
-        return None;
-    }
-    let nearest = grid.word_or("interpolation", &["trilinear", "nearest"], "trilinear")?;
-    let size = if let Some(random) = grid.table_if("random") {
-        random.counts("size", 1..=4096)?
-    } else {
-        let path = grid.folder.join(grid.text("file")?);
-        if grid_file::is_vdb(&path) {
-            return None;
-        }
-        grid_file::read(&path, None).ok()?.size
-    };
-    Some((size, nearest == "nearest"))
 }

@@ -13,6 +13,11 @@ use crate::media::{Medium, Volume};
 /// The name of the file.
 pub const FILE: &str = "density.vol";
 
+/// The name of the file of one channel of several, counted from 0.
+pub fn file_of(channel: usize) -> String {
+    format!("density-{}.vol", channel + 1)
+}
+
 /// Samples in a box.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sampled {
@@ -69,21 +74,29 @@ impl Sampled {
     pub fn is_extinction(&self) -> bool {
         self.values.iter().all(|value| value.is_finite() && *value >= 0.0)
     }
+}
 
-    /// The bytes of a `.vol` file.
-    pub fn vol(&self) -> Vec<u8> {
-        let mut bytes = b"VOL\x03".to_vec();
-        let size = self.size.map(|n| i32::try_from(n).unwrap_or(i32::MAX));
-        for integer in [1, size[0], size[1], size[2], 1] {
-            bytes.extend(integer.to_le_bytes());
-        }
-        let Aabb { low, high } = self.bounds;
-        for corner in [low, high] {
-            corner.0.iter().for_each(|&x| bytes.extend(rounded(x).to_le_bytes()));
-        }
-        self.values.iter().for_each(|value| bytes.extend(value.to_le_bytes()));
-        bytes
+/// The bytes of a `.vol` file of one channel, or of three: of two the second stands for the third, too.
+pub fn vol(channels: &[&Sampled]) -> Vec<u8> {
+    let Some(first) = channels.first() else { return Vec::new() };
+    let count = if channels.len() > 1 { 3 } else { 1 };
+    let mut bytes = b"VOL\x03".to_vec();
+    let size = first.size.map(|n| i32::try_from(n).unwrap_or(i32::MAX));
+    for integer in [1, size[0], size[1], size[2], count] {
+        bytes.extend(integer.to_le_bytes());
     }
+    let Aabb { low, high } = first.bounds;
+    for corner in [low, high] {
+        corner.0.iter().for_each(|&x| bytes.extend(rounded(x).to_le_bytes()));
+    }
+    let of_channel = |channel: i32| {
+        usize::try_from(channel).ok().and_then(|n| channels.get(n)).or(channels.last())
+    };
+    let channels: Vec<&Sampled> = (0..count).filter_map(of_channel).copied().collect();
+    for index in 0..first.values.len() {
+        channels.iter().for_each(|grid| bytes.extend(grid.values[index].to_le_bytes()));
+    }
+    bytes
 }
 
 #[allow(clippy::cast_possible_truncation)] // samples are of single precision

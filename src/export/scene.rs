@@ -2,7 +2,7 @@
 
 use super::Target;
 use super::sampled::Sampled;
-use crate::geometry::{Aabb, Point};
+use crate::geometry::{Aabb, Bounds, Point};
 use crate::phase::Phase;
 
 /// A medium, lights and one ray, all of whose numbers are of single precision.
@@ -10,14 +10,16 @@ use crate::phase::Phase;
 pub struct Scene {
     /// The name of the case.
     pub case: String,
-    /// The name of its problem.
+    /// The name of its problem, of one channel.
     pub problem: &'static str,
     /// Who renders it.
     pub target: Target,
-    /// The medium.
-    pub body: Body,
-    /// a, everywhere the same.
-    pub albedo: f64,
+    /// Where the medium is: a box or a ball.
+    pub shape: Bounds,
+    /// The medium of each channel, 1 to 3: one where all colours are alike.
+    pub channels: Vec<Channel>,
+    /// Whether a homogeneous medium is written as a heterogeneous one.
+    pub is_heterogeneous: bool,
     /// How light is scattered.
     pub phase: Phase,
     /// Where the camera's only ray begins.
@@ -36,20 +38,40 @@ pub struct Scene {
     pub notes: Vec<String>,
 }
 
-/// A medium.
-#[derive(Debug, Clone)]
-pub enum Body {
+/// The medium of a channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Channel {
+    /// σ_t, 1/length.
+    pub field: Field,
+    /// a, everywhere the same.
+    pub albedo: f64,
+}
+
+/// σ_t, 1/length, of all channels in the same form.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Field {
+    /// Homogeneous.
+    Even(f64),
     /// Samples in a box.
     Grid(Sampled),
-    /// A homogeneous ball.
-    Ball {
-        /// Its centre.
-        centre: Point,
-        /// Its radius.
-        radius: f64,
-        /// σ_t, 1/length.
-        extinction: f64,
-    },
+}
+
+impl Field {
+    /// The largest extinction, 1/length.
+    pub fn peak(&self) -> f64 {
+        match self {
+            Self::Even(extinction) => *extinction,
+            Self::Grid(grid) => grid.peak(),
+        }
+    }
+
+    /// Whether every value can be an extinction in single precision.
+    pub fn is_extinction(&self) -> bool {
+        match self {
+            Self::Even(extinction) => extinction.is_finite() && *extinction >= 0.0,
+            Self::Grid(grid) => grid.is_extinction(),
+        }
+    }
 }
 
 /// A picture of the scene.
@@ -85,31 +107,59 @@ pub enum Light {
 }
 
 impl Scene {
-    /// The samples, where there are some.
-    pub fn grid(&self) -> Option<&Sampled> {
-        match &self.body {
-            Body::Grid(grid) => Some(grid),
-            Body::Ball { .. } => None,
+    /// The samples of the channels, where the medium is not homogeneous; one where all have the same.
+    pub fn grids<'a>(&'a self) -> Vec<&'a Sampled> {
+        let grid = |channel: &'a Channel| match &channel.field {
+            Field::Grid(grid) => Some(grid),
+            Field::Even(_) => None,
+        };
+        let mut grids: Vec<&'a Sampled> = self.channels.iter().filter_map(grid).collect();
+        if grids.windows(2).all(|pair| pair[0] == pair[1]) {
+            grids.truncate(1);
+        }
+        grids
+    }
+
+    /// Whether the renderer is told that the medium is homogeneous.
+    pub fn is_homogeneous(&self) -> bool {
+        self.grids().is_empty() && !self.is_heterogeneous
+    }
+
+    /// The problem that theory is asked about.
+    pub fn problem_of_theory(&self) -> &'static str {
+        match self.problem {
+            one if !self.is_coloured() => one,
+            "transmittance" => "spectral-transmittance",
+            "slab" => "chromatic-slab",
+            "furnace" => "spectral-furnace",
+            _ => "spectral-single-scattering",
         }
     }
 
-    /// The largest extinction, 1/length.
+    /// The largest extinction of all channels, 1/length.
     pub fn peak(&self) -> f64 {
-        match &self.body {
-            Body::Grid(grid) => grid.peak(),
-            Body::Ball { extinction, .. } => *extinction,
-        }
+        self.channels.iter().map(|channel| channel.field.peak()).fold(0.0, f64::max)
+    }
+
+    /// The channels' albedos.
+    pub fn albedos(&self) -> Vec<f64> {
+        self.channels.iter().map(|channel| channel.albedo).collect()
+    }
+
+    /// The same with one channel alone.
+    #[must_use]
+    pub fn of_channel(&self, index: usize) -> Self {
+        Self { channels: vec![self.channels[index].clone()], ..self.clone() }
+    }
+
+    /// Whether channels differ, so that each has an answer of its own.
+    pub fn is_coloured(&self) -> bool {
+        self.channels.len() > 1
     }
 
     /// The smallest box about the medium.
     pub fn bounds(&self) -> Aabb {
-        match &self.body {
-            Body::Grid(grid) => grid.bounds,
-            Body::Ball { centre, radius, .. } => {
-                let half = Point([*radius; 3]);
-                Aabb { low: *centre - half, high: *centre + half }
-            }
-        }
+        self.shape.enclosing_box().unwrap_or(Aabb { low: self.eye, high: self.eye })
     }
 
     /// The axes of a picture whose rays go along the direction: right, up, onward.

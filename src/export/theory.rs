@@ -7,9 +7,9 @@ use std::fmt::Write;
 use std::path::Path;
 
 use super::error::ExportError;
-use super::sampled::FILE as GRID;
-use super::scene::{Body, Light, Scene};
-use crate::geometry::{Aabb, Point};
+use super::sampled::{FILE as GRID, file_of};
+use super::scene::{Field, Light, Scene};
+use crate::geometry::{Aabb, Bounds, Point};
 use crate::harness::{Case, Source};
 use crate::phase::Phase;
 use crate::theory::Prediction;
@@ -19,7 +19,8 @@ pub const FILE: &str = "case.toml";
 
 /// The case file.
 pub fn case(scene: &Scene) -> String {
-    let Scene { problem, direction, albedo, .. } = scene;
+    let Scene { direction, .. } = scene;
+    let (problem, is_coloured) = (scene.problem_of_theory(), scene.is_coloured());
     let mut text = format!(
         "# {}, as `trueflight export --to {}` sampled it.\ntitle = {:?}\ndraws = 1_000_000\n\
          underpowered = \"allow\"\n\n[problem.{problem}]\n",
@@ -30,7 +31,11 @@ pub fn case(scene: &Scene) -> String {
     let mut line = |words: String| {
         let _ = writeln!(text, "{words}");
     };
-    line(volume(scene));
+    let fields: Vec<String> = (0..scene.channels.len()).map(|n| volume(scene, n)).collect();
+    line(match fields.as_slice() {
+        [one] => format!("volume.{one}"),
+        all => format!("volume = [\n  {{ {} }},\n]", all.join(" },\n  { ")),
+    });
     let Aabb { low, high } = scene.bounds();
     let length = 2.0 * ((high - low).norm() + (scene.eye - low).norm());
     // A slab's σ_t is a function of the depth, whatever the angle of its light.
@@ -44,9 +49,14 @@ pub fn case(scene: &Scene) -> String {
         "ray = {{ origin = {:?}, direction = {:?}, length = {length:?} }}",
         eye.0, direction.0
     ));
-    if *problem != "transmittance" {
-        line(format!("albedo = {albedo:?}"));
-        line(format!("phase.{}", phase(scene.phase)));
+    let (albedos, lobe) = (scene.albedos(), phase(scene.phase));
+    if scene.problem != "transmittance" && is_coloured {
+        line(format!("albedos = {albedos:?}"));
+        let phases = vec![format!("{{ {lobe} }}"); albedos.len()];
+        line(format!("phases = [{}]", phases.join(", ")));
+    } else if scene.problem != "transmittance" {
+        line(format!("albedo = {:?}", albedos[0]));
+        line(format!("phase.{lobe}"));
     }
     match scene.views.first().map(|view| view.light) {
         Some(Light::Point { position, power }) => {
@@ -55,7 +65,7 @@ pub fn case(scene: &Scene) -> String {
         Some(Light::Core { radius }) => {
             line(format!("light.black-sphere = {{ radius = {radius:?} }}"));
         }
-        Some(Light::Everywhere) if *problem == "sphere" => line("light.environment = {}".into()),
+        Some(Light::Everywhere) if problem == "sphere" => line("light.environment = {}".into()),
         _ => {}
     }
     if scene.has_mirrors {
@@ -63,7 +73,11 @@ pub fn case(scene: &Scene) -> String {
     }
     let peak = scene.peak();
     line(format!("sampling.constant = {{ value = {peak:?} }}"));
-    let estimator = match *problem {
+    let estimator = match problem {
+        // Of several channels one whose σ̂ may be the largest σ_t of all.
+        "spectral-transmittance" => "{ independent = { collisions = \"delta\" } }".to_owned(),
+        "spectral-single-scattering" => "{ independent = { shadow = \"ratio\" } }".to_owned(),
+        "spectral-furnace" | "chromatic-slab" => "{ independent = {} }".to_owned(),
         "transmittance" => "{ woodcock = {} }".to_owned(),
         "slab" => "{ weighted = {} }".to_owned(),
         "single-scattering" => {
@@ -75,27 +89,31 @@ pub fn case(scene: &Scene) -> String {
     text
 }
 
-/// The volume of the case file.
-fn volume(scene: &Scene) -> String {
-    match &scene.body {
-        Body::Grid(grid) => {
-            let Aabb { low, high } = grid.bounds;
+/// The volume of a channel in the case file.
+fn volume(scene: &Scene, channel: usize) -> String {
+    let field = match &scene.channels[channel].field {
+        Field::Grid(grid) => {
             let rest = if grid.nearest {
                 "interpolation = \"nearest\"".to_owned()
             } else {
                 format!("border = {:?}", scene.target.border())
             };
-            format!(
-                "volume.grid = {{ file = {GRID:?}, {rest}, bounds.box = {{ low = {:?}, high = {:?} }} }}",
-                low.0, high.0
-            )
+            let own = scene.grids().len() > 1;
+            let file = if own { file_of(channel) } else { GRID.to_owned() };
+            format!("grid = {{ file = {file:?}, {rest}")
         }
-        Body::Ball { centre, radius, extinction } => format!(
-            "volume.constant = {{ extinction = {extinction:?}, bounds.sphere = {{ centre = {:?}, radius = \
-             {radius:?} }} }}",
-            centre.0
-        ),
-    }
+        Field::Even(extinction) => format!("constant = {{ extinction = {extinction:?}"),
+    };
+    let bounds = match scene.shape {
+        Bounds::Sphere { centre, radius } => {
+            format!("sphere = {{ centre = {:?}, radius = {radius:?} }}", centre.0)
+        }
+        Bounds::Box(_) | Bounds::Everywhere => {
+            let Aabb { low, high } = scene.bounds();
+            format!("box = {{ low = {:?}, high = {:?} }}", low.0, high.0)
+        }
+    };
+    format!("{field}, bounds.{bounds} }}")
 }
 
 /// The phase function of the case file.

@@ -1,7 +1,7 @@
 //! `truth.json`: what the pixels of each picture must be.
 //!
 //! ```text
-//! version              1; it grows when a key changes its meaning
+//! version              1, or 2 where questions have channels; it grows when a key changes its meaning
 //! case, problem        what was exported
 //! target               "mitsuba" or "pbrt"
 //! camera_in_medium     whether the ray begins within the medium
@@ -9,12 +9,15 @@
 //! notes                what of the case is not in the scene, in sentences
 //! questions            one for each picture:
 //!   name, scene        what is sought, and the scene file
+//!   channel            of several: which one, from 1; of Mitsuba's pixels 1 is red, 2 green, 3 blue, of pbrt's each
+//!                      channel has a scene of its own
 //!   mean, error        the mean of one sample of any pixel, and a bound on the error of this number
 //!   rounding           what single precision may do to a sample, relative to the mean: an allowance, no bound
 //!   without_emitter_sampling, with_emitter_sampling
 //!                      the law of one sample, for integrators that find lights by scattering only, and for those
 //!                      that cast shadow rays: null where light cannot be found that way, and for pbrt, whose
-//!                      samples have wavelengths
+//!                      samples have wavelengths. Of several channels only the ends are known: how a renderer chooses
+//!                      the channel that it samples for is its own affair
 //!     low, high        where all samples lie; null for no end
 //!     variance, variance_error, kurtosis
 //!                      of an integrator that tracks through the largest sample, and weights by the albedo;
@@ -25,13 +28,13 @@ use serde::{Deserialize, Serialize};
 
 use super::Target;
 use super::error::ExportError;
-use super::scene::{Light, Scene};
-use crate::theory::Prediction;
+use super::scene::{Light, Scene, View};
+use crate::theory::{self, Prediction};
 
 /// The name of the file.
 pub const FILE: &str = "truth.json";
-/// What its keys mean.
-pub const VERSION: u32 = 1;
+/// What its keys mean, where all colours are alike, and where questions have channels.
+pub const VERSIONS: [u32; 2] = [1, 2];
 /// Rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
 const ROUNDINGS: f64 = 16.0;
 
@@ -82,6 +85,9 @@ pub struct Question {
     pub name: String,
     /// The scene file.
     pub scene: String,
+    /// The channel, from 1, where there are several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub channel: Option<usize>,
     /// The mean of one sample.
     pub mean: f64,
     /// A bound on the error of this number.
@@ -124,7 +130,7 @@ impl Truth {
 pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     let diagonal = (scene.bounds().high - scene.bounds().low).norm();
     let rounding = ROUNDINGS * f64::from(f32::EPSILON) * (1.0 + scene.peak() * diagonal);
-    let questions = scene.views.iter().zip(&prediction.channels).map(|(view, channel)| {
+    let question = |(view, number): (&View, Option<usize>), channel: &theory::Channel| {
         let [without, with] = laws(scene, view.light);
         let known = channel.moments.filter(|moments| moments.variance().is_finite());
         let fill = |law: Law| Law {
@@ -137,34 +143,61 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
             law.map(|(law, is_known)| if is_known { fill(law) } else { law })
         };
         Question {
-            name: view.name.to_owned(),
-            scene: scene.file(view),
+            name: if number.is_some() { channel.name.clone() } else { view.name.to_owned() },
+            scene: scene.file(view, number),
+            channel: number,
             mean: channel.truth.value,
             error: channel.truth.error,
             rounding,
             without_emitter_sampling: is_of(without),
             with_emitter_sampling: is_of(with),
         }
+    };
+    let views = scene.asked();
+    let questions = views.into_iter().filter_map(|(view, number)| {
+        let channel = channel_of(prediction, scene, view, number)?;
+        Some(question((view, number), channel))
     });
-    let field = scene.grid().map(|grid| Samples {
+    let field = scene.grids().first().map(|grid| Samples {
         file: super::sampled::FILE.into(),
         size: grid.size,
         low: grid.bounds.low.0,
         high: grid.bounds.high.0,
         interpolation: if grid.nearest { "nearest" } else { "trilinear" }.into(),
         border: scene.target.border().into(),
-        peak: grid.peak(),
+        peak: scene.peak(),
     });
     Truth {
-        version: VERSION,
+        version: VERSIONS[usize::from(scene.is_coloured())],
         case: scene.case.clone(),
-        problem: scene.problem.to_owned(),
+        problem: scene.problem_of_theory().to_owned(),
         target: scene.target.name().to_owned(),
         camera_in_medium: scene.is_inside,
         field,
         notes: scene.notes.clone(),
         questions: questions.collect(),
     }
+}
+
+/// What theory says of a picture's channel: it lists the channels of one quantity after those of another, and leaves out
+/// what is 0 whatever happens.
+fn channel_of<'a>(
+    prediction: &'a Prediction,
+    scene: &Scene,
+    view: &View,
+    number: Option<usize>,
+) -> Option<&'a theory::Channel> {
+    let Some(number) = number else {
+        let place = scene.views.iter().position(|one| one.name == view.name)?;
+        return prediction.channels.get(place);
+    };
+    let several = scene.views.len() > 1;
+    let name = if several {
+        format!("{}, channel {number}", view.name)
+    } else {
+        format!("channel {number}")
+    };
+    prediction.channels.iter().find(|channel| channel.name == name)
 }
 
 /// Where samples lie without and with shadow rays, and whether theory's moments are theirs.
@@ -174,9 +207,14 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
 fn laws(scene: &Scene, light: Light) -> [Option<(Law, bool)>; 2] {
     let within = |high: Option<f64>| Law { low: Some(0.0), high, ..Law::default() };
     let sure = Law { variance: Some(0.0), variance_error: Some(0.0), ..Law::default() };
-    let sum = (scene.albedo < 1.0).then(|| 1.0 / (1.0 - scene.albedo));
+    let albedo = scene.channels[0].albedo;
+    let sum = (albedo < 1.0).then(|| 1.0 / (1.0 - albedo));
     if scene.target == Target::Pbrt {
         return [None, None];
+    }
+    if scene.is_coloured() {
+        let met = !matches!(light, Light::Point { .. });
+        return [met.then(|| (within(None), false)), Some((within(None), false))];
     }
     match (scene.problem, light) {
         ("transmittance", _) => [Some((within(Some(1.0)), true)); 2],

@@ -100,10 +100,7 @@ impl Case {
         }
         let title = root.text("title");
         let problem = read_problem(root).and_then(|read| read.swept(root));
-        let tolerance = match root.table_if("tolerance") {
-            Some(settings) => read_tolerance(&settings),
-            None => Some(Tolerance::default()),
-        };
+        let tolerance = read_tolerance(root);
         let draws = if root.has("draws") {
             root.count("draws", 2..=1_000_000_000_000).map(Some)
         } else {
@@ -230,14 +227,25 @@ fn has_one_channel(settings: &Settings, body: &Body) -> bool {
 
 #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
 fn read_sweep(settings: &Settings) -> Option<Option<SweepAxis>> {
-    match settings.table_if("sweep") {
-        Some(sweep) => SweepAxis::read(&sweep).map(Some),
-        None if settings.has("sweep") => None,
+    match settings.entry("sweep") {
+        Some(entry) if !matches!(entry.node.value, Value::Table(_)) => {
+            let help = "write what is swept and its values, as in `sweep.sampling = [1, 2, 4]`";
+            settings.fault("sweep", "`sweep` is no table", help);
+            None
+        }
+        Some(_) => SweepAxis::read(&settings.table("sweep")?).map(Some),
         None => Some(None),
     }
 }
 
-fn read_tolerance(settings: &Settings) -> Option<Tolerance> {
+fn read_tolerance(root: &Settings) -> Option<Tolerance> {
+    let value = root.entry("tolerance").map(|entry| &entry.node.value);
+    if let Some(Value::Number(x)) = value {
+        let help = format!("write `tolerance.mean = {0}`, or `variance` or `lookups`", number(*x));
+        root.fault("tolerance", format!("`tolerance` is {}", number(*x)), help);
+        return None;
+    }
+    let Some(settings) = root.table_if("tolerance") else { return Some(Tolerance::default()) };
     let read = |key: &'static str| {
         if settings.has(key) {
             let tolerance = settings.number(key, Domain::Positive)?;

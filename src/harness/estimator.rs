@@ -100,7 +100,10 @@ pub fn read_kernel(settings: &Settings) -> Option<Order> {
     settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
 }
 
-/// Reads a table, if the file has it; `None` after a mistake.
+/// What `sampling` and `control` take.
+const RECIPE: &str = "a number, a name in quotes, or a table, as in { constant = { value = … } }";
+
+/// Reads a recipe, if the file has it; `None` after a mistake.
 #[allow(clippy::option_option)] // the outer `None` is a recorded mistake
 fn read_if<T: ?Sized>(
     settings: &Settings,
@@ -108,7 +111,7 @@ fn read_if<T: ?Sized>(
     body: Option<&Body>,
     read: fn(&Settings, Option<&Body>) -> Option<Box<T>>,
 ) -> Option<Option<Box<T>>> {
-    match settings.table_if(key) {
+    match settings.naming_if(key, RECIPE) {
         Some(table) => read(&table, body).map(Some),
         None if settings.has(key) => None,
         None => Some(None),
@@ -207,7 +210,7 @@ impl ParsedEstimator {
         };
         if inputs.sampling && !settings.has("sampling") && !defaults.sampling {
             let message = format!("`{}` has no sampling extinction", names[index]);
-            let help = "add `sampling.constant.value = …` to it or to the problem, or sweep it";
+            let help = "add `sampling = …` to it or to the problem, or sweep it";
             settings.fault_at(settings.span.clone(), "", message, help);
         }
         if own_kernel && order == Some(Order::Free) && !is_order_free {

@@ -7,7 +7,7 @@
 //! A file imports only files before it in this list:
 //!
 //! ```text
-//! words       source  rewrite  sweep  names  filter  options  addresses  normality  suite
+//! words       shorthand  source  rewrite  sweep  names  filter  options  addresses  normality  suite
 //! case        ready  estimator  problem  plot_data  course  scenario  case  catalogue
 //! plan        checks  levels  plan  mutation
 //! draws       draw  drawn  cache  share  workers  frames  blocks  store  run
@@ -48,6 +48,7 @@ pub mod rewrite;
 pub mod run;
 pub mod scenario;
 pub mod share;
+mod shorthand;
 pub mod source;
 pub mod store;
 pub mod suite;

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 use toml::de::{DeTable, DeValue};
 
+use super::shorthand::spell_out;
 use crate::catalogue::{Additions, Entry, Fault, Node, Settings, Value};
 
 /// So many mistakes are shown in place; of a file that has more, these are enough to begin with.
@@ -176,8 +177,9 @@ impl Source {
         read: impl FnOnce(&Settings) -> Option<T>,
     ) -> Result<T, CaseError> {
         let faults = RefCell::default();
-        let root = self.parse(&faults);
+        let mut root = self.parse(&faults);
         let broken = !faults.borrow().is_empty();
+        spell_out(&mut root, &faults);
         let folder = self.path.parent().map(Path::to_owned).unwrap_or_default();
         let found = read(&Settings::new(&root, &folder, &faults).with(additions));
         let mut faults = faults.into_inner();

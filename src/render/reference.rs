@@ -57,7 +57,7 @@ impl Reference {
             _ => {
                 let lookups = reference.count("lookups", 1..=1_000_000_000);
                 let parsed = reference
-                    .table("estimator")
+                    .naming("estimator", "the name of an estimator, or a table that it names")
                     .and_then(|table| ParsedEstimator::read(&table, body, defaults, reader));
                 let (lookups, parsed) = (lookups?, Box::new(parsed?));
                 Some(Self::Draws { lookups, parsed })

@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | `sampling` | σ̂ > 0 wherever the residual is not zero, and wherever σ_t is not | required here or in the case |
 //! | `control` | σ_c | none |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `"exact"` |
 //!
 //! Unbiased there, by Campbell's theorem: interaction points have the density σ̂. It mimics none of
 //! the factors of the integrand, and the variance grows as `1/D³` when the light comes near the ray.

@@ -3,7 +3,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `camera` | `"exact"`, `"ratio"` (residual ratio where there is a control) or `"delta"`, through σ̂ | `"exact"` |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
 //!
 //! The exact ones evaluate optical depths, never σ_t: no lookups. They are theory, which uses the
 //! platform's library: the last bits of draws with one may differ between machines.

@@ -9,7 +9,7 @@
 //! |---|---|---|
 //! | `sampling` | σ̄ ≥ σ_t on the ray | required here or in the case |
 //! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the chance of a real collision to scatter | `"weight"` |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
 //! Unbiased for `σ̄ ≥ σ_t`; refused elsewhere. The density knows nothing of the light: the variance
 //! grows as `1/D³` when the light comes near the ray.

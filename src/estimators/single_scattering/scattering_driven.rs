@@ -10,7 +10,7 @@
 //! |---|---|---|
 //! | `control` | σ_m: `explorers`, `mean`, `constant`, … | required here or in the case |
 //! | `camera` | `"exact"`, or `"ratio"`: residual ratio through σ̂ with σ_m as the control | `"exact"` |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
 //! With the exact camera a `sampling` of its own is read and not used: it may stay when the camera changes.
 //!

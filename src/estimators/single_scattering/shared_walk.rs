@@ -10,7 +10,7 @@
 //! | `points` | n, from 1 to 16 | 4 |
 //! | `sampling` | σ̂ > 0 wherever the residual is not zero | required here or in the case |
 //! | `control` | σ_c | none |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, for each point | `"exact"` |
 //!
 //! Between interaction points `T̂` falls off exponentially with the control, so that one walk over
 //! the whole ray serves every point. Unbiased as each point is; the points are not independent, and

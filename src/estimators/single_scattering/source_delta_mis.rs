@@ -13,7 +13,7 @@
 //! | `absorption` | `"weight"`: c = 1; `"analog"`: the albedo c is the chance of a real collision to scatter | `"weight"` |
 //! | `samples` | `"both"` techniques in a draw, or `"one"` of them | `"both"` |
 //! | `heuristic` | β: `"balance"` (1) or `"power"` (2) | `"balance"` |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
 //! With a tracked camera the weights are those of the null-scattering path: both densities hold the same majorant
 //! transmittances, which cancel, and so do all of the shadow ray. A shadow ray is cast even where x is 0.

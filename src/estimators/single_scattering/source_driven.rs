@@ -8,7 +8,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `camera` | `"exact"`, `"ratio"` (with σ̂ and, for residual ratio, a control) or `"delta"` (σ̂ ≥ σ_t) | `"exact"` |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }` | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
 //! With the exact camera a `sampling` of its own or a `control` is read and not used: it may stay when the camera changes.
 //!

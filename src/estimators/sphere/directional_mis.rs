@@ -9,7 +9,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule`, `roulette` | how the particle walks, see the page `particle` | `rule` required |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
 //! | `heuristic` | `"balance"` or `"power"` | `"balance"` |
 //!
 //! An environment fills all directions, q = 1: both samples count half. A distant light is never met and `w_nee = 1`: it

@@ -7,7 +7,7 @@
 //! | setting | meaning | default |
 //! |---|---|---|
 //! | `rule`, `roulette` | how the particle walks, see the page `particle` | `rule` required |
-//! | `shadow` | `exact = {}`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `exact = {}` |
+//! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }`, each one number | `"exact"` |
 //!
 //! Shadow rays are delta tracked, ratio tracked, residual-ratio tracked (`control`), or taken from exact
 //! optical depths. They are clipped to the ball and to the light.

@@ -1,0 +1,225 @@
+//! Settings that choose among names: words, and tables that name a page.
+//!
+//! A name without settings may be written alone or with an empty table, wherever it stands:
+//! `shadow = "exact"` and `shadow.exact = {}` say the same.
+
+use std::ops::Range;
+
+use super::words::{brief, quoted, suggestion};
+use super::{Entry, Settings, Value};
+
+/// The form in which a table is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Form<'a> {
+    /// A table.
+    Table,
+    /// A text in the place of a table that would name a page.
+    Name(&'a str),
+    /// The empty table of a page that was written by its name alone.
+    Named,
+    /// The empty table of a page that has a value in its place: which of the mistakes says so.
+    Value(usize),
+}
+
+impl<'a> Settings<'a> {
+    /// One of some words that must be there.
+    pub fn word(&self, key: &'static str, words: &[&'static str]) -> Option<&'static str> {
+        let wanted = format!("one of {}", quoted(words));
+        let entry = self.required(key, &wanted)?;
+        self.word_of(entry, words, &wanted)
+    }
+
+    /// One of some words, or `default` where the key is absent.
+    pub fn word_or(
+        &self,
+        key: &'static str,
+        words: &[&'static str],
+        default: &'static str,
+    ) -> Option<&'static str> {
+        let wanted = format!("one of {}", quoted(words));
+        self.entry(key).map_or(Some(default), |entry| self.word_of(entry, words, &wanted))
+    }
+
+    fn word_of(&self, entry: &Entry, words: &[&'static str], wanted: &str) -> Option<&'static str> {
+        let (text, span, settings) = match &entry.node.value {
+            Value::Text(text) => (text, &entry.node.span, None),
+            Value::Table(table) if table.len() == 1 => {
+                (&table[0].key, &table[0].key_span, Some(&table[0].node))
+            }
+            _ => {
+                self.wrong(entry, wanted);
+                return None;
+            }
+        };
+        let Some(word) = words.iter().find(|word| *word == text).copied() else {
+            let message = format!("`{}` is \"{}\"", entry.key, brief(text));
+            self.fault_at(span.clone(), &entry.key, message, suggestion(text, words, wanted));
+            return None;
+        };
+        let takes_none = |value: &Value| matches!(value, Value::Table(table) if table.is_empty());
+        if let Some(node) = settings.filter(|node| !takes_none(&node.value)) {
+            let message = format!("`{word}` takes no settings here");
+            let help = format!("write `{} = \"{word}\"`", entry.key);
+            self.fault_at(node.span.clone(), &entry.key, message, help);
+            return None;
+        }
+        Some(word)
+    }
+
+    /// A table that names a page, or the page's name alone; it must be there.
+    pub fn naming(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
+        let entry = self.required(key, wanted)?;
+        self.open_naming(entry, wanted)
+    }
+
+    /// A table that names a page, or the page's name alone, if the file has the key.
+    pub fn naming_if(&self, key: &'static str, wanted: &str) -> Option<Settings<'a>> {
+        self.entry(key).and_then(|entry| self.open_naming(entry, wanted))
+    }
+
+    fn open_naming(&self, entry: &'a Entry, wanted: &str) -> Option<Settings<'a>> {
+        match &entry.node.value {
+            Value::Table(_) => self.open(entry),
+            Value::Text(name) => {
+                let (span, path) = (entry.node.span.clone(), self.path_of(&entry.key));
+                Some(self.written(Form::Name(name), span, path))
+            }
+            _ => {
+                self.wrong(entry, wanted);
+                None
+            }
+        }
+    }
+
+    /// An empty table, written in another form.
+    fn written(&self, form: Form<'a>, span: Range<usize>, path: String) -> Settings<'a> {
+        let mut settings = self.child(&[], span, path);
+        settings.form = form;
+        settings
+    }
+
+    /// The tables of a list that must be there, each of which names a page; the name may stand alone.
+    pub fn tables(&self, key: &'static str) -> Option<Vec<Settings<'a>>> {
+        const WANTED: &str = "a list of names and tables, as in [\"ratio\", { ratio = { … } }]";
+        let entry = self.required(key, WANTED)?;
+        let Value::Array(items) = &entry.node.value else {
+            self.wrong(entry, WANTED);
+            return None;
+        };
+        let mut tables = Vec::with_capacity(items.len());
+        for (index, item) in items.iter().enumerate() {
+            let path = self.path_of(&format!("{key}[{index}]"));
+            match &item.value {
+                Value::Table(table) => tables.push(self.child(table, item.span.clone(), path)),
+                Value::Text(name) => {
+                    tables.push(self.written(Form::Name(name), item.span.clone(), path));
+                }
+                other => {
+                    let message = format!("{} stands in `{key}`", other.kind());
+                    let help = "each entry is a name in quotes or a table, as in { ratio = {} }";
+                    self.fault_at(item.span.clone(), key, message, help);
+                }
+            }
+        }
+        Some(tables)
+    }
+
+    /// A table with exactly one key, which names one of `names`: `{ gaussian = { … } }`. Answers
+    /// the position of the name and the table behind it.
+    pub fn choice(&self, names: &[String]) -> Option<(usize, Settings<'a>)> {
+        self.choice_among(names, names)
+    }
+
+    /// The same where some names are known only to say what is wrong with them: hints list what is `offered`.
+    pub(crate) fn choice_among(
+        &self,
+        names: &[String],
+        offered: &[String],
+    ) -> Option<(usize, Settings<'a>)> {
+        let list = quoted(offered);
+        let position = |name: &str, span: &Range<usize>| {
+            let index = names.iter().position(|known| known == name);
+            if index.is_none() {
+                let message = format!("`{}` is not known here", brief(name));
+                let words: Vec<&str> = offered.iter().map(String::as_str).collect();
+                let help = suggestion(name, &words, &format!("one of {list}"));
+                self.fault_at(span.clone(), "", message, help);
+            }
+            index
+        };
+        if let Form::Name(name) = self.form {
+            let index = position(name, &self.span)?;
+            let path = self.path_of(name);
+            return Some((index, self.written(Form::Named, self.span.clone(), path)));
+        }
+        let [entry] = self.table else {
+            let (span, message) = match self.table {
+                [] => (self.span.clone(), "nothing is chosen here".to_owned()),
+                [_, second, ..] => {
+                    (second.key_span.clone(), format!("`{}` is one too many", second.key))
+                }
+                [_] => unreachable!("one entry is matched above"),
+            };
+            self.fault_at(span, "", message, format!("choose one of {list}"));
+            return None;
+        };
+        let index = position(&entry.key, &entry.key_span)?;
+        if let Value::Table(_) = entry.node.value {
+            return self.open(entry).map(|settings| (index, settings));
+        }
+        self.wrong(entry, "a table, as in { … }");
+        let form = Form::Value(self.faults.borrow().len() - 1);
+        let path = self.path_of(&entry.key);
+        Some((index, self.written(form, entry.node.span.clone(), path)))
+    }
+
+    /// A table that must be there and chooses one of several names, as in `phase.isotropic = {}`, or
+    /// the name alone.
+    pub fn chosen(&self, key: &'static str, names: &[String]) -> Option<(usize, Settings<'a>)> {
+        self.chosen_among(key, names, names)
+    }
+
+    /// The same where hints list what is `offered` of the names.
+    pub fn chosen_among(
+        &self,
+        key: &'static str,
+        names: &[String],
+        offered: &[String],
+    ) -> Option<(usize, Settings<'a>)> {
+        self.naming(key, &format!("one of {}", quoted(offered)))?.choice_among(names, offered)
+    }
+
+    /// Records that a key is missing, with its cure.
+    pub(super) fn missing(&self, key: &str, wanted: &str) {
+        let message = format!("`{key}` is missing");
+        match self.form {
+            Form::Table | Form::Name(_) => {
+                self.fault_at(self.span.clone(), "", message, format!("add `{key}`, {wanted}"));
+            }
+            Form::Named => {
+                let full = self.in_full(key);
+                let help = format!("the name alone is not enough: write `{full}`, {wanted}");
+                self.fault_at(self.span.clone(), "", message, help);
+            }
+            Form::Value(index) => {
+                let mut faults = self.faults.borrow_mut();
+                if let Some(fault) =
+                    faults.get_mut(index).filter(|fault| fault.help.starts_with("it takes"))
+                {
+                    fault.help = format!("write `{}`, {wanted}", self.in_full(key));
+                }
+            }
+        }
+    }
+
+    /// How a key is written with the table that it belongs to, as in `phase.henyey-greenstein = { g = … }`.
+    fn in_full(&self, key: &str) -> String {
+        let mut parts = self.path.rsplit('.');
+        let (name, owner) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+        if owner.is_empty() || owner.ends_with(']') {
+            format!("{{ {name} = {{ {key} = … }} }}")
+        } else {
+            format!("{owner}.{name} = {{ {key} = … }}")
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! The fields of a case as a renderer reads them: homogeneous, or samples in a box, channel by channel.
+
+use std::sync::Arc;
+
+use fearless_simd::Level;
+
+use super::sampled::Sampled;
+use super::scene::{Field, Scene};
+use super::{Target, Wishes, single};
+use crate::catalogue::{Settings, Value};
+use crate::geometry::{Aabb, Bounds, Point};
+use crate::media::{Medium, Volume, grid_file};
+use crate::phase::Phase;
+use crate::phase::henyey_greenstein::HenyeyGreenstein;
+use crate::problems::spectral_furnace;
+
+/// Cells along the longest side of a field in space, and along a line.
+const CELLS: [usize; 2] = [32, 256];
+
+/// The most channels of a picture: red, green and blue.
+const MAX_CHANNELS: usize = 3;
+
+/// What is in the way, and which case would do.
+pub(super) type Unsuitable = (String, &'static str);
+
+/// The size of a case's own grids, and whether lookups take the nearest sample.
+pub(super) type OwnGrid = ([usize; 3], bool);
+
+/// What a case is read with.
+pub(super) struct Reader<'a> {
+    /// The name of the case.
+    pub name: String,
+    /// Who renders it.
+    pub target: Target,
+    /// How it is written.
+    pub wishes: &'a Wishes,
+}
+
+/// Where a medium is, and σ_t of each channel, all of them homogeneous or all of them sampled.
+pub(super) struct Fields {
+    /// The box or ball.
+    pub shape: Bounds,
+    /// One for each channel.
+    pub fields: Vec<Field>,
+}
+
+impl Fields {
+    /// Its length along z.
+    pub fn length(&self) -> f64 {
+        self.shape.enclosing_box().map_or(0.0, |bounds| bounds.high.0[2])
+    }
+}
+
+impl Reader<'_> {
+    /// The channels that are exported of all that a case has.
+    pub fn chosen<T>(&self, all: Vec<T>) -> Result<Vec<T>, Unsuitable> {
+        const CURE: &str = "choose up to three of them, as in `--channels 1,2,3`, and export the others to another folder";
+        let count = all.len();
+        let Some(numbers) = &self.wishes.channels else {
+            if count > MAX_CHANNELS {
+                return Err((format!("it has {count} channels, and a picture has 3"), CURE));
+            }
+            return Ok(all);
+        };
+        if let Some(number) = numbers.iter().find(|number| !(1..=count).contains(*number)) {
+            let channels = if count == 1 { "channel" } else { "channels" };
+            return Err((format!("it has {count} {channels}, and none is number {number}"), CURE));
+        }
+        if numbers.is_empty() || numbers.len() > MAX_CHANNELS {
+            return Err((format!("a picture has 3 channels, not {}", numbers.len()), CURE));
+        }
+        if (1..numbers.len()).any(|place| numbers[..place].contains(&numbers[place])) {
+            return Err(("a channel is chosen twice".into(), CURE));
+        }
+        let mut all: Vec<Option<T>> = all.into_iter().map(Some).collect();
+        Ok(numbers.iter().filter_map(|number| all[number - 1].take()).collect())
+    }
+
+    /// What is said of a scene's channels and its medium.
+    pub fn remarks(&self, scene: &Scene) -> Vec<String> {
+        let mut remarks = Vec::new();
+        if let Some(numbers) = &self.wishes.channels {
+            let list: Vec<String> = numbers.iter().map(usize::to_string).collect();
+            remarks.push(format!("of the channels of the case: {}", list.join(", ")));
+        }
+        if scene.channels.len() == 2 && self.target == Target::Mitsuba {
+            remarks.push("blue is as green: the case has two channels".into());
+        }
+        if scene.is_coloured() && self.target == Target::Pbrt {
+            remarks.push("each channel is a scene of its own: pbrt has wavelengths".into());
+        }
+        if self.wishes.heterogeneous && !scene.is_heterogeneous {
+            remarks.push("the medium is heterogeneous as it is".into());
+        }
+        remarks
+    }
+
+    /// The volumes, albedos and common phase function of the channels that are exported.
+    pub fn scatterers(
+        &self,
+        channels: Vec<spectral_furnace::Channel>,
+    ) -> Result<(Vec<Arc<Volume>>, Vec<f64>, Phase), Unsuitable> {
+        let channels = self.chosen(channels)?;
+        let phases: Vec<Phase> = channels.iter().map(|channel| channel.phase).collect();
+        let volumes = channels.iter().map(|channel| channel.volume.clone()).collect();
+        let albedos = channels.iter().map(|channel| channel.albedo).collect();
+        Ok((volumes, albedos, one_phase(&phases)?))
+    }
+
+    /// Volumes in a box, or a homogeneous box or ball; with the size of their own grid, if they have one.
+    pub fn in_space(
+        &self,
+        volumes: &[Arc<Volume>],
+        own: Option<OwnGrid>,
+    ) -> Result<Fields, Unsuitable> {
+        let bounds = volumes[0].bounds();
+        let Some(around) = bounds.enclosing_box() else {
+            let cure = "give it `bounds.box = { low, high }`";
+            return Err(("its medium fills all of space".into(), cure));
+        };
+        let values: Option<Vec<f64>> = volumes.iter().map(|volume| volume.single_value()).collect();
+        if let Some(values) = values {
+            let fields = values.into_iter().map(|value| Field::Even(single(value))).collect();
+            let shape = match bounds {
+                Bounds::Sphere { centre, radius } => {
+                    Bounds::Sphere { centre: Point(centre.0.map(single)), radius: single(radius) }
+                }
+                Bounds::Box(_) | Bounds::Everywhere => Bounds::Box(rounded(around)),
+            };
+            return Ok(Fields { shape, fields });
+        }
+        let most = self.wishes.cells.unwrap_or(CELLS[0]);
+        let size = own.map_or_else(|| cells(around, most), |own| own.0);
+        let nearest = own.is_some_and(|own| own.1) && self.target == Target::Mitsuba;
+        let sample =
+            |volume: &Arc<Volume>| Sampled::of_volume(&**volume, rounded(around), size, nearest);
+        let fields = volumes.iter().map(|volume| Field::Grid(sample(volume))).collect();
+        Ok(Fields { shape: Bounds::Box(rounded(around)), fields })
+    }
+
+    /// Media along one line, as layers along z that begin at 0 in a box as wide to both sides as it is long.
+    pub fn along(&self, media: &[Medium]) -> Fields {
+        let length = single(media[0].support().length());
+        let shape =
+            Bounds::Box(Aabb { low: Point([-length, -length, 0.0]), high: Point([length; 3]) });
+        let value = |medium: &Medium| medium.lookups(Level::new()).single_value();
+        let values: Option<Vec<f64>> = media.iter().map(value).collect();
+        let fields = if let Some(values) = values {
+            values.into_iter().map(|value| Field::Even(single(value))).collect()
+        } else {
+            let cells = self.wishes.cells.unwrap_or(CELLS[1]);
+            media.iter().map(|medium| Field::Grid(Sampled::of_line(medium, cells))).collect()
+        };
+        Fields { shape, fields }
+    }
+
+    /// The size of the grids of samples in the middle of cells that the exported channels of a case have, and whether
+    /// the nearest is taken; `None` where one has another, or none.
+    pub fn own_grids(
+        &self,
+        settings: &Settings,
+        channels: usize,
+    ) -> Result<Option<OwnGrid>, Unsuitable> {
+        let volume = settings.entry("volume");
+        let is_list = volume.is_some_and(|entry| matches!(entry.node.value, Value::Array(_)));
+        let grids: Vec<Option<OwnGrid>> = if is_list {
+            settings.tables("volume").unwrap_or_default().iter().map(own_grid).collect()
+        } else {
+            let volume = settings.naming_if("volume", "a field in space");
+            vec![volume.and_then(|volume| own_grid(&volume)); channels]
+        };
+        let grids = self.chosen(grids)?;
+        let first = grids.first().copied().flatten();
+        Ok(first.filter(|_| grids.iter().all(|grid| *grid == first)))
+    }
+}
+
+/// Mistakes in case files are found before.
+pub(super) fn unread() -> Unsuitable {
+    ("it cannot be read".into(), "run `trueflight plan` on it")
+}
+
+/// A phase function whose number is of single precision.
+pub(super) fn lobe(phase: Phase) -> Phase {
+    match phase {
+        Phase::HenyeyGreenstein(lobe) => {
+            HenyeyGreenstein::new(single(lobe.g())).map_or(phase, Phase::HenyeyGreenstein)
+        }
+        other => other,
+    }
+}
+
+/// The phase function of all channels.
+pub(super) fn one_phase(phases: &[Phase]) -> Result<Phase, Unsuitable> {
+    if phases.windows(2).any(|pair| pair[0] != pair[1]) {
+        let why = "its channels have different phase functions, and that of a renderer is grey";
+        return Err((
+            why.into(),
+            "export channels that have the same, as in `--channels 1`, each to a folder of its own",
+        ));
+    }
+    Ok(lobe(phases[0]))
+}
+
+/// A box with corners in single precision.
+fn rounded(Aabb { low, high }: Aabb) -> Aabb {
+    Aabb { low: Point(low.0.map(single)), high: Point(high.0.map(single)) }
+}
+
+/// How many cubic cells a box has along each axis, with so many along the longest.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `most`
+fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
+    let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);
+    let longest = edges.iter().copied().fold(0.0, f64::max);
+    edges.map(|edge| ((edge / longest * most as f64).round() as usize).max(1))
+}
+
+/// The size of the grid of a volume, if it has samples in the middle of cells, and whether the nearest is taken.
+fn own_grid(volume: &Settings) -> Option<OwnGrid> {
+    let grid = volume.table_if("grid")?;
+    if grid.word_or("samples", &["centres", "vertices"], "centres")? == "vertices" {
+        return None;
+    }
+    let nearest = grid.word_or("interpolation", &["trilinear", "nearest"], "trilinear")?;
+    let size = if let Some(random) = grid.table_if("random") {
+        random.counts("size", 1..=4096)?
+    } else {
+        let path = grid.folder.join(grid.text("file")?);
+        if grid_file::is_vdb(&path) {
+            return None;
+        }
+        grid_file::read(&path, None).ok()?.size
+    };
+    Some((size, nearest == "nearest"))
+}
