@@ -3,7 +3,7 @@
 //! ```text
 //! time to ε   V/(ε²T²) · time of a draw      until the standard error is ε of the truth
 //! efficiency  1/(V · time of a draw)
-//! fom         1/(V · lookups of a draw)
+//! fom         1/(V · lookups of a draw, with its share of the setup lookups)
 //! speedup     time of a draw of the plain loop / time of a draw
 //! ```
 //!

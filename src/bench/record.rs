@@ -100,7 +100,11 @@ pub struct BenchRow {
     pub lookups_per_draw: Option<f64>,
     /// The same in theory.
     pub predicted_lookups: Option<f64>,
-    /// 1/(variance · lookups per draw), both those of theory where it has them.
+    /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays.
+    pub setup_lookups: Option<u64>,
+    /// What σ̂, control and estimator need to know of the medium beside lookups, as in `τ`; empty for nothing.
+    pub needs: String,
+    /// 1/(variance · (lookups per draw + setup lookups/draws per ray)), both those of theory where it has them.
     pub fom: Option<f64>,
     /// How the error falls.
     pub curve: Vec<CurvePoint>,
@@ -120,7 +124,7 @@ pub struct BenchRow {
 pub struct CurvePoint {
     /// Draws.
     pub draws: u64,
-    /// Their lookups of σ_t.
+    /// Their lookups of σ_t, with their share of the setup lookups.
     pub lookups: f64,
     /// |mean − T|, absolute: the root of its mean square over the rounds.
     pub error: f64,

@@ -11,9 +11,7 @@ use crate::estimators::Refusal;
 use crate::harness::plan::Planned;
 use crate::harness::ready::Ready;
 use crate::theory::Channel;
-
-/// A relative variance below this is rounding.
-const CERTAIN: f64 = 1e-20;
+use crate::theory::prediction::CERTAIN;
 
 /// What is said where a round took no time that the clock could tell.
 const TOO_SHORT: &str = "a round is shorter than the clock can tell; give more --draws";
@@ -49,6 +47,7 @@ fn named(planned: &Planned) -> BenchRow {
         sampling_kind: names.sampling_kind,
         control: names.control,
         swept: planned.variation.map(|(_, value)| value),
+        needs: planned.needs.clone(),
         ..BenchRow::default()
     }
 }
@@ -58,6 +57,7 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
     let observed = sample.lookups.moments().map(|moments| moments.mean);
     let predicted_lookups = ready.prediction.lookups.as_ref().map(|law| law.mean);
     let lookups = predicted_lookups.or(observed);
+    let cost = lookups.map(|n| n + ready.prediction.shared_setup(planned.draws_per_ray));
     let both = ready.prediction.channels.iter().zip(&sample.channels).enumerate();
     let rows = both.map(|(index, (channel, drawn))| {
         let truth = channel.truth.value;
@@ -68,7 +68,7 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
         let curve = match channel.moments {
             // What is left of the error is rounding, and does not fall; a bias is more than that.
             Some(m) if m.relative[0] <= CERTAIN && !planned.expect_biased => Vec::new(),
-            _ => curve(sample, drawn, (truth, known), lookups),
+            _ => curve(sample, drawn, (truth, known), cost),
         };
         let times = times(laps, &curve, (truth, known), lookups);
         let reason = if times.is_some() { reason } else { TOO_SHORT.to_owned() };
@@ -82,7 +82,8 @@ pub fn measured(planned: &Planned, ready: &Ready, laps: &Laps, sample: &Sample) 
             predicted_variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
             lookups_per_draw: observed,
             predicted_lookups,
-            fom: known.zip(lookups).and_then(|(v, n)| efficiency(v, n)),
+            setup_lookups: Some(ready.prediction.setup_lookups),
+            fom: known.zip(cost).and_then(|(v, n)| efficiency(v, n)),
             reason,
             times,
             curve,

@@ -116,6 +116,11 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
+    /// What it needs to know of the medium beside lookups, whatever its σ̂ and its control, as in `τ`; `None` for nothing.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Whether it exists and is unbiased here.
     ///
     /// # Errors

@@ -112,6 +112,8 @@ pub trait Entry<P: Problem>: Send + Sync {
     fn without_control(&self) -> Option<&'static str>;
     /// See [`Estimator::default_control`].
     fn default_control(&self) -> Option<Box<dyn controls::Recipe>>;
+    /// See [`Estimator::needs`].
+    fn needs(&self) -> Option<&'static str>;
     /// See [`Estimator::domain`].
     ///
     /// # Errors
@@ -153,6 +155,10 @@ impl<P: Problem, E: Estimator<P>> Entry<P> for E {
 
     fn default_control(&self) -> Option<Box<dyn controls::Recipe>> {
         E::default_control()
+    }
+
+    fn needs(&self) -> Option<&'static str> {
+        Estimator::needs(self)
     }
 
     fn domain(&self, setup: &Setup<P>) -> Result<(), Refusal> {

@@ -4,6 +4,7 @@
 //! |---|---|---|
 //! | `title` | one line for tables and plots | required |
 //! | `draws` | planned draws per experiment; `--draws` overrides it | 4e6; `check`: 4e5 |
+//! | `draws_per_ray` | n ≥ 1: draws that share the lookups made for a ray before its first one (explorer points, pilot rays); figures of merit charge each draw 1/n of them | 1 |
 //! | `tolerance.mean` | ε of means, relative to the truth (to 1 − T for τ < 0.1), below 1 | what the draws see, at most 0.05 |
 //! | `tolerance.variance` | ε of variances, relative | what the draws see, at most 0.2 |
 //! | `tolerance.lookups` | ε of the numbers of lookups, relative | what the draws see, at most 0.02 |
@@ -59,6 +60,8 @@ pub struct Case {
     pub sweep: Option<SweepAxis>,
     /// How many draws each experiment makes, if the case says.
     pub draws: Option<u64>,
+    /// How many draws of a ray share its setup lookups.
+    pub draws_per_ray: u64,
     /// The relative differences that matter.
     pub tolerance: Tolerance,
     /// Whether experiments that are too short to pass are allowed.
@@ -106,6 +109,7 @@ impl Case {
         } else {
             Some(None)
         };
+        let draws_per_ray = root.count_or("draws_per_ray", 1..=1_000_000_000_000, 1);
         let underpowered = root.word_or("underpowered", &["refuse", "allow"], "refuse");
         root.close();
         let Problem { name: problem, scenario, sweep, .. } = problem?;
@@ -117,6 +121,7 @@ impl Case {
             scenario,
             sweep,
             draws: draws?,
+            draws_per_ray: draws_per_ray?,
             tolerance: tolerance?,
             allow_underpowered: underpowered? == "allow",
             digest: 0,

@@ -3,8 +3,9 @@
 use super::case::Case;
 use super::names::Names;
 use super::plan::{Planned, PlannedCase};
-use super::record::{Curve, CurvePoint, Sweep};
+use super::record::{Best, Curve, CurvePoint, Sweep};
 use super::sweep::{SweepAxis, Variation, What};
+use super::theory_rows::finite;
 use crate::numeric::parallel;
 use crate::theory::Channel;
 use crate::theory::optimum::{Optimum, best_constants};
@@ -25,8 +26,9 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
         let names = case.scenario.names(estimator, axis.values.first().map(|&x| (axis.what, x)));
         let is_sought = axis.what == What::Sampling;
         let best = is_sought.then(|| best(case, seed, estimator, None));
+        let found = |channel: usize| best.as_ref()?.get(channel).copied().flatten();
         let optimum = |channel: usize| {
-            let at = best.as_ref()?.get(channel).copied().flatten()?.sampling;
+            let at = found(channel)?.sampling;
             let mut points = (low..=high)
                 .contains(&at)
                 .then(|| points(case, seed, estimator, Some((What::Sampling, at)), at))?;
@@ -39,10 +41,12 @@ pub fn curves(case: &Case, seed: u64) -> Vec<Curve> {
             control: names.control.clone(),
             channel: channel.clone(),
             points: predicted.iter().filter_map(|p| p.get(index)?.1).collect(),
+            listed: Some(estimator),
             optimum: optimum(index),
+            best: found(index).map(named_best),
         };
         let curves: Vec<Curve> = named.iter().enumerate().map(curve).collect();
-        if curves.is_empty() { vec![refused(names)] } else { curves }
+        if curves.is_empty() { vec![refused(names, estimator)] } else { curves }
     });
     curves.into_iter().flatten().collect()
 }
@@ -82,15 +86,23 @@ fn best(case: &Case, seed: u64, estimator: usize, variation: Variation) -> Vec<O
         return Vec::new();
     }
     let pilots = case.pilots(seed, estimator);
-    best_constants(scenario.natural_scale(estimator, variation), |sampling| {
+    let scale = scenario.natural_scale(estimator, variation);
+    best_constants(scale, case.draws_per_ray, |sampling| {
         scenario.predict(estimator, variation, Some(sampling), pilots)
     })
 }
 
 /// The line of an estimator that is refused everywhere: it has no points.
-fn refused(names: Names) -> Curve {
+fn refused(names: Names, listed: usize) -> Curve {
     let Names { estimator, control, .. } = names;
-    Curve { estimator, control, channel: String::new(), points: Vec::new(), optimum: None }
+    let (channel, points, listed) = (String::new(), Vec::new(), Some(listed));
+    Curve { estimator, listed, control, channel, points, optimum: None, best: None }
+}
+
+fn named_best(optimum: Optimum) -> Best {
+    let Optimum { sampling, figure_of_merit, kind } = optimum;
+    let (fom, limit) = (finite(Some(figure_of_merit)), kind.limit());
+    Best { sampling, fom, kind: kind.words().to_owned(), limit }
 }
 
 /// The channels with their points; nothing where the estimator is refused.
@@ -106,11 +118,12 @@ fn points(
         return Vec::new();
     };
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
+    let (cost, setup_lookups) = (prediction.cost(case.draws_per_ray), prediction.setup_lookups);
     let point = |channel: &Channel| {
         let (variance, lookups) = (channel.moments?.variance(), lookups?);
-        let fom = 1.0 / (variance * lookups);
+        let fom = 1.0 / (variance * cost?);
         let is_finite = variance.is_finite() && fom.is_finite();
-        is_finite.then_some(CurvePoint { x, variance, lookups, fom })
+        is_finite.then_some(CurvePoint { x, variance, lookups, fom, setup_lookups })
     };
     let channels = prediction.channels.iter();
     channels.map(|channel| (channel.name.clone(), point(channel))).collect()

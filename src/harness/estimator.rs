@@ -36,6 +36,7 @@ impl<P: Estimated> EntryReader for Vec<Box<dyn Entry<P>>> {
             is_order_free: entry.is_order_free(),
             alias: entry.without_control(),
             default_control: entry.default_control(),
+            needs: entry.needs(),
             label: [false, true].map(|albedo| entry.label(albedo)),
         };
         self.push(entry);
@@ -58,6 +59,8 @@ pub struct Features {
     pub alias: Option<&'static str>,
     /// The control that it uses where the case gives none.
     pub default_control: Option<Box<dyn controls::Recipe>>,
+    /// What it needs to know of the medium beside lookups, σ̂ and control.
+    pub needs: Option<&'static str>,
     /// Its own settings in words, without the albedo and with it.
     pub label: [String; 2],
 }

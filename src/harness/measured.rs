@@ -5,10 +5,8 @@ use super::normality::{Tails, needed};
 use super::record::Row;
 use super::theory_rows::finite;
 use crate::stats::Tally;
+use crate::theory::prediction::CERTAIN;
 use crate::theory::{Channel, Prediction};
-
-/// A relative variance below this is rounding.
-const CERTAIN: f64 = 1e-20;
 
 /// Mean and variance of the fixed draws, and their z-scores.
 pub fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
@@ -35,8 +33,13 @@ pub fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
     );
 }
 
-/// Mean lookups of the fixed draws, their z-score, and the figure of merit.
-pub fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
+/// Mean lookups of the fixed draws, their z-score, and the figure of merit of a ray with so many draws.
+pub fn measure_lookups(
+    row: &mut Row,
+    prediction: &Prediction,
+    drawn: &Drawn,
+    draws_per_ray: u64,
+) {
     let n = drawn.lookups.draws as f64;
     let law = prediction.lookups.as_ref();
     let observed = drawn.lookups.moments().map(|m| m.mean);
@@ -46,7 +49,8 @@ pub fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn) {
         row.lookups_deviation = Some(deviation);
         row.z_lookups = observed.map(|mean| mean / deviation);
     }
-    let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * m));
+    let setup = prediction.shared_setup(draws_per_ray);
+    let fom = row.variance.zip(row.lookups_per_draw).map(|(v, m)| 1.0 / (v * (m + setup)));
     row.fom = finite(fom.filter(|_| row.z_mean.is_some()));
 }
 

@@ -76,6 +76,10 @@ pub struct Planned {
     pub variation: Variation,
     /// What it is called.
     pub names: Names,
+    /// What it needs to know of the medium beside lookups; empty for nothing.
+    pub needs: String,
+    /// How many draws of a ray share its setup lookups.
+    pub draws_per_ray: u64,
     /// Where its random numbers are.
     pub address: Address,
     /// Where its collisions are, where it may share their lookups with others.
@@ -243,6 +247,8 @@ fn plan_experiment(
         estimator,
         variation,
         names,
+        needs: case.scenario.needs(estimator, variation),
+        draws_per_ray: case.draws_per_ray,
         address,
         shared,
         draws: most,

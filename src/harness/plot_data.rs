@@ -25,6 +25,8 @@ pub struct Sweep {
 pub struct Curve {
     /// The estimator's label: the same as in its rows.
     pub estimator: String,
+    /// The number of the estimator in the case's list: the same as in its rows.
+    pub listed: Option<usize>,
     /// Its control in words: the same as in its rows.
     pub control: String,
     /// The channel: the same as in its rows.
@@ -32,8 +34,23 @@ pub struct Curve {
     pub channel: String,
     /// Points in ascending order; refused stretches are left out.
     pub points: Vec<CurvePoint>,
-    /// Where the figure of merit is largest, if it has a maximum inside the sweep and was searched for it.
+    /// Theory at the best constant σ̂, if that was searched and lies inside the sweep.
     pub optimum: Option<CurvePoint>,
+    /// The best constant σ̂, inside the sweep or not; `None` where it was not searched.
+    pub best: Option<Best>,
+}
+
+/// The constant σ̂ that a search for the largest figure of merit names.
+#[derive(Debug, Clone, Serialize, Deserialize)]
+pub struct Best {
+    /// σ̂, 1/length.
+    pub sampling: f64,
+    /// The figure of merit there; `None` where it is infinite.
+    pub fom: Option<f64>,
+    /// What it is, in the words of a row's `best_kind`.
+    pub kind: String,
+    /// The limit of a figure of merit that rises with σ̂ to one.
+    pub limit: Option<f64>,
 }
 
 /// Theory at one value of the swept quantity.
@@ -48,9 +65,12 @@ pub struct CurvePoint {
     /// The expected lookups.
     #[serde(deserialize_with = "null::read")]
     pub lookups: f64,
-    /// 1/(variance · lookups).
+    /// 1/(variance · (lookups + setup lookups/draws per ray)).
     #[serde(deserialize_with = "null::read")]
     pub fom: f64,
+    /// Lookups for a ray before its first draw.
+    #[serde(default)]
+    pub setup_lookups: u64,
 }
 
 /// A ray seen from the side, as in Figures 5 and 8 of Szirmay-Kalos et al. 2017.

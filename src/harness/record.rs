@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::comparison::Comparison;
 use crate::files::null;
 
-pub use super::plot_data::{Anatomy, Course, Curve, CurvePoint, MeasuredPoint, Sweep};
+pub use super::plot_data::{Anatomy, Best, Course, Curve, CurvePoint, MeasuredPoint, Sweep};
 
 /// The version of the record's form: it grows when a field changes its meaning or goes away.
 pub const SCHEMA: u32 = 1;
@@ -106,6 +106,8 @@ pub struct CaseRecord {
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,
+    /// How many draws of a ray share its setup lookups; `None` in records from before there were any.
+    pub draws_per_ray: Option<u64>,
     /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
     /// planned to see.
     #[serde(deserialize_with = "null::read")]
@@ -134,12 +136,18 @@ impl CaseRecord {
 pub struct Row {
     /// The estimator with its own settings, as in `single(non-terminating, a=0.7)`.
     pub estimator: String,
+    /// The number of the estimator in the case's list, from 0: with the swept value the identity of the experiment. `None` in
+    /// records from before it was kept.
+    pub listed: Option<usize>,
     /// The constant sampling extinction, 1/length; `None` where σ̂ varies or is not used.
     pub sampling: Option<f64>,
     /// The sampling extinction in words, as in `piecewise-linear`; empty where none is used.
     pub sampling_kind: String,
     /// The control in words, as in `constant 0.3`; empty for none.
     pub control: String,
+    /// What σ̂, control and estimator need to know of the medium beside lookups, as in `τ`; empty for nothing.
+    #[serde(default)]
+    pub needs: String,
     /// The value of the swept quantity; `None` for experiments outside the sweep.
     pub swept: Option<f64>,
     /// The kernel that draws, `ordered` or `order-free`; empty for what is refused.
@@ -187,6 +195,9 @@ pub struct Row {
     pub lookups_per_draw: Option<f64>,
     /// The same in theory.
     pub predicted_lookups: Option<f64>,
+    /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays; no part of the lookups per
+    /// draw. `None` where the experiment is refused.
+    pub setup_lookups: Option<u64>,
     /// (lookups − predicted) in predicted standard errors.
     pub z_lookups: Option<f64>,
     /// The predicted standard deviation of the mean number of lookups, for error bars.
@@ -203,17 +214,23 @@ pub struct Row {
     pub predicted_kurtosis: Option<f64>,
     /// ε of the mean: the smallest bias, relative to the truth, that a pass excludes.
     pub detectable_bias: Option<f64>,
-    /// The measured figure of merit, 1/(variance · lookups per draw).
+    /// The measured figure of merit, 1/(variance · (lookups per draw + setup lookups/draws per ray)).
     pub fom: Option<f64>,
     /// The same in theory.
     pub predicted_fom: Option<f64>,
     /// The share of the ray on which `w ≤ 2σ_t`, the stability condition, holds.
     pub stable_share: Option<f64>,
-    /// The constant σ̂ with the largest predicted figure of merit of this channel; for the double particle,
-    /// which has no optimum, the σ̂ that reaches 90 % of the limit. `None` where it is not asked for.
+    /// The constant σ̂ with the largest predicted figure of merit of this channel, or what `best_kind` says. `None` where
+    /// it is not asked for.
     pub best_sampling: Option<f64>,
-    /// The figure of merit there.
+    /// The figure of merit there; `None` where it is infinite.
     pub best_fom: Option<f64>,
+    /// What `best_sampling` is: `optimum`, `90 % of the limit` where the figure of merit rises with σ̂ to a limit, `no
+    /// variance`, or `end of the search`. Empty where it is not asked for.
+    #[serde(default)]
+    pub best_kind: String,
+    /// The limit of a figure of merit that rises with σ̂ to one.
+    pub best_limit: Option<f64>,
     /// `pass`, `fail`, `inconclusive`, `underpowered` or `refused`; `None` where nothing was drawn.
     pub verdict: Option<Verdict>,
     /// Why, in words; empty for a plain pass.
@@ -246,8 +263,8 @@ pub struct Row {
 }
 
 impl Row {
-    /// `log₁₀ LTUV`, LTUV = V · lookups of a draw: the lookups to unit variance of Miller et al. 2019, section 6; the
-    /// figure of merit upside down.
+    /// `log₁₀ LTUV`, LTUV = V · lookups of a draw with its share of the setup lookups: the lookups to unit variance of
+    /// Miller et al. 2019, section 6; the figure of merit upside down.
     pub fn log10_ltuv(&self) -> Option<f64> {
         self.fom.map(|fom| -fom.log10())
     }

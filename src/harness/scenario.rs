@@ -158,6 +158,27 @@ impl Scenario {
         Names { estimator, sampling, sampling_kind, control, alias }
     }
 
+    /// What an experiment needs to know of the medium beside lookups, as in `τ, max |σ_t − σ_c|`; empty for nothing.
+    pub fn needs(&self, estimator: usize, variation: Variation) -> String {
+        if let Some(Ok(needs)) = self.varied(variation, |other| other.needs(estimator, None)) {
+            return needs;
+        }
+        let parsed = &self.estimators.list[estimator];
+        let control = self.with_control(estimator, variation, |recipe| recipe.needs());
+        // A swept σ̂ stands in the recipe's place.
+        let is_swept = matches!(variation, Some((What::Sampling, _)))
+            && self.depends_on(estimator, What::Sampling);
+        let recipe = self.estimators.sampling_of(parsed).filter(|_| !is_swept);
+        let sampling = recipe.and_then(sampling::Recipe::needs);
+        let mut needs: Vec<&str> = Vec::new();
+        for need in [parsed.features.needs, control, sampling].into_iter().flatten() {
+            if !needs.contains(&need) {
+                needs.push(need);
+            }
+        }
+        needs.join(", ")
+    }
+
     /// Whether the case declares an estimator biased.
     pub fn expects_bias(&self, estimator: usize) -> bool {
         self.estimators.list[estimator].expect_biased
@@ -178,9 +199,11 @@ impl Scenario {
         if let Some(prepared) = prepared {
             return prepared?;
         }
-        let parts = self.parts(estimator, variation, None, address)?;
+        let (parts, setup_lookups) = self.counted_parts(estimator, variation, None, address)?;
         let parsed = &self.estimators.list[estimator];
-        let ready = self.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
+        let mut ready =
+            self.problem.prepare(estimator, parts, parsed.order(), parsed.expect_biased)?;
+        ready.prediction.setup_lookups = setup_lookups;
         refuse_what_cannot_be_computed(ready)
     }
 
@@ -197,8 +220,11 @@ impl Scenario {
         if let Some(predicted) = self.varied(variation, ask) {
             return predicted.ok()?;
         }
-        let parts = self.parts(estimator, variation, what_if, pilots).ok()?;
-        self.problem.predict(estimator, parts, self.estimators.list[estimator].order())
+        let (parts, setup_lookups) =
+            self.counted_parts(estimator, variation, what_if, pilots).ok()?;
+        let order = self.estimators.list[estimator].order();
+        let prediction = self.problem.predict(estimator, parts, order)?;
+        Some(Prediction { setup_lookups, ..prediction })
     }
 
     /// The ray seen from the side and the places where the control was fitted, for estimators of a
@@ -318,8 +344,23 @@ impl Scenario {
         what_if: Option<f64>,
         address: Address,
     ) -> Result<Parts<'_>, Refusal> {
+        self.counted_parts(estimator, variation, what_if, address).map(|(parts, _)| parts)
+    }
+
+    /// The same, with the lookups of σ_t that control and σ̂ took.
+    fn counted_parts(
+        &self,
+        estimator: usize,
+        variation: Variation,
+        what_if: Option<f64>,
+        address: Address,
+    ) -> Result<(Parts<'_>, u64), Refusal> {
         let (mesh, site) = (self.mesh(), self.site(address));
-        let control = self.with_control(estimator, variation, |recipe| recipe.prepare(&site))?;
+        let (control, explored) = self.with_control(estimator, variation, |recipe| {
+            // Nothing is looked up on a ray that misses the medium.
+            let lookups = if mesh.support().is_empty() { 0 } else { recipe.lookups() };
+            recipe.prepare(&site).map(|control| (control, lookups as u64))
+        })?;
         let (constant, factor) = match variation {
             _ if what_if.is_some() => (what_if, 1.0),
             Some((What::Sampling, value)) => (Some(value), 1.0),
@@ -329,15 +370,17 @@ impl Scenario {
         let constant =
             constant.filter(|_| self.estimators.list[estimator].features.inputs.sampling);
         let recipe = self.estimators.sampling_of(&self.estimators.list[estimator]);
-        let sampling_of = |channel: usize, site: &Site| {
-            let sampling = match (constant, recipe) {
-                (Some(value), _) => Piecewise::constant(value, mesh.support()),
+        let mut lookups = explored;
+        let mut sampling_of = |channel: usize, site: &Site| {
+            let (sampling, learned) = match (constant, recipe) {
+                (Some(value), _) => (Piecewise::constant(value, mesh.support()), 0),
                 (None, Some(recipe)) => {
                     let own = recipe.channels().get(channel).map_or(recipe, |own| &**own);
-                    own.prepare(site, &control)?
+                    own.prepare_counted(site, &control)?
                 }
                 (None, None) => return Ok(None),
             };
+            lookups += learned;
             Ok(Some(sampling.scaled(factor)))
         };
         let sampling = sampling_of(0, &site)?;
@@ -346,12 +389,13 @@ impl Scenario {
             .map(|(channel, (mesh, body))| {
                 Ok((mesh.clone(), sampling_of(channel, &Site { body, mesh, address })?))
             })
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<_, Refusal>>()?;
         let albedo = match variation {
             Some((What::Albedo, albedo)) => Some(albedo),
             _ => None,
         };
-        Ok(Parts { mesh, sampling, further, control, constant, recipe, factor, albedo })
+        let parts = Parts { mesh, sampling, further, control, constant, recipe, factor, albedo };
+        Ok((parts, lookups))
     }
 }
 

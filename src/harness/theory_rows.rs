@@ -11,6 +11,8 @@ const LONGEST_LAW: usize = 100;
 pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let blank = Row {
         estimator: planned.names.estimator.clone(),
+        listed: Some(planned.estimator),
+        needs: planned.needs.clone(),
         sampling: planned.names.sampling,
         sampling_kind: planned.names.sampling_kind.clone(),
         control: planned.names.control.clone(),
@@ -31,12 +33,13 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     };
     let prediction = &ready.prediction;
     let lookups = prediction.lookups.as_ref().map(|law| law.mean);
+    let cost = prediction.cost(planned.draws_per_ray);
     let law = prediction.lookups.as_ref();
     let kernel = ready.experiment.order().word();
     let same_as = twin(case, planned).unwrap_or_default();
     let rows = prediction.channels.iter().map(|channel| {
         let variance = channel.moments.map(|moments| moments.variance());
-        let fom = variance.zip(lookups).map(|(v, m)| 1.0 / (v * m));
+        let fom = variance.zip(cost).map(|(v, m)| 1.0 / (v * m));
         Row {
             kernel: kernel.to_owned(),
             sharing: sharing(case, planned),
@@ -47,6 +50,7 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
             truth_error: Some(channel.truth.error),
             predicted_variance: finite(variance),
             predicted_lookups: lookups,
+            setup_lookups: Some(prediction.setup_lookups),
             predicted_skewness: finite(channel.moments.and_then(|m| m.skewness())),
             predicted_kurtosis: finite(channel.moments.and_then(|m| m.kurtosis())),
             predicted_fom: finite(fom),

@@ -8,7 +8,7 @@ use super::record::{
     Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Sweep, Timing, Verdict,
 };
 use super::repeat::command;
-use super::theory_rows::theory_rows;
+use super::theory_rows::{finite, theory_rows};
 use super::{curves, evaluate, summary};
 use crate::numeric::pack;
 use crate::numeric::parallel;
@@ -60,7 +60,9 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
         for (row, best) in found.rows.iter_mut().zip(of_rows) {
             let best = best.filter(|_| row.verdict.is_none());
             row.best_sampling = best.map(|best| best.sampling);
-            row.best_fom = best.map(|best| best.figure_of_merit);
+            row.best_fom = finite(best.map(|best| best.figure_of_merit));
+            row.best_kind = best.map_or("", |best| best.kind.words()).to_owned();
+            row.best_limit = best.and_then(|best| best.kind.limit());
         }
     }
     record
@@ -120,6 +122,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             title: planned.case.title.clone(),
             problem: planned.case.problem.clone(),
             medium: planned.case.scenario.medium().to_owned(),
+            draws_per_ray: Some(planned.case.draws_per_ray),
             visible_bias: None,
             pace: None,
             rows,
@@ -180,7 +183,7 @@ fn drawn_rows(
         row.drawn = Some(drawn.draws);
         if let Some(tally) = drawn.tallies.get(index) {
             measure(row, channel, tally);
-            measure_lookups(row, prediction, drawn);
+            measure_lookups(row, prediction, drawn, planned.draws_per_ray);
             row.not_normal = not_normal(row, prediction, drawn.lookups.draws);
         }
         row.p_law = findings.iter().filter_map(|finding| finding.p).reduce(f64::min);

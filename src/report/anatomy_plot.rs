@@ -117,7 +117,7 @@ fn transmittance(sheet: &mut Sheet, anatomy: &Anatomy) -> Vec<Entry> {
         for (deviation, cap, width) in
             [(point.deviation, 6.0, 1.2), (point.standard_error, 3.5, 2.8)]
         {
-            let ends = (point.mean - deviation, point.mean + deviation);
+            let ends = [point.mean - deviation, point.mean, point.mean + deviation];
             panel.bar(sheet, spot[0], ends, (cap, width, red));
         }
         panel.point(sheet, spot, Marker::Disc, 4.6, red);

@@ -60,12 +60,13 @@ fn theory(case: &CaseRecord, sweep: &Sweep) -> Result<String, ReportError> {
     let is_named = sweep.curves.iter().any(|curve| !curve.channel.is_empty());
     let words = ["estimator", "control", "channel"];
     let words = &words[..if is_named { 3 } else { 2 }];
-    let header = words.iter().copied().chain(["x", "variance", "lookups", "fom"]);
+    let header = words.iter().copied().chain(["x", "variance", "lookups", "fom", "setup_lookups"]);
     let lines = sweep.curves.iter().flat_map(|curve| {
         curve.points.iter().map(|point| {
             let texts = [curve.estimator.clone(), curve.control.clone(), curve.channel.clone()];
             let numbers = [point.x, point.variance, point.lookups, point.fom].map(exact);
-            texts.into_iter().take(words.len()).chain(numbers)
+            let setup = point.setup_lookups.to_string();
+            texts.into_iter().take(words.len()).chain(numbers).chain([setup])
         })
     });
     table(&case.name, header, lines)

@@ -133,15 +133,41 @@ fn facts(case: &CaseRecord, view: View) -> Vec<String> {
         facts.push(format!("in units of exp(−{})", short(unit, 6)));
     }
     if let Some(draws) = views::shared(case, |row| row.draws).filter(|_| !view.is_theory()) {
-        let word = if draws == 1 { "draw" } else { "draws" };
         let what = if view == View::Run { "statistics of " } else { "" };
-        facts.push(format!("{what}{} {word} each", count(draws)));
+        facts.push(format!("{what}{} each", self::draws(draws)));
     }
     if let Some(drawn) = views::shared(case, |row| row.drawn).filter(|_| view == View::Run) {
         facts.push(format!("{} drawn each", count(drawn)));
     }
+    if case.rows.iter().any(|row| row.setup_lookups.is_some_and(|lookups| lookups > 0)) {
+        facts.push(format!("FoM: setup over {} per ray", draws(case.draws_per_ray.unwrap_or(1))));
+    }
     facts.retain(|fact| !fact.is_empty());
     facts
+}
+
+fn draws(number: u64) -> String {
+    format!("{} {}", count(number), if number == 1 { "draw" } else { "draws" })
+}
+
+/// What the best σ̂ is where it is no optimum, each once.
+fn limits(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
+    let mut notes: Vec<String> = Vec::new();
+    for row in case.rows.iter().filter(|row| row.best_limit.is_some()) {
+        let limit = row.best_limit.map_or_else(String::new, |limit| short(limit, 4));
+        let names = [row.estimator.as_str(), &row.control, &row.channel];
+        let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
+        let note = format!(
+            "note {}: the figure of merit rises with σ\u{302} to {limit}; best σ\u{302} is where it reaches 90 % of that",
+            names.join(", ")
+        );
+        if !notes.contains(&note) {
+            notes.push(note);
+        }
+    }
+    for note in notes {
+        pen.note(text, &note, ("note", Paint::Plain));
+    }
 }
 
 /// The reasons that have no place in the table, each once, with the rows it is about.
@@ -169,6 +195,7 @@ fn footnotes(
         let (this, other) = (&row.estimator, &row.same_as);
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
+    limits(text, pen, case);
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
         let positions = views::positions(case, &rows, labels);

@@ -109,6 +109,11 @@ pub fn columns<'a>() -> Vec<Column<JoinedRow<'a>>> {
         "not_normal" = |joined| joined.row.not_normal.join(" ");
         "log10_ltuv" = |joined| joined.row.log10_ltuv();
         "predicted_log10_ltuv" = |joined| joined.row.predicted_log10_ltuv();
+        "setup_lookups" = |joined| joined.row.setup_lookups;
+        "draws_per_ray" = |joined| joined.case.draws_per_ray;
+        "needs" = |joined| &joined.row.needs;
+        "best_kind" = |joined| &joined.row.best_kind;
+        "best_limit" = |joined| joined.row.best_limit;
     }
 }
 

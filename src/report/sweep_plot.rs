@@ -2,16 +2,16 @@
 //! lines and measurements as points with error bars. Where the medium is swept, the efficiency is upside down: LTUV, the
 //! lookups to unit variance of Miller et al. 2019.
 
-use plotters::style::Color;
+mod graph;
+mod optima;
 
 use crate::catalogue::digits::{count, short};
-use crate::harness::record::{CaseRecord, CurvePoint, Record, Row, Sweep};
+use crate::harness::record::{CaseRecord, Record, Sweep};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
-use crate::report::plots::legend;
 use crate::report::plots::series::{Series, collect};
-use crate::report::plots::style::{Marker, ink};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, ReportError};
+use graph::{Graph, Quantity};
 
 const WIDTH: f64 = 1200.0;
 const TOP: f64 = 104.0;
@@ -32,16 +32,6 @@ pub fn render(record: &Record) -> Result<Vec<Artifact>, ReportError> {
         }
     }
     Ok(artifacts)
-}
-
-/// What one panel shows: as measured, with its deviation, and in theory for rows and curves.
-struct Quantity {
-    head: &'static str,
-    title: &'static str,
-    measured: fn(&Row) -> Option<f64>,
-    deviation: fn(&Row) -> Option<f64>,
-    predicted: fn(&Row) -> Option<f64>,
-    theory: fn(&CurvePoint) -> f64,
 }
 
 const VARIANCE_AND_COST: [Quantity; 2] = [
@@ -88,9 +78,29 @@ const LOOKUPS_TO_UNIT_VARIANCE: Quantity = Quantity {
 /// Where there is no typeface.
 pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, ReportError> {
     let series = collect(case, sweep);
+    let x = x_axis(sweep, &series);
+    let of_medium = ["density", "albedo-scale", "contrast"].contains(&&*sweep.what);
+    let has_setup = series.iter().any(|one| one.setup_lookups().is_some());
+    let efficiency = match (of_medium, has_setup) {
+        (true, false) => LOOKUPS_TO_UNIT_VARIANCE,
+        (true, true) => Quantity { title: "LTUV = V·(N + S/n)", ..LOOKUPS_TO_UNIT_VARIANCE },
+        (false, false) => EFFICIENCY,
+        (false, true) => Quantity { title: "figure of merit 1/(V·(N + S/n))", ..EFFICIENCY },
+    };
+    let quantities = [VARIANCE_AND_COST[0], VARIANCE_AND_COST[1], efficiency];
+    let graphs: Vec<Graph> = quantities
+        .into_iter()
+        .enumerate()
+        .map(|(i, quantity)| Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series))
+        .collect();
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];
     notes.extend(z_panel::legend_of_hollow(&series));
+    notes.extend(has_setup.then(|| setup_note(case)));
+    if !of_medium {
+        notes.extend(optima::notes(&series));
+    }
+    notes.extend(graph::notes(&graphs, &series));
     notes.extend(series.iter().filter_map(Series::note));
     notes.extend(left_out(case, &series));
     let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
@@ -98,19 +108,22 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     let mut figure = Figure::with_foot(&case.name, WIDTH, titles, &foot)?;
     figure.sheet.height -= 6.0;
     let Figure { face, sheet, .. } = &mut figure;
-    let x = x_axis(sweep, &series);
-    let of_medium = ["density", "albedo-scale", "contrast"].contains(&&*sweep.what);
-    let efficiency = if of_medium { LOOKUPS_TO_UNIT_VARIANCE } else { EFFICIENCY };
-    for (i, quantity) in VARIANCE_AND_COST.iter().chain([&efficiency]).enumerate() {
-        let panel = place(i, &x, y_axis(quantity, &series));
-        draw(sheet, &panel, quantity, &series);
-        if i == 2 && !of_medium && optima(sheet, &panel, &series) {
-            let key = [(Some(Marker::Star), "predicted optimum".to_owned())];
-            legend::keys(face, sheet, [panel.right, panel.top - 15.0], &key);
+    for (i, graph) in graphs.iter().enumerate() {
+        graph.draw(sheet, &series);
+        if i == 2 && !of_medium {
+            optima::draw(face, sheet, &graph.panel, &series);
         }
     }
     z_panel::draw(face, sheet, place(3, &x, x.clone()), &series, sweep);
     Ok(figure.close(&foot))
+}
+
+/// What S and n are.
+fn setup_note(case: &CaseRecord) -> String {
+    let draws = count(case.draws_per_ray.unwrap_or(1));
+    format!(
+        "(c): S lookups of setup, made once for each ray, are shared by its n = {draws} draws (draws_per_ray of the case)"
+    )
 }
 
 /// The channels that a crowded plot leaves out, in words.
@@ -154,10 +167,11 @@ fn place(index: usize, x: &Axis, y: Axis) -> Panel {
 fn x_axis(sweep: &Sweep, series: &[Series]) -> Axis {
     let swept = series.iter().flat_map(|one| one.rows.iter().filter_map(|row| row.swept));
     let curves = sweep.curves.iter().flat_map(|curve| curve.points.iter().map(|point| point.x));
-    // Estimators that are not swept stand at the right edge and need a place of their own.
-    let margin = if series.iter().any(Series::is_fixed) { 0.07 } else { 0.04 };
+    // Estimators that are not swept stand at the right edge and need places of their own.
+    let fixed = series.iter().filter(|one| one.is_fixed()).count() as f64;
     let shown = swept.chain(curves).filter(|&x| !sweep.log || x > 0.0);
-    Axis::around(sweep.axis.clone(), sweep.log, margin, shown)
+    let axis = Axis::around(sweep.axis.clone(), sweep.log, 0.04, shown);
+    axis.extended(fixed * graph::PLACE / PANEL[0])
 }
 
 /// A range with every measured point, and of theory what lies within four decades of them: the
@@ -181,56 +195,4 @@ fn y_axis(quantity: &Quantity, series: &[Series]) -> Axis {
     theory.retain(|&y| y >= low * 1e-4 && y <= high * 1e4);
     shown.extend(theory);
     Axis::around(quantity.title, true, 0.06, shown)
-}
-
-fn draw(sheet: &mut Sheet, panel: &Panel, quantity: &Quantity, series: &[Series]) {
-    panel.grid(sheet);
-    for one in series {
-        let look = (one.style.dash, 2.0, one.style.colour);
-        panel.line(sheet, one.theory(quantity.theory, quantity.predicted), look);
-        for row in one.rows.iter().filter(|row| row.swept.is_none()) {
-            if let Some(y) = (quantity.predicted)(row).or((quantity.measured)(row)) {
-                let across = [panel.x.low, panel.x.high].map(|x| (x, y));
-                panel.line(sheet, across, (one.style.dash, 1.6, one.style.colour));
-            }
-        }
-    }
-    let mut edge = panel.right;
-    for one in series {
-        for row in &one.rows {
-            let x = match row.swept {
-                Some(swept) => panel.across(swept),
-                None => Some(edge - 9.0),
-            };
-            let place = |value: f64| Some([x?, panel.down(value)?]);
-            let measured = (quantity.measured)(row).and_then(|v| Some((v, place(v)?)));
-            let Some((value, spot)) = measured else { continue };
-            if row.swept.is_none() {
-                edge -= 13.0;
-            }
-            if let Some(deviation) = (quantity.deviation)(row) {
-                let ends = (value - deviation, value + deviation);
-                panel.bar(sheet, spot[0], ends, (4.5, 1.4, one.style.colour));
-            }
-            panel.point(sheet, spot, one.style.marker, 4.6, one.style.colour);
-        }
-    }
-    panel.frame(sheet, quantity.head);
-}
-
-/// Marks the predicted optima with a star and a thin line down to the axis.
-fn optima(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
-    let mut any = false;
-    for one in series {
-        let Some(best) = one.curve.and_then(|curve| curve.optimum) else { continue };
-        let Some(spot) = panel.spot(best.x, best.fom).filter(|&spot| panel.holds(spot)) else {
-            continue;
-        };
-        let drop = vec![spot, [spot[0], panel.bottom]];
-        sheet.dashed(drop, &[1.5, 3.0], 1.2, one.style.colour.mix(0.8));
-        Marker::Star.draw(sheet, spot, 9.0, ink(0x22, 0x22, 0x22));
-        Marker::Star.draw(sheet, spot, 6.5, one.style.colour);
-        any = true;
-    }
-    any
 }

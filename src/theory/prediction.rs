@@ -10,6 +10,8 @@ pub struct Prediction {
     pub channels: Vec<Channel>,
     /// The number of lookups of one draw; `None` where no closed form is known.
     pub lookups: Option<CountLaw>,
+    /// Lookups of σ_t that recipes for σ̂ and σ_c make for a ray before its first draw, as at explorer points and by pilot rays.
+    pub setup_lookups: u64,
     /// Λ = ∫σ̂ and ∫σ̂(1 − q), which make the law of an order-free draw's lookups; `None` where there
     /// are no such draws.
     pub layers: Option<[f64; 2]>,
@@ -56,6 +58,8 @@ pub struct Channel {
 
 /// What rounding leaves of a sum, relative to it.
 const ROUNDING: f64 = 1e-14;
+/// A relative variance up to this is rounding.
+pub const CERTAIN: f64 = 1e-20;
 /// Below this optical depth the opacity is what matters.
 const THIN: f64 = 0.1;
 
@@ -211,7 +215,8 @@ impl Prediction {
             channel.moments = None;
             channel.most_variance = None;
         }
-        Self { channels, stable_share: self.stable_share, ..Self::default() }
+        let Self { stable_share, setup_lookups, .. } = self;
+        Self { channels, stable_share, setup_lookups, ..Self::default() }
     }
 
     /// The same of order-free draws: their values have the same law, their lookups may have not.
@@ -231,11 +236,24 @@ impl Prediction {
         Self { channels: vec![channel], ..Self::default() }
     }
 
-    /// `1/(V · E[M])`, the efficiency per lookup, of a channel; `None` where either is unknown or
-    /// zero.
-    pub fn figure_of_merit(&self, channel: usize) -> Option<f64> {
-        let variance = self.channels.get(channel)?.moments?.variance();
-        let cost = self.lookups.as_ref()?.mean;
+    /// `S/n`: a draw's share of the setup lookups, of a ray with n draws.
+    pub fn shared_setup(&self, draws_per_ray: u64) -> f64 {
+        self.setup_lookups as f64 / draws_per_ray.max(1) as f64
+    }
+
+    /// `E[M] + S/n`: expected lookups of a draw with its share of the setup lookups; `None` where E\[M\] is unknown.
+    pub fn cost(&self, draws_per_ray: u64) -> Option<f64> {
+        Some(self.lookups.as_ref()?.mean + self.shared_setup(draws_per_ray))
+    }
+
+    /// `1/(V · (E[M] + S/n))`, the efficiency per lookup, of a channel; infinite where the variance is 0, `None` where
+    /// either factor is unknown or the cost is 0.
+    pub fn figure_of_merit(&self, channel: usize, draws_per_ray: u64) -> Option<f64> {
+        let moments = self.channels.get(channel)?.moments?;
+        let (variance, cost) = (moments.variance(), self.cost(draws_per_ray)?);
+        if moments.relative[0] <= CERTAIN && cost > 0.0 {
+            return Some(f64::INFINITY);
+        }
         (variance > 0.0 && cost > 0.0).then(|| 1.0 / (variance * cost))
     }
 }

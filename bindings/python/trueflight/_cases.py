@@ -19,8 +19,8 @@ Columns = dict[str, Any]
 Progress = bool | Callable[[int, int], object]
 
 _WORDS = ("case", "problem", "medium", "estimator", "control", "channel", "verdict", "reason", "sampling_kind")
-_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal"))
-_COUNTS = frozenset(("seed", "draws", "drawn", "sharing"))
+_TEXTS = frozenset((*_WORDS, "kernel", "same_as", "reused", "not_normal", "needs", "best_kind"))
+_COUNTS = frozenset(("seed", "draws", "drawn", "sharing", "setup_lookups", "draws_per_ray"))
 _SWEEPS = ("sampling", "sampling_scale", "albedo", "control", "points", "density", "albedo_scale", "contrast")
 
 

@@ -94,6 +94,10 @@ impl Page {
         format!("{first}{connection} connection{subpaths}")
     }
 
+    fn needs(self) -> Option<&'static str> {
+        (!self.is_tracked).then_some("τ")
+    }
+
     fn domain(self, setup: &Setup<BidirectionalRod>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         setup.require_few_collisions("∫σ̂ ≤ 1e6")?;
@@ -197,6 +201,10 @@ macro_rules! pages {
 
             fn label(&self, _: bool) -> String {
                 self.0.label()
+            }
+
+            fn needs(&self) -> Option<&'static str> {
+                self.0.needs()
             }
 
             fn domain(

@@ -27,6 +27,10 @@ impl Estimator<FreeFlight> for Inversion {
     const INPUTS: Inputs = Inputs::NONE;
     const PLAIN: Option<Self> = Some(Self);
 
+    fn needs(&self) -> Option<&'static str> {
+        Some("inverse of τ")
+    }
+
     fn domain(&self, setup: &Setup<FreeFlight>) -> Result<(), Refusal> {
         super::resolved(setup)
     }

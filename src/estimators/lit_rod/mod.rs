@@ -123,6 +123,11 @@ macro_rules! walks {
         const INPUTS: $crate::estimators::Inputs = $crate::estimators::Inputs::SAMPLING;
         const IN_PACKETS: bool = true;
 
+        fn needs(&$this) -> Option<&'static str> {
+            let is_exact = $techniques.shadow == Some($crate::theory::lit_rod::Shadow::Exact);
+            is_exact.then_some("τ")
+        }
+
         fn domain(
             &$this,
             setup: &$crate::estimators::Setup<P>,

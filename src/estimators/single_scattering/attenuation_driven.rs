@@ -94,6 +94,10 @@ impl Estimator<SingleScattering> for AttenuationDriven {
         connection::shadow_label(self.shadow)
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        connection::shadow_needs(self.shadow)
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         require(setup, self.shadow)
     }

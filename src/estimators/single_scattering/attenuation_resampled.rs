@@ -43,6 +43,10 @@ impl Estimator<SingleScattering> for AttenuationResampled {
         connection::shadow_label(self.shadow)
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        connection::shadow_needs(self.shadow)
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         require(setup, self.shadow)
     }

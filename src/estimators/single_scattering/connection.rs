@@ -68,6 +68,11 @@ pub fn shadow_label(shadow: Tracking) -> String {
     }
 }
 
+/// What exact shadow rays need.
+pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
+    (shadow == Tracking::Exact).then_some("τ")
+}
+
 /// Delta tracking needs a majorant on every shadow ray, and walks along them must end.
 ///
 /// # Errors
@@ -113,6 +118,12 @@ impl Connection {
             CameraTracking::Delta => "delta camera",
         };
         format!("{camera}, {}", shadow_label(self.shadow))
+    }
+
+    /// What exact transmittances need.
+    pub fn needs(&self) -> Option<&'static str> {
+        let is_exact = self.camera == CameraTracking::Exact;
+        is_exact.then_some("τ").or(shadow_needs(self.shadow))
     }
 
     /// The packets of points from the light, from the main part of the control, or from both.

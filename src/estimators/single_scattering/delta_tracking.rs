@@ -105,6 +105,10 @@ impl Estimator<SingleScattering> for DeltaTracking {
         if self.absorption == Absorption::Analog { format!("analog, {shadow}") } else { shadow }
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        connection::shadow_needs(self.shadow)
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         require_shadow(setup, self.shadow)

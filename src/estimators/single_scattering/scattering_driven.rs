@@ -52,6 +52,10 @@ impl Estimator<SingleScattering> for ScatteringDriven {
         self.connection.label()
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.connection.needs()
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         main_part::require(setup)?;
         self.connection.domain(setup)

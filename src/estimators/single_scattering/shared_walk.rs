@@ -52,6 +52,10 @@ impl Estimator<SingleScattering> for SharedWalk {
         format!("{} points, {}", self.points, connection::shadow_label(self.shadow))
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        connection::shadow_needs(self.shadow)
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         setup.require_coverage()?;
         require_shadow(setup, self.shadow)

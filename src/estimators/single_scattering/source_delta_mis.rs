@@ -76,6 +76,10 @@ impl Estimator<SingleScattering> for SourceDeltaMis {
         said + &connection::shadow_label(self.connection.shadow)
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.connection.needs()
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         setup.require_ratio_at_most(1.0, "σ̂ ≥ σ_t everywhere")?;
         require_shadow(setup, self.connection.shadow)

@@ -52,6 +52,10 @@ impl Estimator<SingleScattering> for SourceDriven {
         self.connection.label()
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.connection.needs()
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         self.connection.domain(setup)
     }

@@ -48,6 +48,10 @@ impl Estimator<SingleScattering> for SourceScatteringMis {
         self.connection.label()
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.connection.needs()
+    }
+
     fn domain(&self, setup: &Setup<SingleScattering>) -> Result<(), Refusal> {
         main_part::require_straight(setup)?;
         self.connection.domain(setup)

@@ -59,6 +59,10 @@ impl Estimator<SpectralSingleScattering> for Independent {
         self.shadow.label(&self.heroes.label())
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.shadow.needs()
+    }
+
     fn domain(&self, setup: &Setup<SpectralSingleScattering>) -> Result<(), Refusal> {
         self.walker.require(&setup.channels)?;
         channels::require_majorants(&setup.channels)?;

@@ -36,6 +36,10 @@ impl Shadow {
         Some(if word == "ratio" { Self::Ratio } else { Self::Exact })
     }
 
+    fn needs(self) -> Option<&'static str> {
+        (self == Self::Exact).then_some("τ")
+    }
+
     fn label(self, further: &str) -> String {
         let words = if self == Self::Ratio { "ratio shadow" } else { "exact shadow" };
         if further.is_empty() { words.into() } else { format!("{words}, {further}") }

@@ -37,6 +37,10 @@ impl<const KIND: u8> Estimator<SpectralSingleScattering> for AllChannels<KIND> {
         self.shadow.label(&self.walker.label())
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.shadow.needs()
+    }
+
     fn domain(&self, setup: &Setup<SpectralSingleScattering>) -> Result<(), Refusal> {
         self.walker.require_on_ray(&setup.channels)?;
         realisable(setup, self.shadow)

@@ -59,6 +59,10 @@ impl Estimator<Sphere> for NextEvent {
         format!("{}, {}", self.particle.label(), connection::shadow_label(self.shadow))
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        connection::shadow_needs(self.shadow)
+    }
+
     fn domain(&self, setup: &Setup<Sphere>) -> Result<(), Refusal> {
         super::connected(setup, &self.particle, self.shadow)
     }

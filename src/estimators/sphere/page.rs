@@ -45,6 +45,11 @@ impl Page {
         words.join(", ")
     }
 
+    /// What exact shadow rays need.
+    pub fn needs(&self) -> Option<&'static str> {
+        self.sharing.shadow.and_then(connection::shadow_needs)
+    }
+
     /// Whether it is unbiased, and judged by something.
     ///
     /// # Errors
@@ -125,6 +130,10 @@ macro_rules! pages {
 
             fn label(&self, _: bool) -> String {
                 self.0.label()
+            }
+
+            fn needs(&self) -> Option<&'static str> {
+                self.0.needs()
             }
 
             fn domain(

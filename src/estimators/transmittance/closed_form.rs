@@ -40,6 +40,10 @@ impl Estimator<Transmittance> for ClosedForm {
     const INPUTS: Inputs = Inputs::NONE;
     const PLAIN: Option<Self> = Some(Self);
 
+    fn needs(&self) -> Option<&'static str> {
+        Some("τ")
+    }
+
     fn domain(&self, _: &Setup<Transmittance>) -> Result<(), Refusal> {
         Ok(())
     }

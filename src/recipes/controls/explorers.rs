@@ -5,6 +5,8 @@
 //! | `points` | n ≥ 2 points, equally spaced over the support, its ends included | required |
 //! | `octaves` | for noise: look only the first k octaves up at the points | all: exact |
 //!
+//! The n lookups are made once for each ray: they are its setup lookups.
+//!
 //! Between the points σ_t may lie above or below the control: the residual has both signs.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4, Figure 5.

@@ -4,7 +4,7 @@
 //! σ_c = τ/ℓ
 //! ```
 //!
-//! It takes no settings.
+//! It takes no settings. It needs τ: the exact answer is known where this control is.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, *Optimal control variate*.
 
@@ -27,6 +27,10 @@ impl Mean {
 impl Recipe for Mean {
     fn label(&self) -> String {
         "mean".into()
+    }
+
+    fn needs(&self) -> Option<&'static str> {
+        Some("τ")
     }
 
     fn prepare(&self, site: &Site) -> Result<Control, Refusal> {

@@ -30,6 +30,10 @@ impl Recipe for Minimum {
         "minimum".into()
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        Some("min σ_t")
+    }
+
     fn prepare(&self, site: &Site) -> Result<Control, Refusal> {
         let smallest = site.mesh.largest(|_, sigma| -sigma).map_or(0.0, |(_, value)| -value);
         Ok(Control::Pieces(Piecewise::constant(smallest.max(0.0), site.mesh.support())))

@@ -33,6 +33,11 @@ pub trait Recipe: Send + Sync {
         0
     }
 
+    /// What it needs to know of the medium beside lookups, as in `τ`; `None` for nothing.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Where the control was fitted: `(t, σ_c)`.
     fn points(&self, site: &Site) -> Vec<[f64; 2]> {
         let _ = site;

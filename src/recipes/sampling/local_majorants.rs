@@ -80,6 +80,13 @@ impl Recipe for LocalMajorants {
         }
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::Segments(_) => "max |σ_t − σ_c|",
+            Self::Grid(_) => "bounds of σ_t",
+        })
+    }
+
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
         let support = site.mesh.support();
         if support.is_empty() {

@@ -20,7 +20,7 @@ pub trait Recipe: Send + Sync {
         None
     }
 
-    /// Whether it looks σ_t up to learn from it: lookups that nobody counts.
+    /// Whether it looks σ_t up to learn from it, at places that random numbers choose.
     fn learns(&self) -> bool {
         false
     }
@@ -36,6 +36,24 @@ pub trait Recipe: Send + Sync {
     ///
     /// What the recipe needs and does not find.
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal>;
+
+    /// Makes σ̂, and counts the lookups of σ_t that it took.
+    ///
+    /// # Errors
+    ///
+    /// What the recipe needs and does not find.
+    fn prepare_counted(
+        &self,
+        site: &Site,
+        control: &Control,
+    ) -> Result<(Piecewise, u64), Refusal> {
+        self.prepare(site, control).map(|sampling| (sampling, 0))
+    }
+
+    /// What it needs to know of the medium beside lookups, as in `max |σ_t − σ_c|`; `None` for nothing.
+    fn needs(&self) -> Option<&'static str> {
+        None
+    }
 
     /// Makes σ̂ on a volume, for particles that leave the ray; `None` for a recipe that only knows rays.
     fn in_space(&self, volume: &Volume) -> Option<Majorants> {

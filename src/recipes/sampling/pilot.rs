@@ -8,7 +8,8 @@
 //!
 //! Each pilot ray walks with the σ̂ learned from those before it and looks σ_t up where it collides.
 //! The result is never assumed to be a majorant: estimators that need one are refused where it is
-//! none. Pilot rays have their own random numbers, and what they learned is part of the plan.
+//! none. Pilot rays have their own random numbers, and what they learned is part of the plan. Their lookups are counted as
+//! setup lookups of the ray.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 4.3 ("we set it to the maximum obtained during casting
 //! the last few neighboring rays").
@@ -50,13 +51,21 @@ impl Recipe for Pilot {
     }
 
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
+        self.prepare_counted(site, control).map(|(sampling, _)| sampling)
+    }
+
+    fn prepare_counted(
+        &self,
+        site: &Site,
+        control: &Control,
+    ) -> Result<(Piecewise, u64), Refusal> {
         let support = site.mesh.support();
         if support.is_empty() {
-            return Ok(Piecewise::constant(0.0, support));
+            return Ok((Piecewise::constant(0.0, support), 0));
         }
         let medium = site.mesh.medium();
         let mut sampling = self.start.unwrap_or(10.0 / support.length());
-        let mut largest = 0.0f64;
+        let (mut largest, mut lookups) = (0.0f64, 0);
         for ray in 0..self.rays {
             let mut rng = Address { block: ray, ..site.address }.pilot();
             let collisions = sampling * support.length();
@@ -69,11 +78,12 @@ impl Recipe for Pilot {
             while flown.fly(&mut cursor, exponential(&mut rng)).is_some() {
                 let residual = medium.extinction(cursor.t) - control.extinction(cursor.t);
                 largest = largest.max(residual.abs());
+                lookups += 1;
             }
             if largest > 0.0 {
                 sampling = self.safety * largest;
             }
         }
-        Ok(Piecewise::constant(sampling, support))
+        Ok((Piecewise::constant(sampling, support), lookups))
     }
 }

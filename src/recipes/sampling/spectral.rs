@@ -34,6 +34,10 @@ impl Recipe for Spectral {
         self.recipes.iter().any(|recipe| recipe.learns())
     }
 
+    fn needs(&self) -> Option<&'static str> {
+        self.recipes.iter().find_map(|recipe| recipe.needs())
+    }
+
     fn prepare(&self, site: &Site, control: &Control) -> Result<Piecewise, Refusal> {
         self.recipes[0].prepare(site, control)
     }

@@ -10,6 +10,7 @@ use crate::catalogue::digits::count;
 use crate::report::labels::Labels;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
+use crate::report::plots::series::{marks, numbered};
 use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};
@@ -27,7 +28,7 @@ struct Series<'a> {
     row: &'a BenchRow,
     times: &'a Times,
     style: Style,
-    labels: Labels,
+    label: String,
 }
 
 /// The figure of a case in both formats.
@@ -38,11 +39,15 @@ pub(super) fn artifacts(bench: &Bench, case: &BenchCase) -> Result<Vec<Artifact>
 /// The figure of a case.
 pub(in crate::report) fn figure(bench: &Bench, case: &BenchCase) -> Result<Sheet, ReportError> {
     let shown = case.rows.iter().filter(|row| row.is_shown);
+    let shown: Vec<_> =
+        shown.filter_map(|row| row.times.as_ref().map(|times| (row, times))).collect();
     let labels = super::console::labels(case);
+    let labels = numbered(shown.iter().map(|(row, _)| label(row, labels)).collect());
     let series: Vec<Series> = shown
-        .filter_map(|row| row.times.as_ref().map(|times| (row, times)))
+        .into_iter()
+        .zip(labels)
         .enumerate()
-        .map(|(i, (row, times))| Series { row, times, style: Style::of(i), labels })
+        .map(|(i, ((row, times), label))| Series { row, times, style: Style::of(i), label })
         .collect();
     let entries: Vec<Entry> = series.iter().map(Series::entry).collect();
     let notes = notes(case);
@@ -63,18 +68,22 @@ fn subtitle(bench: &Bench, case: &BenchCase) -> String {
     words.into_iter().chain(facts).collect::<Vec<_>>().join("  ·  ")
 }
 
+/// The words for a row: its estimator, σ̂, control and channel, and what it needs.
+fn label(row: &BenchRow, labels: Labels) -> String {
+    let sampling = row.sampling.map(|sampling| format!("σ\u{302} = {}", labels.text(sampling)));
+    let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
+    let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];
+    let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let marks = marks(&row.needs, row.setup_lookups.map(|count| count..=count), false);
+    format!("{}{marks}", label.join(", "))
+}
+
 impl Series<'_> {
     fn entry(&self) -> Entry {
-        let row = self.row;
-        let sampling =
-            row.sampling.map(|sampling| format!("σ\u{302} = {}", self.labels.text(sampling)));
-        let sampling = sampling.unwrap_or_else(|| row.sampling_kind.clone());
-        let parts = [row.estimator.clone(), sampling, row.control.clone(), row.channel.clone()];
-        let label: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
         let Style { colour, dash, marker } = self.style;
         let line = self.points().any(|point| point.predicted.is_some());
         Entry {
-            label: label.join(", "),
+            label: self.label.clone(),
             line: line.then_some((dash, 2.0)),
             marker: Some(marker),
             colour,
@@ -91,7 +100,8 @@ impl Series<'_> {
         self.line(sheet, panel, prices, (dash, 1.8, colour));
         for (point, &price) in self.points().zip(prices) {
             let Some(spot) = panel.spot(price, point.relative) else { continue };
-            panel.bar(sheet, spot[0], (point.least, point.most), (3.5, 1.2, colour.mix(0.6)));
+            let ends = [point.least, point.relative, point.most];
+            panel.bar(sheet, spot[0], ends, (3.5, 1.2, colour.mix(0.6)));
             panel.point(sheet, spot, marker, 4.4, colour);
         }
     }
@@ -145,8 +155,8 @@ fn in_lookups(sheet: &mut Sheet, series: &[Series]) {
 /// What the marks mean, and what the plot cannot show, in words.
 fn notes(case: &BenchCase) -> Vec<String> {
     let mut notes = vec![
-        "Points: root mean square over the rounds, bars: the least and the most of them. \
-         Lines: √(V/n), of slope −1/2, V the variance in theory or, without one, the sample's."
+        "Points: root mean square over the rounds, bars: the least and the most of them, with an arrow where \
+         that is farther down. Lines: √(V/n), of slope −1/2, V the variance in theory or, without one, the sample's."
             .to_owned(),
     ];
     let left_out = case.rows.iter().any(|row| !row.curve.is_empty() && !row.is_shown);

@@ -75,6 +75,8 @@ fn columns<'a>() -> Vec<Column<Joined<'a>>> {
         "efficiency" = |joined| joined.timed(|times| times.efficiency);
         "reason" = |joined| &joined.row.reason;
         "ttuv" = |joined| joined.timed(Times::ttuv);
+        "setup_lookups" = |joined| joined.row.setup_lookups;
+        "needs" = |joined| &joined.row.needs;
     }
 }
 

@@ -13,6 +13,15 @@ const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_def
 const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_default());
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 
+/// Lookups before the first draw of a ray; empty where none of a case has any.
+const SETUP: Spec = ("setup", true, 3, |row| {
+    row.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
+});
+/// What estimators need beside lookups, as in `τ`.
+const NEEDS: Spec = ("needs", false, 3, |row| row.needs.clone());
+/// What the best σ̂ is: it leaves with that.
+const BEST: &str = "best σ\u{302}";
+
 /// The headings of z.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
 
@@ -29,6 +38,8 @@ const RUN: &[Spec] = &[
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
     (LTUV, true, 10, |row| of_channel(row, row.log10_ltuv())),
+    SETUP,
+    NEEDS,
 ];
 
 const PREDICT: &[Spec] = &[
@@ -36,12 +47,16 @@ const PREDICT: &[Spec] = &[
     ("skewness", true, 9, |row| digits(row.predicted_skewness, 3)),
     ("κ", true, 5, |row| digits(row.predicted_kurtosis, 3)),
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    SETUP,
     ("FoM", true, 2, |row| digits(row.predicted_fom, 4)),
     (LTUV, true, 10, |row| of_channel(row, row.predicted_log10_ltuv())),
     ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
     ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
-    ("best σ\u{302}", true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
-    ("best FoM", true, 7, |row| digits(row.best_fom, 4)),
+    (BEST, true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
+    ("best FoM", true, 7, best_fom),
+    ("best is", false, 4, |row| row.best_kind.clone()),
+    ("limit", true, 7, |row| digits(row.best_limit, 4)),
+    NEEDS,
 ];
 
 const MOMENTS: &[Spec] = &[
@@ -56,12 +71,18 @@ const MOMENTS: &[Spec] = &[
     ("lookups", true, 0, |row| digits(row.predicted_lookups, 4)),
     ("± σ", true, 0, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
     ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
-    ("best σ\u{302}", true, 0, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
-    ("best FoM", true, 0, |row| digits(row.best_fom, 4)),
+    ("setup", true, 0, SETUP.3),
+    (BEST, true, 0, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
+    ("best FoM", true, 0, best_fom),
+    ("best is", false, 0, |row| row.best_kind.clone()),
+    ("limit", true, 0, |row| digits(row.best_limit, 4)),
+    ("needs", false, 0, NEEDS.3),
 ];
 
 const PLAN: &[Spec] = &[
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
+    SETUP,
+    NEEDS,
     ("skipped", true, 3, |row| row.skipped.map(percent).unwrap_or_default()),
 ];
 
@@ -185,6 +206,14 @@ fn loss(row: &Row, k: usize) -> String {
 
 fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
+}
+
+/// The figure of merit at the best σ̂, which is infinite where there is no variance.
+fn best_fom(row: &Row) -> String {
+    match (row.best_sampling, row.best_fom) {
+        (Some(_), None) => "∞".to_owned(),
+        (_, fom) => digits(fom, 4),
+    }
 }
 
 /// What is shown of problems with several channels alone, with two decimals.

@@ -79,6 +79,7 @@ fn lines(row: &Row) -> Vec<Line<'_>> {
         row.findings.iter().find(|finding| finding.check == check && !finding.expects_bias)
     };
     let z = |name: &str, z: Option<f64>| words::z(row, name, z);
+    let has_setup = row.setup_lookups.is_some_and(|lookups| lookups > 0);
     let lines = [
         Line {
             name: "mean",
@@ -105,7 +106,7 @@ fn lines(row: &Row) -> Vec<Line<'_>> {
             finding: found("lookups"),
         },
         Line {
-            name: "1/(V · lookups)",
+            name: if has_setup { "1/(V · (lookups + setup/n))" } else { "1/(V · lookups)" },
             measured: row.fom,
             deviation: None,
             theory: row.predicted_fom,
@@ -181,7 +182,13 @@ fn facts(joined: &JoinedRow) -> Vec<(&'static str, String)> {
         ("p of the law", number(row.p_law)),
         ("Skewness in theory", number(row.predicted_skewness)),
         ("Kurtosis in theory", number(row.predicted_kurtosis)),
+        ("Setup lookups of a ray", words::count(row.setup_lookups.filter(|&count| count > 0))),
+        ("n, draws of a ray", words::count(joined.case.draws_per_ray.filter(|&n| n > 1))),
+        ("Needs", row.needs.clone()),
         ("Best σ\u{302}", number(row.best_sampling)),
+        ("Best σ\u{302} is", row.best_kind.clone()),
+        ("Best figure of merit", number(row.best_fom)),
+        ("Limit of the figure of merit", number(row.best_limit)),
         ("Kernel", row.kernel.clone()),
         ("Stream", row.stream.map_or_else(String::new, |stream| stream.to_string())),
         ("Drawn as", row.same_as.clone()),

@@ -16,10 +16,10 @@ const FARTHEST: f64 = 1e6;
 const HALF_A_LETTER: f64 = 0.27;
 
 /// How a path is drawn.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, PartialEq)]
 enum Look {
-    /// As a line of this width.
-    Line(i64, RGBAColor),
+    /// As a line of this width, in dashes of these lengths.
+    Line(i64, RGBAColor, Vec<i64>),
     /// Filled.
     Fill(RGBAColor),
     /// As dots of this width.
@@ -38,9 +38,9 @@ pub fn shapes(sheet: &Sheet) -> Markup {
     let mut add = |look: Look, points: &[Spot]| {
         let is_same = open.as_ref().is_some_and(|(other, _)| *other == look);
         if !is_same {
-            all.extend(open.take().map(|(look, way)| path(look, &way)));
+            all.extend(open.take().map(|(look, way)| path(&look, &way)));
         }
-        let (_, all) = open.get_or_insert_with(|| (look, String::new()));
+        let (look, all) = open.get_or_insert_with(|| (look, String::new()));
         *all += &way(points.iter().map(|point| point.map(unit)));
         if matches!(look, Look::Fill(_)) {
             all.push('z');
@@ -49,8 +49,9 @@ pub fn shapes(sheet: &Sheet) -> Markup {
     let mut texts = Vec::new();
     for shape in &sheet.shapes {
         match shape {
-            Shape::Path { points, width, colour } => {
-                add(Look::Line(unit(*width).max(1), *colour), points);
+            Shape::Path { points, width, colour, dash } => {
+                let dash = dash.iter().map(|&length| unit(length)).collect();
+                add(Look::Line(unit(*width).max(1), *colour, dash), points);
             }
             Shape::Area { points, colour } => add(Look::Fill(*colour), points),
             Shape::Disc { at, radius, colour } => {
@@ -62,7 +63,7 @@ pub fn shapes(sheet: &Sheet) -> Markup {
             Shape::Text(label) => texts.push(text(label)),
         }
     }
-    all.extend(open.map(|(look, way)| path(look, &way)));
+    all.extend(open.map(|(look, way)| path(&look, &way)));
     html! { @for path in all { (path) } @for text in texts { (text) } }
 }
 
@@ -89,14 +90,19 @@ pub fn way(points: impl IntoIterator<Item = [i64; 2]>) -> String {
     way
 }
 
-fn path(look: Look, way: &str) -> Markup {
-    match look {
+fn path(look: &Look, way: &str) -> Markup {
+    match *look {
         Look::Fill(colour) => {
             html! { path fill=(hue(colour)) fill-opacity=[part(colour)] d=(way) {} }
         }
-        Look::Line(width, colour) => html! {
-            path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width) d=(way) {}
-        },
+        Look::Line(width, colour, ref dash) => {
+            let lengths: Vec<String> = dash.iter().map(i64::to_string).collect();
+            let dash = (!dash.is_empty()).then(|| lengths.join(" "));
+            html! {
+                path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width)
+                    stroke-dasharray=[dash] d=(way) {}
+            }
+        }
         Look::Dots(width, colour) => html! {
             path stroke=(hue(colour)) stroke-opacity=[part(colour)] stroke-width=(width)
                 stroke-linecap="round" d=(way) {}

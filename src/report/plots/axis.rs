@@ -50,6 +50,13 @@ impl Axis {
         axis
     }
 
+    /// The axis with room beyond its end, by a share of its length.
+    #[must_use]
+    pub fn extended(self, share: f64) -> Self {
+        let [low, high] = [self.low, self.high].map(|value| self.scaled(value));
+        Self { high: self.unscaled(high + share * (high - low)), ..self }
+    }
+
     /// Where a value stands: 0 at the beginning, 1 at the end; `None` where the axis has no place
     /// for it at all, as a logarithmic one for zero.
     pub fn place(&self, value: f64) -> Option<f64> {

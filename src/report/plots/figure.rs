@@ -1,10 +1,13 @@
 //! A figure: a sheet with its title, and the typeface that measures its words.
 
 use crate::report::ReportError;
-use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::font::{Typeface, fit, wrapped};
 use crate::report::plots::legend::{self, Entry, LINE};
 use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{DARK, GREY};
+
+/// The size of notes.
+const NOTE: f64 = 12.5;
 
 /// The left edge of titles and panels.
 pub const LEFT: f64 = 92.0;
@@ -25,7 +28,7 @@ pub struct Foot<'a> {
     pub top: f64,
     /// The series.
     pub entries: &'a [Entry],
-    /// The notes, one to a line.
+    /// The notes, each on lines of its own.
     pub notes: &'a [String],
 }
 
@@ -61,24 +64,30 @@ impl Figure {
     ) -> Result<Self, ReportError> {
         let span = width - LEFT - 18.0;
         let mut figure = Self::new(name, [width, 0.0], span, titles)?;
-        figure.sheet.height = foot.notes_at(&figure) + foot.notes.len() as f64 * 19.0;
+        figure.sheet.height = foot.notes_at(&figure) + foot.lines(&figure).len() as f64 * 19.0;
         Ok(figure)
     }
 
     /// Draws what stands below the panels.
     pub fn close(mut self, foot: &Foot) -> Sheet {
-        let (notes_at, span) = (foot.notes_at(&self), self.span);
+        let (notes_at, span, lines) = (foot.notes_at(&self), self.span, foot.lines(&self));
         let Self { face, sheet, .. } = &mut self;
         legend::draw(face, sheet, [LEFT, foot.top - 8.0], foot.entries, span);
-        for (i, note) in foot.notes.iter().enumerate() {
+        for (i, line) in lines.into_iter().enumerate() {
             let at = [LEFT, notes_at + i as f64 * 19.0 - LINE / 2.0 + 4.0];
-            sheet.text(at, fit(face, note, 12.5, span), 12.5, GREY, Align::Start);
+            sheet.text(at, line, NOTE, GREY, Align::Start);
         }
         self.sheet
     }
 }
 
 impl Foot<'_> {
+    /// The notes in lines as wide as the figure.
+    fn lines(&self, figure: &Figure) -> Vec<String> {
+        let wrap = |note: &String| wrapped(&figure.face, note, NOTE, figure.span);
+        self.notes.iter().flat_map(wrap).collect()
+    }
+
     /// The sheet's `y` where the notes begin.
     fn notes_at(&self, figure: &Figure) -> f64 {
         self.top + legend::height(&figure.face, self.entries, figure.span)

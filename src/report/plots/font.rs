@@ -76,6 +76,21 @@ pub fn fit(face: &Typeface, text: &str, em: f64, width: f64) -> String {
     format!("{}…", kept.trim_end())
 }
 
+/// The text in lines of at most a width, broken between words; a word that is wider is cut.
+pub fn wrapped(face: &Typeface, text: &str, em: f64, width: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if face.width(&format!("{line} {word}"), em) <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(fit(face, word, em, width)),
+        }
+    }
+    lines
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -87,6 +102,15 @@ mod tests {
         {
             assert_ne!(face.0.glyph_id(c).0, 0, "{c}");
         }
+    }
+
+    #[test]
+    fn a_long_text_is_wrapped_between_words() {
+        let face = Typeface::load().expect("the font is sound");
+        let text = "a long note that does not fit on one line of this width";
+        let lines = wrapped(&face, text, 12.0, 120.0);
+        assert!(lines.len() > 2 && lines.iter().all(|line| face.width(line, 12.0) <= 120.0));
+        assert_eq!(lines.join(" "), text);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use plotters::style::RGBAColor;
 
 use crate::report::plots::font::{Typeface, fit};
 use crate::report::plots::sheet::{Align, Sheet, Spot};
-use crate::report::plots::style::{DARK, GREY, Marker};
+use crate::report::plots::style::{DARK, GREY, Marker, PAPER};
 
 /// The height of one line of a legend.
 pub const LINE: f64 = 22.0;
@@ -60,21 +60,27 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry],
     }
 }
 
+/// A marker and what it means, over a panel.
+#[derive(Debug, Clone, Copy)]
+pub struct Key {
+    /// The marker.
+    pub marker: Marker,
+    /// Whether it is hollow.
+    pub is_hollow: bool,
+    /// What it means.
+    pub words: &'static str,
+}
+
 /// Draws markers with words in one line that ends at the place.
-pub fn keys(
-    face: &Typeface,
-    sheet: &mut Sheet,
-    [right, y]: Spot,
-    keys: &[(Option<Marker>, String)],
-) {
+pub fn keys(face: &Typeface, sheet: &mut Sheet, [right, y]: Spot, keys: &[Key]) {
     let mut x = right;
-    for (marker, words) in keys.iter().rev() {
-        sheet.text([x, y], words, 12.5, GREY, Align::End);
+    for Key { marker, is_hollow, words } in keys.iter().rev() {
+        sheet.text([x, y], *words, 12.5, GREY, Align::End);
         x -= face.width(words, 12.5) + 10.0;
-        if let Some(marker) = marker {
-            marker.draw(sheet, [x, y], 4.2, GREY);
-            x -= 8.0;
+        marker.draw(sheet, [x, y], 4.2, GREY);
+        if *is_hollow {
+            marker.fill(sheet, [x, y], 2.4, PAPER);
         }
-        x -= 10.0;
+        x -= 18.0;
     }
 }

@@ -8,7 +8,7 @@ use plotters::style::{
 };
 
 use crate::report::plots::font::{FAMILY, Typeface};
-use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot};
+use crate::report::plots::sheet::{Align, Image, Label, Shape, Sheet, Spot, strokes};
 
 /// Backends take whole numbers: an SVG counts in tenths of a pixel.
 pub const SVG_UNITS: u32 = 10;
@@ -27,14 +27,42 @@ pub fn svg(sheet: &Sheet) -> Result<String, String> {
     let (mut text, units) = (String::new(), f64::from(SVG_UNITS));
     let size = pixels(sheet, SVG_UNITS);
     let mut backend = SVGBackend::with_string(&mut text, size);
-    paint(sheet, &mut backend, units, |backend, label| {
+    paint(sheet, &mut backend, units, false, |backend, label| {
         let style = text_style(label, units);
         backend.draw_text(&label.text, &style, whole(label.at, units)).map_err(in_words)
     })?;
     drop(backend);
+    let text = with_dashes(&text, sheet)?;
     let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!("width=\"{}\" height=\"{}\"", size.0 / SVG_UNITS, size.1 / SVG_UNITS);
     Ok(text.replacen(&drawn, &shown, 1))
+}
+
+/// Adds dashes to an SVG document, for plotters writes none: each path is a `polyline`, in the order of the sheet.
+fn with_dashes(text: &str, sheet: &Sheet) -> Result<String, String> {
+    let paths = sheet.shapes.iter().filter_map(|shape| match shape {
+        // What cannot be seen is not written.
+        Shape::Path { colour, dash, .. } if colour.3 > 0.0 => Some(dash),
+        _ => None,
+    });
+    let mut pieces = text.split("<polyline ");
+    let mut dashed = pieces.next().unwrap_or_default().to_owned();
+    let (mut paths, mut pieces) = (paths.fuse(), pieces.fuse());
+    loop {
+        match (paths.next(), pieces.next()) {
+            (Some(dash), Some(piece)) => {
+                dashed.push_str("<polyline ");
+                if !dash.is_empty() {
+                    let lengths = dash.iter().map(|length| natural(length * f64::from(SVG_UNITS)));
+                    let lengths: Vec<String> = lengths.map(|length| length.to_string()).collect();
+                    dashed = format!("{dashed}stroke-dasharray=\"{}\" ", lengths.join(","));
+                }
+                dashed.push_str(piece);
+            }
+            (None, None) => return Ok(dashed),
+            _ => return Err("the SVG has another number of lines than the figure".to_owned()),
+        }
+    }
 }
 
 /// The sheet as the bytes of a PNG file.
@@ -57,7 +85,7 @@ pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     let (units, (width, height)) = (f64::from(PNG_UNITS), pixels(sheet, PNG_UNITS));
     let mut fine = vec![255; width as usize * height as usize * 3];
     let mut backend = BitMapBackend::with_buffer(&mut fine, (width, height));
-    paint(sheet, &mut backend, units, |backend, label| {
+    paint(sheet, &mut backend, units, true, |backend, label| {
         let mut answer = Ok(());
         write(&face, label, units, |at, colour| {
             if let Err(error) = backend.draw_pixel(at, colour.to_backend_color()) {
@@ -70,10 +98,12 @@ pub fn pixels_of(sheet: &Sheet) -> Result<(Vec<u8>, (u32, u32)), String> {
     Ok((halved(&fine, width as usize), (width / 2, height / 2)))
 }
 
+/// Paints all shapes; where lines are to be `cut`, each dash by itself.
 fn paint<B: DrawingBackend>(
     sheet: &Sheet,
     backend: &mut B,
     units: f64,
+    cut: bool,
     mut text: impl FnMut(&mut B, &Label) -> Result<(), String>,
 ) -> Result<(), String> {
     let white = ShapeStyle::from(&plotters::style::WHITE).filled();
@@ -81,10 +111,13 @@ fn paint<B: DrawingBackend>(
     backend.draw_rect((0, 0), far, &white, true).map_err(in_words)?;
     for shape in &sheet.shapes {
         match shape {
-            Shape::Path { points, width, colour } => {
+            Shape::Path { points, width, colour, dash } => {
                 let stroke_width = natural(width * units).max(1);
                 let style = ShapeStyle { color: *colour, filled: false, stroke_width };
-                backend.draw_path(distinct(points, units), &style).map_err(in_words)?;
+                let dash = if cut { &dash[..] } else { &[] };
+                for stroke in strokes(points, dash) {
+                    backend.draw_path(distinct(&stroke, units), &style).map_err(in_words)?;
+                }
             }
             Shape::Area { points, colour } => {
                 let corners = points.iter().map(|&point| whole(point, units));
@@ -240,5 +273,26 @@ mod tests {
         sheet.area(vec![[-1e300, 0.0], [1e300, 0.0], [0.0, 1e300]], DARK);
         sheet.text([1e300, -1e300], "far", 12.0, DARK, Align::Start);
         assert!(svg(&sheet).is_ok() && png(&sheet).is_ok());
+    }
+
+    #[test]
+    fn each_dashed_line_is_one_element() {
+        let mut sheet = Sheet::new(40.0, 30.0);
+        let line = |y: f64| vec![[0.0, y], [20.0, y], [40.0, y]];
+        sheet.path(line(5.0), 2.0, DARK);
+        sheet.dashed(line(10.0), &[9.0, 4.5], 2.0, DARK);
+        sheet.dashed(line(15.0), &[2.5, 3.0], 2.0, DARK.mix(0.0));
+        sheet.area(line(20.0), DARK);
+        sheet.dashed(line(25.0), &[0.0, 9.0, 9.0, 0.0], 2.0, DARK);
+        let svg = svg(&sheet).expect("painted");
+        assert_eq!(svg.matches("<polyline ").count(), 3);
+        assert_eq!(svg.matches("stroke-dasharray").count(), 2);
+        let [solid, dashed, striped] = ["0,50 ", "0,100 ", "0,250 "].map(|begins| {
+            let lines = || svg.lines().filter(|line| line.starts_with("<polyline"));
+            lines().find(|line| line.contains(&format!("points=\"{begins}"))).expect("a line")
+        });
+        assert!(!solid.contains("dash"), "{solid}");
+        assert!(dashed.contains("stroke-dasharray=\"90,45\""), "{dashed}");
+        assert!(striped.contains("stroke-dasharray=\"0,90,90,0\""), "{striped}");
     }
 }

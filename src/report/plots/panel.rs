@@ -11,6 +11,9 @@ const TICK: f64 = 13.0;
 /// The size of titles of axes and panels.
 const TITLE: f64 = 14.5;
 
+/// The length of the end of an error bar that leaves the panel, in pixels.
+const STUB: f64 = 20.0;
+
 /// A rectangle of the sheet with two axes.
 #[derive(Debug, Clone)]
 pub struct Panel {
@@ -142,22 +145,39 @@ impl Panel {
         }
     }
 
-    /// Draws a vertical error bar at the sheet's `x`, with caps of this width where its ends lie in
-    /// the panel; one whose lower end has no place on the axis goes down to the edge.
+    /// Draws a vertical error bar about a value at the sheet's `x`, with caps of this width where its ends lie in the
+    /// panel. An end that does not is an arrow: at the edge, or on a logarithmic axis close by the value, for a bar down to 0
+    /// would go through all decades.
     pub fn bar(
         &self,
         sheet: &mut Sheet,
         x: f64,
-        (low, high): (f64, f64),
+        [low, value, high]: [f64; 3],
         (cap, width, colour): (f64, f64, RGBAColor),
     ) {
-        let Some(upper) = self.down(high) else { return };
-        let lower = self.down(low).unwrap_or(self.bottom + 1.0);
-        let Some(stroke) = self.clipped([x, lower], [x, upper]) else { return };
-        sheet.path(stroke.to_vec(), width, colour);
-        for y in [lower, upper].into_iter().filter(|&y| self.holds([x, y])) {
-            sheet.path(vec![[x - cap, y], [x + cap, y]], width, colour);
+        let middle = self.down(value).filter(|&y| self.holds([x, y]));
+        let Some(middle) = middle.filter(|_| !(low.is_nan() || high.is_nan())) else { return };
+        for (end, sign) in [(high, -1.0), (low, 1.0)] {
+            match self.down(end).filter(|&y| self.holds([x, y])) {
+                Some(y) => {
+                    sheet.path(vec![[x, middle], [x, y]], width, colour);
+                    sheet.path(vec![[x - cap, y], [x + cap, y]], width, colour);
+                }
+                None => {
+                    let stub = if self.y.log { STUB } else { self.bottom - self.top };
+                    let tip = (middle + sign * stub).clamp(self.top, self.bottom);
+                    let back = tip - sign * cap;
+                    sheet.path(vec![[x, middle], [x, tip]], width, colour);
+                    sheet.path(vec![[x - cap, back], [x, tip], [x + cap, back]], width, colour);
+                }
+            }
         }
+    }
+
+    /// Whether an end of an error bar becomes an arrow.
+    pub fn cuts(&self, [low, value, high]: [f64; 3]) -> bool {
+        let is_shown = |y: f64| self.down(y).is_some_and(|y| self.holds([self.left, y]));
+        is_shown(value) && !(is_shown(low) && is_shown(high))
     }
 
     /// The part of a stroke inside the panel (Y.-D. Liang and B. A. Barsky, "A New Concept and
@@ -215,11 +235,40 @@ mod tests {
     }
 
     #[test]
-    fn an_error_bar_down_to_zero_reaches_the_edge_of_a_logarithmic_panel() {
+    fn an_error_bar_down_to_zero_is_an_arrow_on_a_logarithmic_panel() {
         let mut sheet = Sheet::new(90.0, 90.0);
-        panel().bar(&mut sheet, 45.0, (0.0, 10.0), (3.0, 1.0, DARK));
-        let Shape::Path { points, .. } = &sheet.shapes[0] else { panic!("a path") };
-        assert_eq!(points, &[[45.0, 90.0], [45.0, 0.0]]);
-        assert_eq!(sheet.shapes.len(), 2);
+        let bar = [0.0, 10_f64.powf(0.5), 10.0];
+        assert!(panel().cuts(bar) && !panel().cuts([2.0, 3.0, 4.0]));
+        panel().bar(&mut sheet, 45.0, bar, (3.0, 1.0, DARK));
+        let paths: Vec<_> = sheet
+            .shapes
+            .iter()
+            .map(|shape| match shape {
+                Shape::Path { points, .. } => points.clone(),
+                _ => Vec::new(),
+            })
+            .collect();
+        // Up to its end with a cap, and down by a stub with a head.
+        assert_eq!(paths[0], [[45.0, 45.0], [45.0, 0.0]]);
+        assert_eq!(paths[1], [[42.0, 0.0], [48.0, 0.0]]);
+        assert_eq!(paths[2], [[45.0, 45.0], [45.0, 45.0 + STUB]]);
+        assert_eq!(paths[3], [[42.0, 42.0 + STUB], [45.0, 45.0 + STUB], [48.0, 42.0 + STUB]]);
+        assert_eq!(paths.len(), 4);
+    }
+
+    #[test]
+    fn no_error_bar_leaves_the_panel() {
+        let odd = [f64::NAN, f64::INFINITY, -1.0, 0.0, 1e-300, 2.0, 9.0, 1e300];
+        let mut sheet = Sheet::new(90.0, 90.0);
+        for low in odd {
+            for value in odd {
+                odd.map(|high| panel().bar(&mut sheet, 45.0, [low, value, high], (3.0, 1.0, DARK)));
+            }
+        }
+        assert!(!sheet.shapes.is_empty());
+        for shape in &sheet.shapes {
+            let Shape::Path { points, .. } = shape else { panic!("a path") };
+            assert!(points.iter().all(|&spot| panel().holds(spot)), "{points:?}");
+        }
     }
 }

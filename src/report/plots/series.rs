@@ -1,12 +1,16 @@
 //! The series of a sweep: which rows and which curve belong together.
 
+use std::ops::RangeInclusive;
+
+use crate::catalogue::digits::count;
 use crate::harness::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
+use crate::report::labels::Labels;
 use crate::report::plots::legend::Entry;
 use crate::report::plots::style::Style;
 
-/// One estimator along the sweep, one channel of its value.
+/// One estimator of the case along the sweep, one channel of its value.
 pub struct Series<'a> {
-    /// The estimator, and what tells it from its neighbours.
+    /// The estimator, and what tells it from its neighbours: no two series of a plot have the same label.
     pub label: String,
     /// How it looks.
     pub style: Style,
@@ -19,7 +23,7 @@ pub struct Series<'a> {
 impl Series<'_> {
     /// Whether it is drawn once, outside of the sweep.
     pub fn is_fixed(&self) -> bool {
-        self.curve.is_none() && self.rows.iter().all(|row| row.swept.is_none())
+        is_fixed(&self.rows, self.curve)
     }
 
     /// Theory's line, through the curve's points, or through the rows' own predictions where there
@@ -35,13 +39,21 @@ impl Series<'_> {
         }
     }
 
-    /// The entry of the legend.
+    /// The least and the largest number of setup lookups of its rows; `None` where there are none.
+    pub fn setup_lookups(&self) -> Option<RangeInclusive<u64>> {
+        let counts = || self.rows.iter().filter_map(|row| row.setup_lookups);
+        let most = counts().max().filter(|&most| most > 0)?;
+        Some(counts().min().unwrap_or(most)..=most)
+    }
+
+    /// The entry of the legend: the label, and what the estimator needs.
     pub fn entry(&self) -> Entry {
         let Style { colour, dash, marker } = self.style;
-        let once = if self.is_fixed() { " (not swept)" } else { "" };
         let measured = self.rows.iter().any(|row| row.draws.is_some());
+        let needs = self.rows.iter().map(|row| row.needs.as_str()).find(|needs| !needs.is_empty());
+        let marks = marks(needs.unwrap_or_default(), self.setup_lookups(), self.is_fixed());
         Entry {
-            label: format!("{}{once}", self.label),
+            label: format!("{}{marks}", self.label),
             line: Some((dash, 2.0)),
             marker: measured.then_some(marker),
             colour,
@@ -65,66 +77,120 @@ impl Series<'_> {
     }
 }
 
-/// What tells the series of one case apart: the estimator, the channel, and which of the
-/// experiments with the same two at the same value of the sweep it is. The control does not, for it
-/// may be what is swept.
-type Key<'a> = (&'a str, &'a str, usize);
+/// What stands behind a label, in parentheses: what the estimator needs, how many lookups it makes before the first draw
+/// of a ray, and whether it is outside of the sweep.
+pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) -> String {
+    let mut marks = Vec::new();
+    if !needs.is_empty() {
+        marks.push(format!("needs {}", needs.replace("_t", "ₜ")));
+    }
+    if let Some((least, most)) = setup.map(RangeInclusive::into_inner).filter(|ends| ends.1 > 0) {
+        let from = if least < most { format!("{} to ", count(least)) } else { String::new() };
+        marks.push(format!("{from}{} setup lookups", count(most)));
+    }
+    if is_fixed {
+        marks.push("not swept".to_owned());
+    }
+    if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) }
+}
+
+fn is_fixed(rows: &[&Row], curve: Option<&Curve>) -> bool {
+    curve.is_none() && rows.iter().all(|row| row.swept.is_none())
+}
+
+/// The rows of one estimator of the case, one channel of its value.
+struct Group<'a> {
+    /// The number of the estimator.
+    listed: usize,
+    channel: &'a str,
+    rows: Vec<&'a Row>,
+    curve: Option<&'a Curve>,
+}
 
 /// Of more series than these a plot shows the last channel of each estimator, as the luminance of chromatic media.
 const CROWD: usize = 12;
 
 /// The series of a case, in the order of its rows; a curve without rows is a series, too.
 pub fn collect<'a>(case: &'a CaseRecord, sweep: &'a Sweep) -> Vec<Series<'a>> {
-    let mut groups: Vec<(Key, Vec<&Row>)> = Vec::new();
-    for row in &case.rows {
-        let same = |other: &&&Row| {
-            other.estimator == row.estimator
-                && other.channel == row.channel
-                && other.swept == row.swept
-        };
-        let earlier = groups.iter().flat_map(|(_, rows)| rows).filter(same).count();
-        let key = (row.estimator.as_str(), row.channel.as_str(), earlier);
-        match groups.iter_mut().find(|(other, _)| *other == key) {
-            Some((_, rows)) => rows.push(row),
-            None => groups.push((key, vec![row])),
-        }
+    let (of_rows, of_curves) = numbers(case, sweep);
+    let mut groups: Vec<Group> = Vec::new();
+    for (row, listed) in case.rows.iter().zip(of_rows) {
+        group(&mut groups, listed, &row.channel).rows.push(row);
     }
     join_refused(&mut groups);
-    let curves = |estimator: &str, channel: &str| -> Vec<&Curve> {
-        let same = |curve: &&Curve| curve.estimator == estimator && curve.channel == channel;
-        sweep.curves.iter().filter(same).collect()
-    };
-    for curve in &sweep.curves {
-        let (estimator, channel) = (curve.estimator.as_str(), curve.channel.as_str());
-        let twin = curves(estimator, channel).iter().position(|c| std::ptr::eq(*c, curve));
-        let nth = twin.unwrap_or(0);
-        if !groups.iter().any(|(key, _)| *key == (estimator, channel, nth)) {
-            groups.push(((estimator, channel, nth), Vec::new()));
-        }
+    for (curve, listed) in sweep.curves.iter().zip(of_curves) {
+        group(&mut groups, listed, &curve.channel).curve.get_or_insert(curve);
     }
     if groups.len() > CROWD {
         keep_last_channels(&mut groups);
     }
-    let series = groups.into_iter().enumerate().map(|(i, ((estimator, channel, nth), rows))| {
-        let curve = curves(estimator, channel).get(nth).copied();
-        let label = label(estimator, channel, &rows, curve);
+    let labels = labels(&groups, Labels::of(case));
+    let series = groups.into_iter().zip(labels).enumerate().map(|(i, (group, label))| {
+        let Group { rows, curve, .. } = group;
         Series { label, style: Style::of(i), rows, curve }
     });
     series.collect()
 }
 
+/// The group of an estimator and a channel, which is added if it is new.
+fn group<'a, 'b>(
+    groups: &'b mut Vec<Group<'a>>,
+    listed: usize,
+    channel: &'a str,
+) -> &'b mut Group<'a> {
+    let found = groups.iter().position(|g| (g.listed, g.channel) == (listed, channel));
+    let at = found.unwrap_or_else(|| {
+        groups.push(Group { listed, channel, rows: Vec::new(), curve: None });
+        groups.len() - 1
+    });
+    &mut groups[at]
+}
+
+/// The numbers of the estimators that rows and curves are of. Records from before they were kept have names only: which
+/// of the experiments with the same names at the same value of the sweep a row is tells twins apart.
+fn numbers(case: &CaseRecord, sweep: &Sweep) -> (Vec<usize>, Vec<usize>) {
+    let of_rows: Option<Vec<usize>> = case.rows.iter().map(|row| row.listed).collect();
+    let of_curves: Option<Vec<usize>> = sweep.curves.iter().map(|curve| curve.listed).collect();
+    if let (Some(of_rows), Some(of_curves)) = (of_rows, of_curves) {
+        return (of_rows, of_curves);
+    }
+    let mut names: Vec<(&str, bool, usize)> = Vec::new();
+    let mut numbered = |name| {
+        names.iter().position(|other| *other == name).unwrap_or_else(|| {
+            names.push(name);
+            names.len() - 1
+        })
+    };
+    let rows = case.rows.iter().enumerate().map(|(i, row)| {
+        let same = |other: &&Row| {
+            (&other.estimator, &other.channel, other.swept)
+                == (&row.estimator, &row.channel, row.swept)
+        };
+        let earlier = case.rows[..i].iter().filter(same).count();
+        numbered((row.estimator.as_str(), row.swept.is_some(), earlier))
+    });
+    let rows: Vec<usize> = rows.collect();
+    let curves = sweep.curves.iter().enumerate().map(|(i, curve)| {
+        let same = |other: &&Curve| {
+            (&other.estimator, &other.channel) == (&curve.estimator, &curve.channel)
+        };
+        let earlier = sweep.curves[..i].iter().filter(same).count();
+        numbered((curve.estimator.as_str(), true, earlier))
+    });
+    let curves = curves.collect();
+    (rows, curves)
+}
+
 /// A refused experiment has no channels: where others of its estimator have, it stands with their first.
-fn join_refused<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
+fn join_refused(groups: &mut Vec<Group>) {
     let mut index = 0;
     while index < groups.len() {
-        let (estimator, channel, nth) = groups[index].0;
-        let home = groups.iter().position(|((other, named, n), _)| {
-            *other == estimator && !named.is_empty() && *n == nth
-        });
+        let Group { listed, channel, .. } = groups[index];
+        let home = groups.iter().position(|g| g.listed == listed && !g.channel.is_empty());
         match home.filter(|_| channel.is_empty()) {
             Some(home) => {
-                let refused = std::mem::take(&mut groups[index].1);
-                groups[home].1.extend(refused);
+                let refused = std::mem::take(&mut groups[index].rows);
+                groups[home].rows.extend(refused);
                 groups.remove(index);
             }
             None => index += 1,
@@ -133,24 +199,81 @@ fn join_refused<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
 }
 
 /// Leaves the last channel of each estimator, with the experiments that are refused.
-fn keep_last_channels<'a>(groups: &mut Vec<(Key<'a>, Vec<&'a Row>)>) {
-    let keys: Vec<Key> = groups.iter().map(|(key, _)| *key).collect();
-    let last = |key: &Key| keys.iter().rposition(|other| (other.0, other.2) == (key.0, key.2));
-    for index in 0..keys.len() {
-        if let Some(last) = last(&keys[index]).filter(|&last| last != index) {
-            let rows = std::mem::take(&mut groups[index].1);
-            groups[last].1.extend(rows.into_iter().filter(|row| row.channel.is_empty()));
+fn keep_last_channels(groups: &mut Vec<Group>) {
+    for index in 0..groups.len() {
+        let listed = groups[index].listed;
+        let last = groups.iter().rposition(|g| g.listed == listed).unwrap_or(index);
+        if last != index {
+            let rows = std::mem::take(&mut groups[index].rows);
+            groups[last].rows.extend(rows.into_iter().filter(|row| row.channel.is_empty()));
         }
     }
-    groups.retain(|(key, _)| last(key).is_some_and(|last| keys[last] == *key));
+    let listed: Vec<usize> = groups.iter().map(|group| group.listed).collect();
+    let mut index = 0..;
+    groups.retain(|group| {
+        let at = index.next().unwrap_or_default();
+        !listed[at + 1..].contains(&group.listed)
+    });
 }
 
-fn label(estimator: &str, channel: &str, rows: &[&Row], curve: Option<&Curve>) -> String {
-    let first = rows.first().map(|row| row.control.as_str());
-    let constant = rows.iter().all(|row| Some(row.control.as_str()) == first);
-    let control = if constant { first.or(curve.map(|c| c.control.as_str())) } else { None };
-    let parts = [estimator, control.unwrap_or_default(), channel];
-    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ")
+/// The labels of the series, no two alike: the estimator, its control, its σ̂ where others of its name have another, and
+/// the channel.
+fn labels(groups: &[Group], digits: Labels) -> Vec<String> {
+    let estimator = |group: &Group| match (group.rows.first(), group.curve) {
+        (Some(row), _) => row.estimator.clone(),
+        (None, Some(curve)) => curve.estimator.clone(),
+        (None, None) => String::new(),
+    };
+    let names: Vec<[String; 2]> =
+        groups.iter().map(|group| [estimator(group), sampling(group, digits)]).collect();
+    let mut labels: Vec<String> = Vec::new();
+    for (group, [estimator, sampling]) in groups.iter().zip(&names) {
+        let is_shared = names.iter().any(|other| other[0] == *estimator && other[1] != *sampling);
+        let sampling = if is_shared { sampling.clone() } else { String::new() };
+        let parts = [estimator.clone(), control(group), sampling, group.channel.to_owned()];
+        let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
+        labels.push(label.join(", "));
+    }
+    numbered(labels)
+}
+
+/// Texts with numbers behind those that have come before.
+pub fn numbered(texts: Vec<String>) -> Vec<String> {
+    let mut numbered: Vec<String> = Vec::with_capacity(texts.len());
+    for text in texts {
+        let mut names = std::iter::once(text.clone()).chain((2..).map(|n| format!("{text} #{n}")));
+        let name = names.find(|name| !numbered.contains(name));
+        numbered.push(name.unwrap_or(text));
+    }
+    numbered
+}
+
+/// The control, where all rows have the same.
+fn control(group: &Group) -> String {
+    let first = group.rows.first().map(|row| &row.control);
+    let first = first.or(group.curve.map(|curve| &curve.control));
+    let same = first.filter(|first| group.rows.iter().all(|row| row.control == **first));
+    same.cloned().unwrap_or_default()
+}
+
+/// σ̂ in words; empty where it is what is swept.
+fn sampling(group: &Group, digits: Labels) -> String {
+    let drawn = || group.rows.iter().filter(|row| !row.sampling_kind.is_empty());
+    if drawn().any(|row| row.swept.is_some() && row.swept == row.sampling) {
+        return String::new();
+    }
+    let Some(first) = drawn().next() else { return String::new() };
+    let ends = drawn().filter_map(|row| row.sampling).fold(None, |ends, value| {
+        let [low, high] = ends.unwrap_or([value; 2]);
+        Some([f64::min(low, value), f64::max(high, value)])
+    });
+    match ends {
+        Some([low, high]) if low < high => {
+            format!("σ\u{302} {} to {}", digits.text(low), digits.text(high))
+        }
+        Some([value, _]) => format!("σ\u{302} {}", digits.text(value)),
+        None => first.sampling_kind.clone(),
+    }
 }
 
 #[cfg(test)]
@@ -183,7 +306,7 @@ mod tests {
         assert_eq!(labels([channels("a", 8), channels("b", 5)].concat()), ["a, 8", "b, 5"]);
         // Two experiments of one name are two series, of which each shows its last channel.
         let twins = [channels("a", 8), channels("a", 8)].concat();
-        assert_eq!(labels(twins), ["a, 8", "a, 8"]);
+        assert_eq!(labels(twins), ["a, 8", "a, 8 #2"]);
         // What is refused stands with it.
         let crowd = case([vec![row("a", "", Some(2.0))], channels("a", 13)].concat());
         let series = collect(&crowd, &sweep);
@@ -213,5 +336,70 @@ mod tests {
             case(vec![row("r", "constant 1", Some(1.0)), row("r", "constant 2", Some(2.0))]);
         let series = collect(&swept, &sweep);
         assert_eq!((series.len(), series[0].label.as_str()), (1, "r"));
+    }
+
+    #[test]
+    fn each_experiment_is_a_series_and_labels_are_distinct() {
+        let empty = String::new;
+        let sweep =
+            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
+        let at = |listed: usize, row: Row, sampling: Option<f64>, kind: &str| Row {
+            listed: Some(listed),
+            sampling,
+            sampling_kind: kind.to_owned(),
+            ..row
+        };
+        let rows = vec![
+            // The same name swept in its control, and beside the sweep.
+            at(0, row("decomposition", "constant 0.1", Some(0.1)), Some(0.9), "constant"),
+            at(0, row("decomposition", "constant 0.2", Some(0.2)), Some(0.9), "constant"),
+            at(1, row("decomposition", "minimum", None), Some(0.6), "constant"),
+            // Names that differ in σ̂ alone.
+            at(2, row("local-majorant", "", None), None, "local majorants, 10 segments"),
+            at(3, row("local-majorant", "", None), None, "piecewise-constant"),
+            // Twins in everything that a row tells.
+            at(4, row("ratio", "", None), Some(2.0), "constant"),
+            at(5, row("ratio", "", None), Some(2.0), "constant"),
+        ];
+        let case = case(rows);
+        let series = collect(&case, &sweep);
+        let labels: Vec<_> = series.iter().map(|s| (s.label.as_str(), s.rows.len())).collect();
+        let expected = [
+            ("decomposition, σ\u{302} 0.9", 2),
+            ("decomposition, minimum, σ\u{302} 0.6", 1),
+            ("local-majorant, local majorants, 10 segments", 1),
+            ("local-majorant, piecewise-constant", 1),
+            ("ratio", 1),
+            ("ratio #2", 1),
+        ];
+        assert_eq!(labels, expected);
+        // A record from before there were numbers: the swept and the other are told apart all the same.
+        let mut old = case.clone();
+        old.rows.iter_mut().for_each(|row| row.listed = None);
+        assert_eq!(collect(&old, &sweep).len(), 6);
+    }
+
+    #[test]
+    fn what_an_estimator_needs_stands_in_the_legend() {
+        let empty = String::new;
+        let sweep =
+            Sweep { what: empty(), axis: empty(), log: false, z_limit: None, curves: vec![] };
+        let with = |estimator: &str, needs: &str, setup: u64, swept: Option<f64>| Row {
+            needs: needs.to_owned(),
+            setup_lookups: Some(setup),
+            ..row(estimator, "", swept)
+        };
+        let case = case(vec![
+            with("a", "τ", 0, Some(1.0)),
+            with("b", "min σ_t", 0, None),
+            with("c", "", 4, Some(1.0)),
+            with("c", "", 20, Some(2.0)),
+            with("d", "", 0, Some(1.0)),
+        ]);
+        let labels: Vec<String> =
+            collect(&case, &sweep).iter().map(|series| series.entry().label).collect();
+        let expected =
+            ["a (needs τ)", "b (needs min σₜ; not swept)", "c (4 to 20 setup lookups)", "d"];
+        assert_eq!(labels, expected);
     }
 }

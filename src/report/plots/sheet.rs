@@ -16,6 +16,8 @@ pub enum Shape {
         width: f64,
         /// Its colour.
         colour: RGBAColor,
+        /// Lengths of stroke and gap in turn; empty for a line in one.
+        dash: Vec<f64>,
     },
     /// A filled polygon.
     Area {
@@ -99,9 +101,7 @@ impl Sheet {
 
     /// Draws a line through points; fewer than two draw nothing.
     pub fn path(&mut self, points: Vec<Spot>, width: f64, colour: RGBAColor) {
-        if points.len() > 1 {
-            self.shapes.push(Shape::Path { points, width, colour });
-        }
+        self.dashed(points, &[], width, colour);
     }
 
     /// Fills a polygon.
@@ -140,40 +140,50 @@ impl Sheet {
         self.shapes.push(Shape::Text(Label { at, text, size, colour, align, upward: true }));
     }
 
-    /// Draws a line in dashes: lengths of stroke and gap in turn. None draws it in one.
+    /// Draws a line in dashes: lengths of stroke and gap in turn, of which one at least is above 0. None draws it in one.
     pub fn dashed(&mut self, points: Vec<Spot>, dash: &[f64], width: f64, colour: RGBAColor) {
-        if dash.is_empty() {
-            return self.path(points, width, colour);
+        if points.len() > 1 {
+            let dash = dash.to_vec();
+            self.shapes.push(Shape::Path { points, width, colour, dash });
         }
-        let (mut turn, mut left, mut stroke) = (0, dash[0], Vec::new());
-        for pair in points.windows(2) {
-            let [from, to] = [pair[0], pair[1]];
-            let length = (to[0] - from[0]).hypot(to[1] - from[1]);
-            let mut done = 0.0;
-            while done < length {
-                let step = left.min(length - done);
-                let along = |s: f64| [0, 1].map(|i| from[i] + (to[i] - from[i]) * s / length);
-                if turn % 2 == 0 {
-                    if stroke.is_empty() {
-                        stroke.push(along(done));
-                    }
-                    stroke.push(along(done + step));
+    }
+}
+
+/// The strokes of a line in dashes, for what can draw lines in one only.
+pub fn strokes(points: &[Spot], dash: &[f64]) -> Vec<Vec<Spot>> {
+    if dash.iter().sum::<f64>() < 1.0 {
+        return vec![points.to_vec()];
+    }
+    let mut strokes = Vec::new();
+    let (mut turn, mut left, mut stroke) = (0, dash[0], Vec::new());
+    for pair in points.windows(2) {
+        let [from, to] = [pair[0], pair[1]];
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let mut done = 0.0;
+        while done < length {
+            let step = left.min(length - done);
+            let along = |s: f64| [0, 1].map(|i| from[i] + (to[i] - from[i]) * s / length);
+            if turn % 2 == 0 && step > 0.0 {
+                if stroke.is_empty() {
+                    stroke.push(along(done));
                 }
-                done += step;
-                left -= step;
-                // A rest below a thousandth of a pixel is rounding, and would stall the loop.
-                if left < 1e-3 {
-                    self.path(std::mem::take(&mut stroke), width, colour);
-                    turn = (turn + 1) % dash.len();
-                    left = dash[turn].max(1.0);
-                }
-                if step < 1e-9 {
-                    break;
-                }
+                stroke.push(along(done + step));
+            }
+            done += step;
+            left -= step;
+            // A rest below a thousandth of a pixel is rounding, and would stall the loop.
+            if left < 1e-3 {
+                strokes.push(std::mem::take(&mut stroke));
+                turn = (turn + 1) % dash.len();
+                left = dash[turn];
+            } else if step < 1e-9 {
+                break;
             }
         }
-        self.path(stroke, width, colour);
     }
+    strokes.push(stroke);
+    strokes.retain(|stroke| stroke.len() > 1);
+    strokes
 }
 
 #[cfg(test)]
@@ -183,17 +193,24 @@ mod tests {
 
     #[test]
     fn dashes_fill_their_share_of_the_line() {
+        let points = [[0.0, 0.0], [33.0, 0.0], [100.0, 0.0]];
+        let drawn = |dash: &[f64]| -> (usize, f64) {
+            let strokes = strokes(&points, dash);
+            let length = |stroke: &Vec<Spot>| stroke[stroke.len() - 1][0] - stroke[0][0];
+            (strokes.len(), strokes.iter().map(length).sum())
+        };
+        assert_eq!(drawn(&[]), (1, 100.0));
+        let (count, length) = drawn(&[6.0, 4.0]);
+        assert!(count == 10 && (length - 60.0).abs() < 1e-9);
+        // One that begins with a gap fills what another leaves.
+        let (count, length) = drawn(&[0.0, 6.0, 4.0, 0.0]);
+        assert!(count == 10 && (length - 40.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_dashed_line_is_one_shape() {
         let mut sheet = Sheet::new(100.0, 10.0);
-        sheet.dashed(vec![[0.0, 0.0], [33.0, 0.0], [100.0, 0.0]], &[6.0, 4.0], 1.0, BLACK.mix(1.0));
-        let drawn: f64 = sheet
-            .shapes
-            .iter()
-            .map(|shape| match shape {
-                Shape::Path { points, .. } => points[points.len() - 1][0] - points[0][0],
-                _ => 0.0,
-            })
-            .sum();
-        assert_eq!(sheet.shapes.len(), 10);
-        assert!((drawn - 60.0).abs() < 1e-9);
+        sheet.dashed(vec![[0.0, 0.0], [100.0, 0.0]], &[6.0, 4.0], 1.0, BLACK.mix(1.0));
+        assert_eq!(sheet.shapes.len(), 1);
     }
 }

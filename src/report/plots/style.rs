@@ -100,11 +100,15 @@ impl Marker {
 
     /// Draws the marker, with a thin rim of paper that parts it from lines and neighbours.
     pub fn draw(self, sheet: &mut Sheet, at: Spot, radius: f64, colour: RGBAColor) {
-        for (radius, colour) in [(radius + 1.2, PAPER), (radius, colour)] {
-            match self {
-                Self::Disc => sheet.disc(at, radius, colour),
-                _ => sheet.area(self.corners(at, radius), colour),
-            }
+        self.fill(sheet, at, radius + 1.2, PAPER);
+        self.fill(sheet, at, radius, colour);
+    }
+
+    /// Draws the marker without a rim.
+    pub fn fill(self, sheet: &mut Sheet, at: Spot, radius: f64, colour: RGBAColor) {
+        match self {
+            Self::Disc => sheet.disc(at, radius, colour),
+            _ => sheet.area(self.corners(at, radius), colour),
         }
     }
 

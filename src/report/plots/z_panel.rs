@@ -5,7 +5,7 @@ use plotters::style::RGBAColor;
 use crate::catalogue::digits::short;
 use crate::harness::record::{Row, Sweep};
 use crate::report::plots::font::Typeface;
-use crate::report::plots::legend;
+use crate::report::plots::legend::{self, Key};
 use crate::report::plots::series::Series;
 use crate::report::plots::style::{GREY, Marker, PAPER, ink};
 use crate::report::plots::{Axis, Panel, Sheet};
@@ -47,9 +47,10 @@ pub fn draw(
     }
     let beyond = points(sheet, &panel, series);
     panel.frame(sheet, "(d) Agreement with theory");
-    let mut keys: Vec<_> = SCORES.map(|(marker, name, ..)| (Some(marker), name.to_owned())).into();
+    let key = |marker, words| Key { marker, is_hollow: false, words };
+    let mut keys: Vec<Key> = SCORES.map(|(marker, name, ..)| key(marker, name)).into();
     if beyond {
-        keys.push((Some(Marker::Up), "beyond".to_owned()));
+        keys.push(key(Marker::Up, "beyond"));
     }
     let [right, top] = [panel.right, panel.top];
     legend::keys(face, sheet, [right, top - 15.0], &keys);
@@ -66,7 +67,7 @@ pub fn note(sweep: &Sweep) -> String {
 /// What hollow points mean, where there are any.
 pub fn legend_of_hollow(series: &[Series]) -> Option<String> {
     let any = series.iter().flat_map(|one| &one.rows).any(|row| !row.not_normal.is_empty());
-    any.then(|| "(d): the law of hollow scores is not near normal".to_owned())
+    any.then(|| "(d), hollow: too few draws for a normal approximation".to_owned())
 }
 
 /// Draws the points side by side, so that none hides another, and says whether any is off the axis.
@@ -74,6 +75,9 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
     let swept = series.iter().filter(|one| !one.is_fixed()).count();
     let slots = (swept * SCORES.len()) as f64;
     let step = (0.8 * gap(panel, series) / slots.max(1.0)).min(4.0);
+    // Those of a value at the edge of the sweep stay side by side within the panel.
+    let reach = 4.0 + (slots - 1.0).max(0.0) / 2.0 * step;
+    let (least, most) = (panel.left + reach, (panel.right - reach).max(panel.left + reach));
     let mut beyond = false;
     let (mut slot, mut edge) = (0.0, panel.right - 9.0);
     for one in series {
@@ -84,7 +88,9 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
             for row in &one.rows {
                 // What is not swept has a place of its own at the right edge, as in other panels.
                 let place =
-                    row.swept.map_or(Some(edge), |swept| Some(panel.across(swept)? + shift));
+                    row.swept.map_or(Some(edge), |swept| {
+                        Some(panel.across(swept)?.clamp(least, most) + shift)
+                    });
                 let (Some(x), Some(z)) = (place, score(row)) else { continue };
                 // An infinite score has no place on the axis, but is all the more beyond it.
                 let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };

@@ -128,7 +128,8 @@ fn one_panel<'a>(
             let is_told = point.exceeds() || point.holds();
             let colour = if is_told { colour } else { colour.mix(0.3) };
             let [low, high] = [-2.0, 2.0].map(|z| (point.bias.abs() + z * point.error).max(0.0));
-            let ends = (share(low, point.noise), share(high, point.noise));
+            let ends =
+                [share(low, point.noise), share(point.bias, point.noise), share(high, point.noise)];
             panel.bar(sheet, spot[0], ends, (3.0, 1.0, colour.mix(0.5)));
             panel.point(sheet, spot, marker, 4.0, colour);
         }

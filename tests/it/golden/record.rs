@@ -3,7 +3,7 @@
 use trueflight::baseline::LeftOut;
 use trueflight::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use trueflight::harness::record::{
-    Anatomy, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint,
+    Anatomy, Best, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint,
     Record, Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
 };
 
@@ -58,6 +58,11 @@ fn drawn(estimator: &str, control: &str, swept: f64, z: f64) -> Row {
         stable_share: Some(0.8),
         best_sampling: Some(1.2),
         best_fom: Some(2.5),
+        best_kind: if estimator == "residual-ratio" { "90 % of the limit" } else { "optimum" }
+            .to_owned(),
+        best_limit: (estimator == "residual-ratio").then_some(2.75),
+        setup_lookups: Some(if control.starts_with("explorers") { 3 } else { 0 }),
+        needs: if estimator == "residual-ratio" { "τ".to_owned() } else { String::new() },
         verdict: Some(Verdict::Pass),
         ..Row::default()
     }
@@ -157,10 +162,10 @@ fn sweep() -> CaseRecord {
         verdict: Some(Verdict::Pass),
         ..Row::default()
     };
-    let curve = |estimator: &str, control: &str, from: f64, optimum: Option<f64>| {
+    let curve = |estimator: &str, control: &str, from: f64, [optimum, limit]: [Option<f64>; 2]| {
         let point = |x: f64| {
             let (variance, lookups) = law(estimator, x);
-            CurvePoint { x, variance, lookups, fom: 1.0 / (variance * lookups) }
+            CurvePoint { x, variance, lookups, fom: 1.0 / (variance * lookups), setup_lookups: 0 }
         };
         Curve {
             estimator: estimator.to_owned(),
@@ -172,6 +177,13 @@ fn sweep() -> CaseRecord {
                 .map(point)
                 .collect(),
             optimum: optimum.map(point),
+            listed: None,
+            best: optimum.map(|sampling| Best {
+                sampling,
+                fom: Some(point(sampling).fom),
+                kind: if limit.is_some() { "90 % of the limit" } else { "optimum" }.to_owned(),
+                limit,
+            }),
         }
     };
     CaseRecord {
@@ -182,6 +194,7 @@ fn sweep() -> CaseRecord {
         title: "Eq. 21, central ray, \"quoted\" & <tagged>".to_owned(),
         problem: "transmittance".to_owned(),
         medium: "eq21".to_owned(),
+        draws_per_ray: Some(1),
         rows: vec![
             refused("woodcock", 0.5),
             drawn("residual-ratio", "constant 0.4", 0.5, 0.25),
@@ -197,9 +210,9 @@ fn sweep() -> CaseRecord {
             log: true,
             z_limit: Some(4.42),
             curves: vec![
-                curve("woodcock", "", 1.0, Some(1.0)),
-                curve("residual-ratio", "constant 0.4", 0.5, None),
-                curve(single, "", 0.5, Some(1.5)),
+                curve("woodcock", "", 1.0, [Some(1.0), None]),
+                curve("residual-ratio", "constant 0.4", 0.5, [Some(0.9), Some(12.0)]),
+                curve(single, "", 0.5, [Some(1.5), None]),
             ],
         }),
         anatomy: None,
@@ -232,6 +245,7 @@ fn ray() -> CaseRecord {
         title: "Figure 5: a double particle".to_owned(),
         problem: "transmittance-curve".to_owned(),
         medium: "noise".to_owned(),
+        draws_per_ray: Some(16),
         rows: vec![
             channel(2.0, 0.4),
             judged(channel(4.0, 0.28), Verdict::Underpowered, weak),

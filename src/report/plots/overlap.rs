@@ -1,0 +1,202 @@
+//! Lines that lie on each other: which they are, and how all of them stay visible.
+//!
+//! Lines that are equal throughout are drawn as one striped line: each has every n-th stripe. A line that is a stretch of
+//! a longer one is drawn over it with gaps.
+
+/// The length of a stripe, in pixels.
+const STRIPE: f64 = 9.0;
+/// Values that differ by less than this share are equal: formulas that are the same differ by rounding.
+const SAME: f64 = 1e-9;
+
+/// A line of a panel.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Line {
+    /// Through points, ascending in x.
+    Points(Vec<(f64, f64)>),
+    /// The same value everywhere.
+    Level(f64),
+    /// Nothing is drawn.
+    None,
+}
+
+impl Line {
+    /// Whether all of this line lies on another.
+    fn lies_on(&self, other: &Self) -> bool {
+        let same = |a: f64, b: f64| a == b || (a - b).abs() <= SAME * a.abs().max(b.abs());
+        match (self, other) {
+            (Self::Points(own), Self::Points(points)) => own.iter().all(|&(x, y)| {
+                points.iter().any(|&(other_x, other_y)| x == other_x && same(y, other_y))
+            }),
+            (Self::Points(own), Self::Level(level)) => own.iter().all(|&(_, y)| same(y, *level)),
+            (Self::Level(own), Self::Level(level)) => same(*own, *level),
+            _ => false,
+        }
+    }
+
+    /// How long it is: levels are longest.
+    fn length(&self) -> usize {
+        match self {
+            Self::Points(points) => points.len(),
+            Self::Level(_) => usize::MAX,
+            Self::None => 0,
+        }
+    }
+}
+
+/// Lines that are equal, by their numbers, and the longer lines that they lie on.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Class {
+    /// The lines, ascending.
+    pub members: Vec<usize>,
+    /// The first of each class of longer lines below.
+    pub hosts: Vec<usize>,
+}
+
+/// The classes of equal lines, in the order in which they are drawn: longer ones first.
+pub fn classes(lines: &[Line]) -> Vec<Class> {
+    let on = |a: usize, b: usize| lines[a].lies_on(&lines[b]);
+    let mut members: Vec<Vec<usize>> = Vec::new();
+    for index in (0..lines.len()).filter(|&index| lines[index].length() > 0) {
+        match members.iter_mut().find(|class| on(index, class[0]) && on(class[0], index)) {
+            Some(class) => class.push(index),
+            None => members.push(vec![index]),
+        }
+    }
+    let mut classes: Vec<Class> = members
+        .iter()
+        .map(|class| {
+            let others = members.iter().map(|other| other[0]);
+            let hosts = others.filter(|&other| other != class[0] && on(class[0], other)).collect();
+            Class { members: class.clone(), hosts }
+        })
+        .collect();
+    classes.sort_by_key(|class| std::cmp::Reverse(lines[class.members[0]].length()));
+    classes
+}
+
+impl Class {
+    /// The dashes of a member, whose own are given: stripes where it is not alone.
+    pub fn dash(&self, member: usize, own: &[f64]) -> Vec<f64> {
+        let slots = self.members.len() + usize::from(!self.hosts.is_empty());
+        let is_gap_enough = self.members.len() == 1 && !own.is_empty();
+        if slots == 1 || is_gap_enough {
+            return own.to_vec();
+        }
+        let before = self.members.iter().position(|&other| other == member).unwrap_or(0);
+        let after = slots - 1 - before;
+        let [before, after] = [before, after].map(|count| count as f64 * STRIPE);
+        if before > 0.0 { vec![0.0, before, STRIPE, after] } else { vec![STRIPE, after] }
+    }
+}
+
+/// What lies on what in the panels, in words: the classes of each panel with its letter, the names of the lines.
+pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
+    let mut equal: Vec<(String, Vec<char>)> = Vec::new();
+    let mut upon: Vec<(String, Vec<char>)> = Vec::new();
+    let say = |list: &mut Vec<(String, Vec<char>)>, words: String, panel: char| {
+        match list.iter_mut().find(|(other, _)| *other == words) {
+            Some((_, panels)) => panels.push(panel),
+            None => list.push((words, vec![panel])),
+        }
+    };
+    for (panel, classes) in panels {
+        for Class { members, hosts } in classes {
+            let names_of = |list: &[usize], by: &str| {
+                list.iter().map(|&index| names[index]).collect::<Vec<_>>().join(by)
+            };
+            if members.len() > 1 {
+                say(&mut equal, names_of(members, " = "), *panel);
+            }
+            if !hosts.is_empty() {
+                say(&mut upon, format!("{} on {}", names[members[0]], names_of(hosts, ", ")), *panel);
+            }
+        }
+    }
+    let told = |(words, panels): &(String, Vec<char>)| {
+        let panels: Vec<String> = panels.iter().map(char::to_string).collect();
+        format!("({}) {words}", panels.join(", "))
+    };
+    let lists = [
+        ("Equal in theory, one striped line", equal),
+        ("Equal in theory where both are drawn, one line on the other", upon),
+    ];
+    let lists = lists.into_iter().filter(|(_, list)| !list.is_empty());
+    lists
+        .map(|(head, list)| format!("{head}: {}", list.iter().map(told).collect::<Vec<_>>().join("; ")))
+        .collect()
+}
+
+/// Places points side by side that would hide each other: for each point in turn a shift to the right, at most `most` in
+/// size; points closer than `apart` both ways hide each other.
+pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
+    let mut placed: Vec<[f64; 2]> = Vec::with_capacity(points.len());
+    let shifts = points.iter().map(|&[x, y]| {
+        let is_free = |shift: &f64| {
+            !placed.iter().any(|other| {
+                (other[0] - x - shift).abs() < apart && (other[1] - y).abs() < apart
+            })
+        };
+        let steps = (1..).map(|n| f64::from(n) * apart).take_while(|step| *step <= most);
+        let mut shifts = std::iter::once(0.0).chain(steps.flat_map(|step| [step, -step]));
+        let shift = shifts.find(is_free).unwrap_or(0.0);
+        placed.push([x + shift, y]);
+        shift
+    });
+    shifts.collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn through(points: &[(f64, f64)]) -> Line {
+        Line::Points(points.to_vec())
+    }
+
+    #[test]
+    fn equal_lines_are_striped_and_stretches_lie_on_longer_lines() {
+        let lines = [
+            through(&[(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)]),
+            through(&[(2.0, 3.0), (3.0, 4.0 * (1.0 + 1e-12))]),
+            through(&[(1.0, 2.0), (2.0, 3.0), (3.0, 4.0)]),
+            through(&[(1.0, 2.0), (2.0, 3.0), (3.0, 4.1)]),
+            Line::Level(5.0),
+            Line::None,
+            Line::Level(5.0),
+            through(&[(1.0, 5.0), (2.0, 5.0)]),
+        ];
+        let classes = classes(&lines);
+        let class = |members: &[usize], hosts: &[usize]| Class {
+            members: members.to_vec(),
+            hosts: hosts.to_vec(),
+        };
+        let expected = [
+            class(&[4, 6], &[]),
+            class(&[0, 2], &[]),
+            class(&[3], &[]),
+            class(&[1], &[0]),
+            class(&[7], &[4]),
+        ];
+        assert_eq!(classes, expected);
+        assert_eq!(classes[0].dash(4, &[]), [9.0, 9.0]);
+        assert_eq!(classes[0].dash(6, &[2.0, 3.0]), [0.0, 9.0, 9.0, 0.0]);
+        assert_eq!(classes[2].dash(3, &[2.0, 3.0]), [2.0, 3.0]);
+        // A solid line would hide what is below, a dashed one does not.
+        assert_eq!(classes[3].dash(1, &[]), [9.0, 9.0]);
+        assert_eq!(classes[3].dash(1, &[2.0, 3.0]), [2.0, 3.0]);
+        let notes = notes(&[('a', classes.clone()), ('b', classes)], &["A", "B", "C", "D", "E", "", "G", "H"]);
+        let expected = [
+            "Equal in theory, one striped line: (a, b) E = G; (a, b) A = C",
+            "Equal in theory where both are drawn, one line on the other: (a, b) B on A; (a, b) H on E",
+        ];
+        assert_eq!(notes, expected);
+    }
+
+    #[test]
+    fn points_that_would_hide_each_other_stand_apart() {
+        let points = [[50.0, 10.0], [50.0, 12.0], [50.0, 40.0], [50.0, 10.0], [90.0, 10.0]];
+        assert_eq!(side_by_side(&points, 8.0, 20.0), [0.0, 8.0, 0.0, -8.0, 0.0]);
+        // Where there is no room they stay where they are.
+        assert_eq!(side_by_side(&points, 8.0, 4.0), [0.0; 5]);
+    }
+}
