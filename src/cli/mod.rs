@@ -18,6 +18,7 @@ mod completions;
 mod drawing;
 mod explain;
 mod export;
+mod inspect;
 mod journal;
 mod judge;
 mod list;
@@ -95,6 +96,8 @@ enum Command {
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
     Explain(explain::Arguments),
+    /// What files hold: grids, images and draws, with their sizes, boxes and ranges
+    Inspect(inspect::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
     Judge(judge::Arguments),
     /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
@@ -159,6 +162,7 @@ fn carry_out(catalogue: &Catalogue, join: Option<Join>, cli: &Cli) -> anyhow::Re
         Command::Stress(arguments) => stress::main(arguments, console),
         Command::List(arguments) => list::main(arguments, catalogue, console),
         Command::Explain(arguments) => explain::main(arguments, catalogue, console),
+        Command::Inspect(arguments) => inspect::main(arguments, console),
         Command::Judge(arguments) => judge::main(arguments, catalogue, console),
         Command::Export(arguments) => export::main(arguments, catalogue, console),
         Command::Completions(arguments) => completions::main(arguments),

@@ -9,6 +9,7 @@ use super::scene::{Field, Scene};
 use super::{Target, Wishes, single};
 use crate::catalogue::{Settings, Value};
 use crate::geometry::{Aabb, Bounds, Point};
+use crate::media::axes::Axes;
 use crate::media::{Medium, Volume, grid_file};
 use crate::phase::Phase;
 use crate::phase::henyey_greenstein::HenyeyGreenstein;
@@ -226,10 +227,17 @@ fn own_grid(volume: &Settings) -> Option<OwnGrid> {
         random.counts("size", 1..=4096)?
     } else {
         let path = grid.folder.join(grid.text("file")?);
-        if grid_file::is_vdb(&path) {
+        if grid_file::Format::of(&path)?.has_transform() {
             return None;
         }
-        grid_file::read(&path, None).ok()?.size
+        let named = |key| grid.optional(key, |key| grid.text(key)).flatten();
+        let channel = grid.optional("channel", |key| grid.count(key, 0..=65_535)).flatten();
+        let choice = grid_file::Choice {
+            grid: named("grid"),
+            channel: channel.and_then(|channel| usize::try_from(channel).ok()),
+            axes: named("axes").and_then(|name| Axes::named(&name)).unwrap_or_default(),
+        };
+        grid_file::read(&path, &choice).ok()?.size
     };
     Some((size, nearest == "nearest"))
 }

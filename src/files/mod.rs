@@ -6,12 +6,42 @@
 pub mod exr;
 pub mod npy;
 pub mod null;
+pub mod number;
+pub mod nvdb;
+pub mod pbrt;
 pub mod pfm;
 pub mod vdb;
+pub mod vol;
 
 use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+/// Cause and cure of a file that cannot be read.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Fault {
+    /// What is wrong.
+    pub message: String,
+    /// What would be right.
+    pub help: String,
+}
+
+/// A fault.
+pub(crate) fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
+    Err(Fault { message: message.into(), help: help.into() })
+}
+
+/// A fault of a damaged file.
+fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
+    wrong(message, "the file is damaged: write it anew")
+}
+
+/// A text of a file as a message can show it.
+fn shown(text: &str) -> String {
+    let short: String = text.chars().take(48).collect();
+    let rest = if short.len() < text.len() { "…" } else { "" };
+    format!("\"{}{rest}\"", short.escape_debug())
+}
 
 /// A picture as files hold it.
 #[derive(Debug, Clone, PartialEq)]

@@ -11,7 +11,8 @@ use super::ready::{Ready, refuse_what_cannot_be_computed};
 use super::sweep::{Variation, What};
 use crate::catalogue::{Fault, Settings};
 use crate::estimators::{Experiment, Order, RayView, Refusal, Site};
-use crate::media::{Body, Medium, Piecewise};
+use crate::media::body::RayNeed;
+use crate::media::{Body, Medium, Piecewise, misses};
 use crate::recipes::{controls, sampling};
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
@@ -27,6 +28,8 @@ pub struct Scenario {
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
     variants: Option<Variants>,
+    /// Whether the answer is about a ray.
+    has_ray: bool,
 }
 
 /// Reads the scenario at a value of the sweep; the error lists the mistakes.
@@ -58,7 +61,8 @@ impl Scenario {
             estimators = Estimators::read(settings, body, reader, defaults, &accept);
         });
         let (problem, estimators, body) = (problem?, estimators?, body?.clone());
-        Some(Self { body, problem, meshes: OnceLock::new(), estimators, variants: None })
+        let (meshes, has_ray) = (OnceLock::new(), kind.ray != RayNeed::Nothing);
+        Some(Self { body, problem, meshes, estimators, variants: None, has_ray })
     }
 
     /// The same along a sweep of the medium, with what is known at the values of the case.
@@ -89,6 +93,16 @@ impl Scenario {
             let found = faults.first().map_or_else(String::new, |fault| fault.message.clone());
             Refusal::mismatch(needs, found)
         }))
+    }
+
+    /// What the files hold that the medium was read from, a sentence each.
+    pub fn facts(&self) -> Vec<String> {
+        self.body.facts()
+    }
+
+    /// What is doubtful about the medium and its ray, a sentence each.
+    pub fn notes(&self) -> Vec<String> {
+        if self.has_ray { misses::notes(&self.body) } else { Vec::new() }
     }
 
     /// The field's name in the catalogue.

@@ -128,6 +128,8 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             rows,
             sweep,
             anatomy,
+            facts: planned.case.scenario.facts(),
+            notes: planned.case.scenario.notes(),
         })
         .collect();
     let timing = Timing {

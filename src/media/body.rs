@@ -147,6 +147,21 @@ impl Body {
         }
     }
 
+    /// What the files hold that the fields were read from, a sentence each, every sentence once.
+    pub fn facts(&self) -> Vec<String> {
+        let mut facts: Vec<String> = Vec::new();
+        for channel in self.channels() {
+            if let Self::Volume { volume, .. } = channel {
+                for fact in volume.facts() {
+                    if !facts.contains(&fact) {
+                        facts.push(fact);
+                    }
+                }
+            }
+        }
+        facts
+    }
+
     /// The field along its line or ray, clipped to its bounds; that of the first channel.
     pub fn medium(&self) -> Medium {
         match self {

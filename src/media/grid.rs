@@ -9,19 +9,37 @@
 //!
 //! | setting | meaning | unit | default |
 //! |---|---|---|---|
-//! | `file` | `"x.vol"` (Mitsuba), `"x.npy"` (NumPy) or `"x.vdb"` (`OpenVDB`), relative to the case file | | this or `random` |
-//! | `grid` | of a `.vdb` file: the name of a grid | | its only grid of floats |
+//! | `file` | `"x.npy"` (NumPy), `"x.vol"` (Mitsuba), `"x.vdb"` (`OpenVDB`), `"x.nvdb"` (`NanoVDB`) or `"x.pbrt"` (pbrt), relative to the case file | | this or `random` |
+//! | `axes` | of a `.npy` file: the order of the array's axes, first to last: `"zyx"`, `"xyz"` or another order of the three letters | | `"zyx"` |
+//! | `channel` | of a `.vol` file: a channel, counted from 0 | | its only channel |
+//! | `grid` | of a `.vdb`, `.nvdb` or `.pbrt` file: the name of a grid or a medium | | its only grid of floats |
 //! | `random` | `{ size = [nx, ny, nz], seed }`: sample (i, j, k) is hash3(i, j, k, seed)/2³² | | this or `file` |
-//! | `bounds` | `box = { low, high }` | length | the box in a `.vol` file, else required |
+//! | `bounds` | `box = { low, high }` | length | the box in a `.vol` or `.pbrt` file, else required |
 //! | `extinction` | factor on every sample, ≥ 0 | 1/length | 1 |
 //! | `interpolation` | `"trilinear"` or `"nearest"` | | `"trilinear"` |
 //! | `samples` | `"vertices"`: from corner to corner of the box, u = p(n−1); `"centres"`: in the middle of n cells, u = pn − ½ | | `"centres"` |
-//! | `border` | with `"centres"`, samples beyond the box: `"clamp"` (Mitsuba) or `"zero"` (pbrt) | | `"clamp"` |
+//! | `border` | with `"centres"`, samples beyond the box: `"clamp"` (Mitsuba) or `"zero"` (pbrt) | | `"zero"` for `.pbrt`, else `"clamp"` |
 //!
-//! A `.vdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
-//! (i, j, k) is a sample at scale·(i, j, k) + shift of its transform. Beside the voxels that are not background stand
-//! samples of the background, which must be 0: the field falls to 0 at the next index, and is 0 beyond (`OpenVDB`'s
-//! `BoxSampler`; its `PointSampler` with `"nearest"`). A voxel has the value that is stored, whether it is active or not.
+//! # Which axis is x
+//!
+//! A `.npy` file is `array[z, y, x]`, of shape (nz, ny, nx), as in Mitsuba's and pbrt's grids: the last axis is x. With
+//! `axes = "xyz"` it is `array[x, y, z]`, of shape (nx, ny, nz), and so on; whether the array lies in C or in Fortran order
+//! changes nothing. All other formats say themselves which axis is x, and take no `axes`. `trueflight plan` shows the voxels
+//! along x, y and z of each grid from a file, and `trueflight inspect FILE` what else is in it. Numbers may be
+//! float16, float32, float64, integers (as they stand) or booleans, of either byte order.
+//!
+//! # Formats
+//!
+//! `.vol`: float32, float16 or uint8, of which 255 is 1; of several channels `channel` is read. `.pbrt`: the density of a
+//! `uniformgrid` medium and its box; pbrt's σ_t is that times `scale` and `sigma_a + sigma_s`, which is given as
+//! `extinction`. `.nvdb`: grids of the types Float, Fp4, Fp8, Fp16 and FpN, of `NanoVDB` 32, plain, zipped or Blosc.
+//!
+//! A `.vdb` or `.nvdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
+//! (i, j, k) is a sample at matrix·(i, j, k) + shift of its transform. Beside the voxels that are not background stand
+//! samples of the background: the field falls to that at the next index (`OpenVDB`'s `BoxSampler`; its `PointSampler` with
+//! `"nearest"`), and is 0 beyond. `OpenVDB`'s background goes on for ever; that of a medium ends at this box, which
+//! `plan` says where it is not 0. A voxel has the value that is stored, whether it is active or not. The transform may turn and
+//! shear the lattice; the bounds are then the box along the axes about it.
 //!
 //! Here p runs from 0 to 1 across the box. Between two planes of the lattice a ray sees a cubic,
 //! whose coefficients are prepared once a ray; lookups, optical depth (Simpson's rule, exact for
@@ -29,26 +47,34 @@
 //! interpolation of the samples to rounding: 32 units in the last place of the largest sample, and
 //! the rounding of the place; see the test.
 
-use std::path::Path;
 use std::sync::Arc;
 
 use super::cells::Cells;
 use super::cubics::Cubics;
-use super::grid_file::{self, MOST_SAMPLES, Samples};
+use super::grid_file::Format;
+use super::grid_settings::{
+    facts, format, no_placement, own_bounds, read_bounds, read_placement, read_samples,
+};
 use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
-use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness, body, lattice};
-use crate::catalogue::{Domain, Settings, Value};
+use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness};
+use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Aabb, Bounds, Ray};
 use crate::numeric::{Known, Lane, Span};
 
 /// A voxel grid as a volume.
-pub struct Grid(Arc<Voxels>);
+pub struct Grid {
+    voxels: Arc<Voxels>,
+    /// What the file holds; empty for one at random.
+    facts: Vec<String>,
+}
 
 /// A voxel grid along a ray.
 pub struct GridRay {
     voxels: Arc<Voxels>,
     track: Track,
+    /// The numbers that make the track's beginning.
+    terms: [f64; 3],
     cells: Cells,
     cubics: Vec<[f64; 4]>,
     lookups: Cubics,
@@ -81,7 +107,8 @@ impl GridRay {
         let lookups = Cubics::new(track, inside, |middle, from| {
             voxels.cubic(track.at(middle), track.at(from), track.slope)
         });
-        Self { voxels, track, cells, cubics, lookups }
+        let terms = voxels.terms(ray);
+        Self { voxels, track, terms, cells, cubics, lookups }
     }
 
     fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
@@ -101,8 +128,8 @@ impl OpticalDepth for GridRay {
         let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
         // Places are off by their rounding, and the field changes by less than its highest sample
         // in a cell; where it jumps, each plane moves by the rounding of its distance.
-        let Track { start, slope } = self.track;
-        let reach = |t: f64| (0..3).map(move |j| start[j].abs() + (slope[j] * t).abs());
+        let (terms, slope) = (self.terms, self.track.slope);
+        let reach = |t: f64| (0..3).map(move |j| terms[j] + (slope[j] * t).abs());
         let places = span.length() * reach(span.to.abs().max(span.from.abs())).sum::<f64>();
         let jumps =
             if self.voxels.jumps() { self.cells.count() as f64 * span.to.abs() } else { 0.0 };
@@ -139,10 +166,14 @@ impl Field for Grid {
         let samples = read_samples(settings);
         let interpolation =
             settings.word_or("interpolation", &["trilinear", "nearest"], "trilinear");
-        let is_vdb = has_vdb(settings);
-        let placement = if is_vdb { no_placement(settings) } else { read_placement(settings) };
+        let format = format(settings);
+        let has_transform = format.is_some_and(Format::has_transform);
+        let placement = match format {
+            Some(format) if has_transform => no_placement(settings, format),
+            _ => read_placement(settings, format),
+        };
         let factor = settings.number_or("extinction", Domain::NonNegative, 1.0);
-        let bounds = (!is_vdb && settings.has("bounds")).then(|| read_bounds(settings));
+        let bounds = (!has_transform && settings.has("bounds")).then(|| read_bounds(settings));
         let (samples, placement, factor) = (samples?, placement?, factor?);
         let interpolation = match interpolation? {
             "nearest" => Interpolation::Nearest,
@@ -158,140 +189,64 @@ impl Field for Grid {
             settings.fault("samples", message, "give two or more along each axis, or \"centres\"");
             return None;
         }
-        Some(Self(Arc::new(Voxels::new(&samples, factor, bounds, interpolation, placement))))
+        let facts = facts(settings, &samples, bounds);
+        let voxels = Voxels::new(&samples, factor, bounds, interpolation, placement);
+        Some(Self { voxels: Arc::new(voxels), facts })
+    }
+
+    fn facts(&self) -> Vec<String> {
+        self.facts.clone()
     }
 
     fn smoothness(&self) -> Smoothness {
-        Smoothness::Cells
+        // Cells whose faces are not along the axes are no better than layers.
+        if self.voxels.is_turned() { Smoothness::Layers } else { Smoothness::Cells }
     }
 
     fn bounds(&self) -> Bounds {
-        Bounds::Box(self.0.bounds())
+        Bounds::Box(self.voxels.bounds())
     }
 
     #[inline(always)]
     fn extinction_at<L: Lane>(&self, p: [L; 3]) -> L {
-        self.0.value(self.0.lattice(p))
+        self.voxels.value(self.voxels.lattice(p))
     }
 
     fn majorant(&self, within: &Aabb) -> f64 {
         // A cubic may exceed the samples about it by its rounding.
-        self.0.highest(within) * (1.0 + 64.0 * f64::EPSILON)
+        self.voxels.highest(within) * (1.0 + 64.0 * f64::EPSILON)
     }
 
     fn farthest(&self, ray: &Ray, inside: Span) -> f64 {
-        self.0.track(ray).farthest(inside)
+        self.voxels.track(ray).farthest(inside)
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> GridRay {
-        GridRay::new(self.0.clone(), ray, inside)
+        GridRay::new(self.voxels.clone(), ray, inside)
     }
-}
-
-fn read_samples(settings: &Settings) -> Option<Samples> {
-    match (settings.has("file"), settings.has("random")) {
-        (true, false) => {
-            let name = settings.text("file")?;
-            let grid = if has_vdb(settings) {
-                settings.optional("grid", |key| settings.text(key))?
-            } else {
-                None
-            };
-            let read = grid_file::read(&settings.folder.join(&name), grid.as_deref());
-            read.map_err(|e| settings.fault("file", format!("{name}: {}", e.message), e.help)).ok()
-        }
-        (false, true) => read_random(&settings.table("random")?),
-        (both, _) => {
-            let found = if both { "both `file` and `random`" } else { "no samples are given" };
-            let help = "give `file = \"x.vdb\"` or `random = { size = [nx, ny, nz], seed = n }`";
-            settings.fault_at(settings.span.clone(), "", found, help);
-            None
-        }
-    }
-}
-
-#[allow(clippy::cast_possible_truncation)] // sizes and seed are read within 32 bits
-fn read_random(settings: &Settings) -> Option<Samples> {
-    let size = settings.counts("size", 1..=4096);
-    let seed = settings.count_or("seed", 0..=u64::from(u32::MAX), 0);
-    settings.close();
-    let (size, seed) = (size?, seed? as u32);
-    if size.iter().product::<usize>() as u64 > MOST_SAMPLES {
-        let help = format!("a grid has at most {MOST_SAMPLES} samples");
-        settings.fault("size", "the grid is too large", help);
-        return None;
-    }
-    let [nx, ny, nz] = size.map(|n| n as u32);
-    let hash = |x, y, z| f64::from(lattice::hash3(x, y, z, seed)) / 4_294_967_296.0;
-    let rows = (0..nz).flat_map(|z| (0..ny).map(move |y| (y, z)));
-    let values = rows.flat_map(|(y, z)| (0..nx).map(move |x| hash(x, y, z))).collect();
-    Some(Samples { size, values, bounds: None })
-}
-
-/// Whether the samples are those of `OpenVDB`.
-fn has_vdb(settings: &Settings) -> bool {
-    let name = settings.entry("file").map(|entry| &entry.node.value);
-    matches!(name, Some(Value::Text(name)) if grid_file::is_vdb(Path::new(name)))
-}
-
-/// The placement of a file that says it itself.
-fn no_placement(settings: &Settings) -> Option<Placement> {
-    let given = ["bounds", "samples", "border"].into_iter().filter(|key| settings.has(key));
-    let faults = given.map(|key| {
-        let message =
-            format!("a .vdb file says itself where its voxels stand, and `{key}` has no say");
-        settings.fault(key, message, "leave it out, or move the grid by its transform");
-    });
-    (faults.count() == 0).then_some(Placement::Vertices)
-}
-
-fn read_placement(settings: &Settings) -> Option<Placement> {
-    if settings.word_or("samples", &["centres", "vertices"], "centres")? == "vertices" {
-        return Some(Placement::Vertices);
-    }
-    let border = settings.word_or("border", &["clamp", "zero"], "clamp")?;
-    Some(if border == "zero" { Placement::CentresZero } else { Placement::CentresClamped })
-}
-
-fn read_bounds(settings: &Settings) -> Option<Aabb> {
-    let Bounds::Box(bounds) = body::read_bounds(settings)? else {
-        settings.fault("bounds", "a grid has no sphere", "it takes `box = { low, high }`");
-        return None;
-    };
-    Some(bounds)
-}
-
-/// The box that the file gives, if it is one.
-fn own_bounds(settings: &Settings, samples: &Samples) -> Option<Aabb> {
-    let proper = |bounds: &Aabb| {
-        (0..3).all(|j| {
-            let edge = bounds.high.0[j] - bounds.low.0[j];
-            edge > 0.0 && edge.is_finite()
-        })
-    };
-    let own = samples.bounds.filter(proper);
-    if own.is_none() {
-        let (key, found) = match samples.bounds {
-            Some(_) => ("file", "the corners in the file do not make a box"),
-            None => ("bounds", "the grid has no box"),
-        };
-        settings.fault(key, found, "give `bounds.box = { low = [x, y, z], high = [x, y, z] }`");
-    }
-    own
 }
 
 #[cfg(test)]
 mod tests {
+    use super::super::grid_file::Samples;
+    use super::super::lattice;
     use super::*;
     use crate::geometry::Point;
 
     fn grid(seed: u32) -> Grid {
         let hash =
             |n: u32| f64::from(lattice::hash3(n % 5, n / 5 % 5, n / 25, seed)) / 4_294_967_296.0;
-        let samples = Samples { size: [5; 3], values: (0..125).map(hash).collect(), bounds: None };
+        let samples = Samples {
+            size: [5; 3],
+            values: (0..125).map(hash).collect(),
+            bounds: None,
+            turned: None,
+            remark: String::new(),
+        };
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let (linear, vertices) = (Interpolation::Trilinear, Placement::Vertices);
-        Grid(Arc::new(Voxels::new(&samples, 1.0, cube, linear, vertices)))
+        let voxels = Voxels::new(&samples, 1.0, cube, linear, vertices);
+        Grid { voxels: Arc::new(voxels), facts: Vec::new() }
     }
 
     fn depth(field: &Grid, origin: [f64; 3], direction: [f64; 3]) -> Known {
@@ -317,7 +272,8 @@ mod tests {
     fn cubics_are_the_interpolation_to_rounding() {
         let samples = |seed: u32| {
             let hash = |n: u32| f64::from(lattice::hash3(n, 0, 0, seed)) / 4_294_967_296.0;
-            Samples { size: [9, 8, 7], values: (0..504).map(hash).collect(), bounds: None }
+            let values = (0..504).map(hash).collect();
+            Samples { size: [9, 8, 7], values, bounds: None, turned: None, remark: String::new() }
         };
         let cube = Aabb { low: Point([-1.0, 0.0, 2.0]), high: Point([4.0, 3.0, 4.0]) };
         let places = [Placement::Vertices, Placement::CentresClamped, Placement::CentresZero];

@@ -7,6 +7,7 @@
 //!
 //! A page implements [`Field`] and is registered by its line in the list at the foot of this file.
 
+pub mod axes;
 pub mod body;
 pub mod cells;
 pub mod constant;
@@ -20,13 +21,15 @@ pub mod exponential;
 pub mod gaussian;
 pub mod grid;
 pub mod grid_file;
-mod grid_vdb;
+mod grid_settings;
+pub mod grid_vdb;
 pub mod inlined;
 pub mod inverse;
 pub mod lattice;
 pub mod lookup;
 pub mod majorants;
 pub mod medium;
+pub mod misses;
 pub mod noise;
 pub mod own;
 pub mod piecewise;
@@ -37,6 +40,7 @@ pub mod radial;
 pub mod reader;
 pub mod search;
 pub mod sines;
+mod turn;
 pub mod voxels;
 
 use std::sync::{Arc, LazyLock};
@@ -218,6 +222,11 @@ pub trait Field: Sized + Send + Sync + 'static {
         false
     }
 
+    /// What a file that the field was read from holds, a sentence each; nothing for other fields.
+    fn facts(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// What the ray sees on the stretch `inside`, which lies within the bounds.
     fn along(&self, ray: &Ray, inside: Span) -> Self::Profile;
 
@@ -265,6 +274,8 @@ pub trait InSpace: Send + Sync {
     fn farthest(&self, ray: &Ray, inside: Span) -> f64;
     /// See [`Field::is_radial`].
     fn is_radial(&self) -> bool;
+    /// See [`Field::facts`].
+    fn facts(&self) -> Vec<String>;
     /// What the ray sees on the stretch `inside`.
     fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile>;
     /// See [`Field::coarsened`].
@@ -310,6 +321,10 @@ impl<F: Field> InSpace for F {
 
     fn is_radial(&self) -> bool {
         Field::is_radial(self)
+    }
+
+    fn facts(&self) -> Vec<String> {
+        Field::facts(self)
     }
 
     fn along(&self, ray: &Ray, inside: Span) -> Arc<Profile> {

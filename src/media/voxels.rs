@@ -5,11 +5,15 @@
 //! trilinear: Σ over the 8 samples about u of Πⱼ (1 − |uⱼ − cⱼ|) · value(c)      nearest: value(i)
 //! ```
 //!
+//! Where the axes of the lattice are not those of the world, u is a matrix times p − origin, and the field is 0 outside the
+//! lattice, which the box about it does not show.
+//!
 //! Border samples are stored, not decided upon at each lookup: cell-centred grids that are
 //! interpolated get a layer of them on every side.
 
 use super::grid_file::Samples;
 use super::lattice::Track;
+use super::turn::Turn;
 use crate::geometry::{Aabb, Ray};
 use crate::numeric::Lane;
 
@@ -44,6 +48,7 @@ pub struct Voxels {
     /// The largest index of a cell along each axis.
     last: [usize; 3],
     peak: f64,
+    turn: Option<Turn>,
 }
 
 impl Voxels {
@@ -78,7 +83,8 @@ impl Voxels {
             (Interpolation::Nearest, false) => (0.0, size.map(|n| n - 1)),
         };
         let peak = values.iter().copied().fold(0.0, f64::max);
-        Self { size, values, bounds, interpolation, scale, shift, last, peak }
+        let turn = samples.turned.as_ref().map(|turned| Turn::new(turned, size, interpolation));
+        Self { size, values, bounds, interpolation, scale, shift, last, peak, turn }
     }
 
     /// The box.
@@ -93,20 +99,39 @@ impl Voxels {
 
     /// Whether the field jumps between cells.
     pub fn jumps(&self) -> bool {
-        self.interpolation == Interpolation::Nearest
+        self.interpolation == Interpolation::Nearest || self.turn.is_some()
+    }
+
+    /// Whether the axes of the lattice are not those of the world.
+    pub fn is_turned(&self) -> bool {
+        self.turn.is_some()
     }
 
     /// A point in lattice coordinates: cells lie between whole numbers.
     #[inline(always)]
     pub fn lattice<L: Lane>(&self, [x, y, z]: [L; 3]) -> [L; 3] {
+        if let Some(turn) = &self.turn {
+            return turn.lattice([x, y, z], self.shift);
+        }
         let ([a, b, c], [i, j, k]) = (self.bounds.low.0, self.scale);
         [(x - a) * i + self.shift, (y - b) * j + self.shift, (z - c) * k + self.shift]
     }
 
     /// A ray in lattice coordinates.
     pub fn track(&self, ray: &Ray) -> Track {
-        let slope = std::array::from_fn(|j| ray.direction.0[j] * self.scale[j]);
+        let slope = match &self.turn {
+            Some(turn) => turn.slope(ray.direction.0),
+            None => std::array::from_fn(|j| ray.direction.0[j] * self.scale[j]),
+        };
         Track { start: self.lattice(ray.origin.0), slope }
+    }
+
+    /// The largest numbers that make a ray's beginning in lattice coordinates: its rounding is theirs.
+    pub fn terms(&self, ray: &Ray) -> [f64; 3] {
+        match &self.turn {
+            Some(turn) => turn.terms(ray.origin.0, self.shift),
+            None => self.lattice(ray.origin.0).map(f64::abs),
+        }
     }
 
     /// The cell that holds a place and how far the place is into it; a place that rounding left
@@ -136,14 +161,25 @@ impl Voxels {
 
     /// The field at a place in lattice coordinates.
     #[inline(always)]
-    pub fn value<L: Lane>(&self, [x, y, z]: [L; 3]) -> L {
+    pub fn value<L: Lane>(&self, at: [L; 3]) -> L {
+        let [x, y, z] = at;
         let ((i, x), (j, y)) = (self.place_along(0, x), self.place_along(1, y));
         let (k, z) = self.place_along(2, z);
         let [nx, ny, _] = self.size.map(|n| n as f64);
         let first = (k * ny + j) * nx + i;
-        if self.interpolation == Interpolation::Nearest {
-            return first.entry(&self.values);
-        }
+        let value = if self.interpolation == Interpolation::Nearest {
+            first.entry(&self.values)
+        } else {
+            self.linear(first, [x, y, z])
+        };
+        let Some(turn) = &self.turn else { return value };
+        turn.cut(at, value)
+    }
+
+    /// Between the eight samples from the one at an index on.
+    #[inline(always)]
+    fn linear<L: Lane>(&self, first: L, [x, y, z]: [L; 3]) -> L {
+        let [nx, ny, _] = self.size.map(|n| n as f64);
         let near = between(y, self.row(first, x), self.row(first + nx, x));
         let above = first + nx * ny;
         between(z, near, between(y, self.row(above, x), self.row(above + nx, x)))
@@ -158,6 +194,9 @@ impl Voxels {
     /// The field along a stretch of ray within the cell about `middle`: a polynomial in the place
     /// `x ∈ [0, 1]` of the stretch, which begins at `start` and turns by `step` in all.
     pub fn cubic(&self, middle: [f64; 3], start: [f64; 3], step: [f64; 3]) -> [f64; 4] {
+        if self.turn.as_ref().is_some_and(|turn| !turn.holds(middle)) {
+            return [0.0; 4];
+        }
         let ([i, j, k], _) = self.place(middle);
         let [nx, ny, _] = self.size;
         let first = (k * ny + j) * nx + i;
@@ -182,11 +221,25 @@ impl Voxels {
         lerp(2, near, far)
     }
 
+    /// The lowest and the highest lattice coordinates of a box.
+    fn reach(&self, within: &Aabb) -> [[f64; 3]; 2] {
+        let ends = [self.lattice(within.low.0), self.lattice(within.high.0)];
+        if self.turn.is_none() {
+            return ends;
+        }
+        let corner =
+            |n: usize| std::array::from_fn(|j| [within.low.0, within.high.0][n >> j & 1][j]);
+        (0..8).map(|n| self.lattice(corner(n))).fold(ends.map(|_| ends[0]), |[low, high], u| {
+            [[0, 1, 2].map(|j| u[j].min(low[j])), [0, 1, 2].map(|j| u[j].max(high[j]))]
+        })
+    }
+
     /// The largest sample that a lookup in the box can touch.
     pub fn highest(&self, within: &Aabb) -> f64 {
         // A billionth of a cell covers the rounding of a lookup's place.
-        let low = self.place(self.lattice(within.low.0).map(|u| u - 1e-9)).0;
-        let high = self.place(self.lattice(within.high.0).map(|u| u + 1e-9)).0;
+        let [from, to] = self.reach(within);
+        let low = self.place(from.map(|u| u - 1e-9)).0;
+        let high = self.place(to.map(|u| u + 1e-9)).0;
         let more = usize::from(self.interpolation == Interpolation::Trilinear);
         let [nx, ny, _] = self.size;
         let mut highest = 0.0f64;

@@ -1,13 +1,13 @@
 //! Annotations on GitHub: workflow commands that put failures on the page of the change.
 //!
-//! `::error title=…,file=…::message` for what fails, `::warning` for what is inconclusive. GitHub
+//! `::error title=…,file=…::message` for what fails, `::warning` for what is inconclusive and for notes on cases. GitHub
 //! shows ten of each per step: where there are more, the tenth and following give way to one that
 //! counts them.
 
 use std::fmt::Write;
 
 use crate::baseline::Comparison;
-use crate::harness::record::{Record, Verdict};
+use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
 
@@ -19,7 +19,12 @@ pub fn text(record: &Record) -> String {
     let of = |verdict| failing(record, verdict).into_iter().map(move |t| of_failure(verdict, &t));
     let errors = of(Verdict::Fail).chain(record.comparison.iter().flat_map(of_changes));
     let lines = at_most("error", errors.collect()).into_iter();
-    let lines = lines.chain(at_most("warning", of(Verdict::Inconclusive).collect()));
+    let notes = record
+        .results
+        .cases
+        .iter()
+        .flat_map(|case| case.notes.iter().map(move |note| of_note(case, note)));
+    let lines = lines.chain(at_most("warning", of(Verdict::Inconclusive).chain(notes).collect()));
     lines.fold(String::new(), |text, line| text + &line + "\n")
 }
 
@@ -52,6 +57,15 @@ fn of_changes(comparison: &Comparison) -> Vec<String> {
         format!("title={title}::{}", message(&nothing))
     });
     worse.chain(nothing).collect()
+}
+
+fn of_note(case: &CaseRecord, note: &str) -> String {
+    let mut properties = format!("title={}", property(&format!("note {}", case.name)));
+    if !case.path.is_empty() {
+        let path = case.path.strip_prefix("./").unwrap_or(&case.path);
+        let _ = write!(properties, ",file={}", property(path));
+    }
+    format!("{properties}::{}", message(note))
 }
 
 fn of_failure(verdict: Verdict, failure: &Failure) -> String {

@@ -63,9 +63,11 @@ pub fn brief(record: &Record, pen: layout::Pen) -> String {
         let line = format!("{}  {}, {} draws", case.name, totals::words(case), totals::draws(case));
         if rows.is_empty() {
             let _ = writeln!(text, "{}", end_elided(&line, pen.width));
+            notes(&mut text, pen, case);
             continue;
         }
         let _ = writeln!(text, "{}", pen.paint(Paint::Bold, &end_elided(&line, pen.width)));
+        notes(&mut text, pen, case);
         let labels = Labels::of(case);
         let shown = CaseRecord { rows, ..case.clone() };
         marks |= grid(&mut text, pen, &shown, labels, View::Run);
@@ -87,6 +89,10 @@ fn legend(text: &mut String, pen: layout::Pen, marks: bool) {
 fn block(text: &mut String, pen: layout::Pen, case: &CaseRecord, view: View) -> bool {
     pen.heading(text, &case.name, &case.title);
     pen.say(text, Paint::Dim, &facts(case, view).join(" · "));
+    if view == View::Plan {
+        case.facts.iter().for_each(|fact| pen.note(text, fact, ("", Paint::Plain)));
+    }
+    notes(text, pen, case);
     grid(text, pen, case, Labels::of(case), view)
 }
 
@@ -121,6 +127,13 @@ fn grid(
     footnotes(text, pen, case, labels, view, room);
     let scores = grid.columns.iter().filter(|column| views::SCORES.contains(&column.head));
     scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
+}
+
+/// What is doubtful about a case.
+fn notes(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
+    for note in &case.notes {
+        pen.note(text, &format!("note {note}"), ("note", Paint::Yellow));
+    }
 }
 
 /// What all rows share, and what the case is about.

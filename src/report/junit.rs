@@ -78,6 +78,9 @@ fn suite(
         suite.add_test_case(test);
     }
     suite.set_time(whole);
+    if !case.notes.is_empty() {
+        suite.set_system_out(case.notes.join("\n"));
+    }
     suite
 }
 

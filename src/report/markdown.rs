@@ -28,6 +28,7 @@ pub fn text(record: &Record) -> String {
     if let Some(comparison) = &record.comparison {
         changed(&mut text, comparison);
     }
+    notes(&mut text, &record.results.cases);
     cases(&mut text, &record.results.cases);
     if !record.results.gate.triage.is_empty() {
         text.push_str("Look here first (e-BH): ");
@@ -94,6 +95,21 @@ fn more(text: &mut String, all: usize) {
     if let Some(left) = all.checked_sub(MOST).filter(|&left| left > 0) {
         let _ = writeln!(text, "\nand {left} more.");
     }
+}
+
+/// What is doubtful about cases.
+fn notes(text: &mut String, cases: &[CaseRecord]) {
+    let all: Vec<_> =
+        cases.iter().flat_map(|case| case.notes.iter().map(move |note| (case, note))).collect();
+    if all.is_empty() {
+        return;
+    }
+    text.push_str("### Notes\n\n");
+    for (case, note) in all.iter().take(MOST) {
+        let _ = writeln!(text, "- {}: {}", escaped(&case.name), escaped(note));
+    }
+    more(text, all.len());
+    text.push('\n');
 }
 
 fn cases(text: &mut String, cases: &[CaseRecord]) {

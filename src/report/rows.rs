@@ -25,6 +25,12 @@ pub struct JoinedRow<'a> {
 }
 
 impl JoinedRow<'_> {
+    /// Why the row has its verdict; where nothing is to be said of that, what is doubtful about its case.
+    pub fn reason(&self) -> String {
+        let reason = &self.row.reason;
+        if reason.is_empty() { self.case.notes.join("; ") } else { reason.clone() }
+    }
+
     /// Nanoseconds of processor time for one lookup of `σ_t`; `None` where nothing was looked up.
     pub fn ns_per_lookup(&self) -> Option<f64> {
         let lookups = self.row.drawn? as f64 * self.row.lookups_per_draw?;
@@ -80,7 +86,7 @@ pub fn columns<'a>() -> Vec<Column<JoinedRow<'a>>> {
         "seconds" = |joined| joined.seconds;
         "ns_per_lookup" = |joined| joined.ns_per_lookup();
         "verdict" = |joined| joined.row.verdict.map(Verdict::word);
-        "reason" = |joined| &joined.row.reason;
+        "reason" = |joined| joined.reason();
         "sampling_kind" = |joined| &joined.row.sampling_kind;
         "swept" = |joined| joined.row.swept;
         "predicted_skewness" = |joined| joined.row.predicted_skewness;

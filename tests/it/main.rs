@@ -18,6 +18,7 @@ mod equiangular;
 mod export;
 mod fuzz_corpus;
 mod golden;
+mod grids;
 mod html;
 mod judge;
 mod junit;

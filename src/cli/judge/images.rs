@@ -42,9 +42,12 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if let Some(out) = &images.out {
         output::writable(out)?;
     }
+    let beside = [&images.truth_image, &images.variance_image].into_iter().flatten();
+    let all: Vec<&PathBuf> = arguments.files.iter().chain(beside).collect();
+    let frame = files::Frame::of(&all)?;
     let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
         (Some(value), _) => Ok(Some(Level::All(value))),
-        (None, Some(path)) => files::picture(path).map(Level::Each).map(Some),
+        (None, Some(path)) => files::picture_in(path, frame).map(Level::Each).map(Some),
         (None, None) => Ok(None),
     };
     let claim = Claim {
@@ -63,15 +66,16 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
         bail!("images are not read of a pipe; give files");
     }
     let name = name(&arguments.files);
-    let judgement =
-        match files::stack(&arguments.files).and_then(|stack| judge(&stack, &claim, &wanted)) {
-            Ok(judgement) => judgement,
-            Err(error) => {
-                arguments.write_junit(&[], &[(name, error.to_string())])?;
-                output::complain(&error.into());
-                return Ok(USAGE);
-            }
-        };
+    let judgement = match files::stack_in(&arguments.files, frame)
+        .and_then(|stack| judge(&stack, &claim, &wanted))
+    {
+        Ok(judgement) => judgement,
+        Err(error) => {
+            arguments.write_junit(&[], &[(name, error.to_string())])?;
+            output::complain(&error.into());
+            return Ok(USAGE);
+        }
+    };
     show(&judgement, &name, arguments, console)?;
     let mut errors = output::Errors::default();
     if let Some(out) = &images.out {

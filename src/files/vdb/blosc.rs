@@ -17,7 +17,7 @@ const LEAST_STREAM: usize = 128;
 const MOST_STREAMS: usize = 16;
 
 /// Unpacks a frame into as many bytes as it must hold.
-pub(super) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Fault> {
+pub(in crate::files) fn unpack(frame: &[u8], into: &mut [u8]) -> Result<(), Fault> {
     let mut head = Bytes::new(frame);
     let [version, _, flags, width] = head.number()?.to_le_bytes();
     let [size, block, whole] = [head.number()?, head.number()?, head.number()?].map(|n| n as usize);

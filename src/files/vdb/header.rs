@@ -2,7 +2,7 @@
 
 use super::bytes::Bytes;
 use super::transform::Transform;
-use super::{Fault, damaged, wrong};
+use super::{Fault, damaged, shown, wrong};
 
 /// The versions whose layout is this one.
 const VERSIONS: std::ops::RangeInclusive<u32> = 222..=224;
@@ -67,13 +67,6 @@ impl Entry {
         let name = shown(&self.name());
         if self.has_floats() { name } else { format!("{name} ({})", shown(&self.kind)) }
     }
-}
-
-/// A text of the file as a message can show it.
-pub(super) fn shown(text: &str) -> String {
-    let short: String = text.chars().take(48).collect();
-    let rest = if short.len() < text.len() { "…" } else { "" };
-    format!("\"{}{rest}\"", short.escape_debug())
 }
 
 /// The header, and what stands before each grid.

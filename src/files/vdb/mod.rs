@@ -10,7 +10,7 @@
 //! All numbers are little-endian; a text is its length (u32) and its bytes. Read are versions 222 to 224 (`OpenVDB` 10
 //! writes the last; this layout is that of all three), grids of the type `Tree_float_5_4_3`, their numbers as float32 or float16, packed by
 //! every scheme that the library writes: none, zip, Blosc with LZ4, with and without the mask of active values.
-//! Transforms are those along the axes: scales and translations.
+//! Transforms are affine; frusta are refused.
 //!
 //! No count that the file announces is trusted: memory is asked for as bytes are read, and places that the file
 //! names must be those where its parts end. The crate `vdb-rs` (0.6) does trust them, panics at other versions, and
@@ -26,11 +26,17 @@ mod packing;
 mod transform;
 mod tree;
 
+pub(in crate::files) use blosc::unpack as unpack_blosc;
 use bytes::Bytes;
-use header::{Entry, Head, shown};
+use header::{Entry, Head};
 use packing::Packing;
+pub(in crate::files) use packing::{count_on, is_on};
 pub use transform::Transform;
+pub(in crate::files) use tree::{EDGES, Growing};
 pub use tree::{LEAF, Leaf, Tile, Tree};
+
+pub use super::Fault;
+use super::{damaged, shown, wrong};
 
 /// A grid of floats.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,22 +51,44 @@ pub struct Grid {
     pub tree: Tree,
 }
 
-/// What is wrong with a file, and what would be right.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Fault {
-    /// What is wrong.
-    pub message: String,
-    /// What would be right.
-    pub help: String,
+/// What a file says of one of its grids before the tree.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Listed {
+    /// Its name.
+    pub name: String,
+    /// Its type, such as `Tree_float_5_4_3`.
+    pub kind: String,
+    /// Its class, such as `fog volume`; empty where none is said.
+    pub class: String,
+    /// How many voxels are active, where the file says so.
+    pub active: Option<u64>,
+    /// Where its voxels stand.
+    pub transform: Transform,
+    /// Whether [`read`] reads its type.
+    pub is_read: bool,
 }
 
-fn wrong<T>(message: impl Into<String>, help: impl Into<String>) -> Result<T, Fault> {
-    Err(Fault { message: message.into(), help: help.into() })
-}
-
-/// What only a damaged file says.
-fn damaged<T>(message: impl Into<String>) -> Result<T, Fault> {
-    wrong(message, "the file is damaged: write it anew")
+/// Lists the grids of a file, or what is wrong with the beginning of one.
+///
+/// # Errors
+///
+/// The file is not one of the kind that is described above.
+pub fn list(file: &[u8]) -> Result<Vec<Result<Listed, (String, Fault)>>, Fault> {
+    let mut bytes = Bytes::new(file);
+    let entries = header::entries(&mut bytes)?;
+    let mut listed = Vec::new();
+    for entry in &entries {
+        let head = Head::read(&mut bytes, entry);
+        listed.push(head.map_err(|fault| (entry.name(), fault)).map(|head| Listed {
+            name: entry.name(),
+            kind: entry.kind.clone(),
+            class: head.class,
+            active: head.voxels,
+            transform: head.transform,
+            is_read: entry.has_floats(),
+        }));
+    }
+    Ok(listed)
 }
 
 /// Reads the grid of a name; without one, the file's only grid of floats.

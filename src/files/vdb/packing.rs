@@ -28,12 +28,12 @@ pub(super) struct Packing {
 }
 
 /// Whether a mask is on at a place.
-pub(super) fn is_on(mask: &[u8], place: usize) -> bool {
+pub(in crate::files) fn is_on(mask: &[u8], place: usize) -> bool {
     mask[place / 8] >> (place % 8) & 1 == 1
 }
 
 /// How often it is on.
-pub(super) fn count_on(mask: &[u8]) -> usize {
+pub(in crate::files) fn count_on(mask: &[u8]) -> usize {
     mask.iter().map(|byte| byte.count_ones() as usize).sum()
 }
 

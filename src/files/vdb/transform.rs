@@ -1,68 +1,108 @@
 //! From the coordinates of voxels to those of the world.
 //!
 //! ```text
-//! world = scale · index + shift, axis by axis
+//! world = matrix · index + shift
 //! ```
 //!
-//! Rotated and sheared lattices are not read, for their axes are not those of the world; nor are frusta, in which
-//! straight rays are bent.
+//! Frusta, in which straight rays are bent, are not read.
 
 use super::bytes::Bytes;
-use super::header::shown;
-use super::{Fault, damaged, wrong};
+use super::{Fault, damaged, shown, wrong};
 
-/// A scale and a translation.
+/// Columns that are nearer to one plane than this span no lattice that doubles can tell apart.
+const FLATTEST: f64 = 1e-9;
+
+/// An affine map from indices to the world.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Transform {
-    /// World units per voxel along each axis: not zero, and below it where the axis is mirrored.
-    pub scale: [f64; 3],
-    /// Where the voxel (0, 0, 0) stands.
+    /// World units per voxel: column j is the step from a voxel to the next along index j.
+    pub matrix: [[f64; 3]; 3],
+    /// World coordinates of the voxel (0, 0, 0).
     pub shift: [f64; 3],
 }
 
 impl Transform {
+    /// A scale along the axes and a translation.
+    fn along_axes(scale: [f64; 3], shift: [f64; 3]) -> Self {
+        let entry = |i: usize, j: usize| if i == j { scale[j] } else { 0.0 };
+        Self { matrix: [0, 1, 2].map(|i| [0, 1, 2].map(|j| entry(i, j))), shift }
+    }
+
+    /// World units per voxel along each axis, below 0 where an axis is mirrored; `None` where the lattice is turned or
+    /// sheared.
+    pub fn scale(&self) -> Option<[f64; 3]> {
+        let places = (0..3).flat_map(|i| (0..3).map(move |j| (i, j)));
+        let is_plain = places.clone().all(|(i, j)| i == j || self.matrix[i][j] == 0.0);
+        is_plain.then(|| [0, 1, 2].map(|j| self.matrix[j][j]))
+    }
+
+    /// World coordinates of a place in index space.
+    pub fn world(&self, index: [f64; 3]) -> [f64; 3] {
+        let row = |i: usize| (0..3).map(|j| self.matrix[i][j] * index[j]).sum::<f64>();
+        [0, 1, 2].map(|i| row(i) + self.shift[i])
+    }
+
+    /// The edges of a voxel.
+    pub fn voxel(&self) -> [f64; 3] {
+        [0, 1, 2].map(|j| norm(self.column(j)))
+    }
+
+    fn column(&self, j: usize) -> [f64; 3] {
+        [0, 1, 2].map(|i| self.matrix[i][j])
+    }
+
     pub(super) fn read(bytes: &mut Bytes) -> Result<Self, Fault> {
         let kind = bytes.text()?;
         let read = match kind.as_str() {
-            "TranslationMap" => Self { scale: [1.0; 3], shift: bytes.doubles()? },
-            "ScaleMap" | "UniformScaleMap" => Self { scale: scale(bytes)?, shift: [0.0; 3] },
+            "TranslationMap" => Self::along_axes([1.0; 3], bytes.doubles()?),
+            "ScaleMap" | "UniformScaleMap" => Self::along_axes(scale(bytes)?, [0.0; 3]),
             "ScaleTranslateMap" | "UniformScaleTranslateMap" => {
                 let shift = bytes.doubles()?;
-                Self { scale: scale(bytes)?, shift }
+                Self::along_axes(scale(bytes)?, shift)
             }
             "AffineMap" | "UnitaryMap" => Self::of_matrix(bytes.doubles()?)?,
             "NonlinearFrustumMap" => {
-                let help = "resample it to a grid with a scale and a translation";
+                let help = "resample it to a grid with an affine transform";
                 return wrong("its voxels stand in a frustum, in which rays are bent", help);
             }
             other => return damaged(format!("its transform is {}, which is none", shown(other))),
         };
-        let numbers = read.scale.iter().chain(&read.shift);
-        if read.scale.contains(&0.0) || !numbers.clone().all(|x| x.is_finite()) {
-            let message = format!(
-                "its transform has the scale {:?} and the shift {:?}",
-                read.scale, read.shift
-            );
-            return wrong(message, "give it a scale that is finite and not 0");
-        }
-        Ok(read)
+        read.checked()
     }
 
-    /// Of a matrix that points are multiplied with from the left: its last row is the translation.
+    /// The same, if it tells voxels apart.
+    pub(in crate::files) fn checked(self) -> Result<Self, Fault> {
+        let mut numbers = self.matrix.iter().flatten().chain(&self.shift);
+        let (columns, edges) = ([0, 1, 2].map(|j| self.column(j)), self.voxel());
+        let unit = |j: usize| columns[j].map(|x| x / edges[j]);
+        let [a, b, c] = [unit(0), unit(1), unit(2)];
+        let volume = a[0] * (b[1] * c[2] - b[2] * c[1])
+            + a[1] * (b[2] * c[0] - b[0] * c[2])
+            + a[2] * (b[0] * c[1] - b[1] * c[0]);
+        if numbers.all(|x| x.is_finite()) && volume.abs() > FLATTEST {
+            return Ok(self);
+        }
+        let (matrix, shift) = (self.matrix, self.shift);
+        let message = format!("its transform has the matrix {matrix:?} and the shift {shift:?}");
+        wrong(
+            message,
+            "give it a scale that is finite and not 0, and axes that are not in one plane",
+        )
+    }
+
+    /// The transform of a matrix that points are multiplied with from the left: its last row is the translation.
     fn of_matrix(matrix: [f64; 16]) -> Result<Self, Fault> {
         let at = |row: usize, column: usize| matrix[4 * row + column];
-        let places = (0..4).flat_map(|row| (0..4).map(move |column| (row, column)));
-        if places.clone().any(|(row, column)| row != column && row < 3 && at(row, column) != 0.0) {
-            return wrong(
-                "its transform turns or shears the lattice",
-                "resample it to one with a scale and a translation, by openvdb::tools::resampleToMatch",
-            );
-        }
-        if at(3, 3) != 1.0 {
+        if (0..3).any(|row| at(row, 3) != 0.0) || at(3, 3) != 1.0 {
             return damaged("its transform is not affine");
         }
-        Ok(Self { scale: [0, 1, 2].map(|j| at(j, j)), shift: [0, 1, 2].map(|j| at(3, j)) })
+        let matrix = [0, 1, 2].map(|i| [0, 1, 2].map(|j| at(j, i)));
+        Ok(Self { matrix, shift: [0, 1, 2].map(|j| at(3, j)) })
     }
+}
+
+fn norm([x, y, z]: [f64; 3]) -> f64 {
+    (x * x + y * y + z * z).sqrt()
 }
 
 /// A scale, and what is known by it: the size of a voxel, and three kinds of inverses.

@@ -27,7 +27,7 @@ const MOST_TILES: usize = 1 << 12;
 const MASK: usize = 64;
 
 /// The edges of tiles, in voxels: of the root, of its children and of theirs.
-const EDGES: [i32; 3] = [4096, 128, LEAF];
+pub(in crate::files) const EDGES: [i32; 3] = [4096, 128, LEAF];
 
 /// A cube of one value.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -73,10 +73,8 @@ impl Tree {
         if buffers != 1 {
             return damaged(format!("its tree has {buffers} buffers instead of one"));
         }
-        let background = bytes.float()?;
-        let (tiles, leaves) = (Vec::new(), Vec::new());
-        let tree = Self { background, tiles, leaves, active: 0 };
-        let mut reader = Reader { bytes, packing, tree, masks: Vec::new(), filled: 0 };
+        let tree = Growing::new(bytes.float()?);
+        let mut reader = Reader { bytes, packing, tree, masks: Vec::new() };
         reader.root()?;
         if reader.bytes.at() != blocks {
             return damaged("the topology of its tree does not end where its values begin");
@@ -85,76 +83,28 @@ impl Tree {
         if reader.bytes.at() != end {
             return damaged("the values of its tree do not end where its grid does");
         }
-        Ok(reader.tree)
+        Ok(reader.tree.tree)
     }
 }
 
-struct Reader<'a, 'b> {
-    bytes: &'b mut Bytes<'a>,
-    packing: Packing,
-    tree: Tree,
-    /// The masks of the leaves.
-    masks: Vec<&'a [u8]>,
+/// A tree while it is read.
+pub(in crate::files) struct Growing {
+    /// What was read so far.
+    pub(in crate::files) tree: Tree,
     /// How many voxels the tiles of other values than the background have.
     filled: u64,
 }
 
-impl Reader<'_, '_> {
-    fn root(&mut self) -> Result<(), Fault> {
-        let (tiles, children) = (self.bytes.number()?, self.bytes.number()?);
-        let mut origins = BTreeSet::new();
-        let mut new = |origin: [i32; 3]| {
-            if origin.iter().all(|x| x % EDGES[0] == 0) && origins.insert(origin) {
-                return Ok(origin);
-            }
-            damaged(format!("a node of its tree has its origin at {origin:?}"))
-        };
-        for _ in 0..tiles {
-            let origin = new(self.bytes.point()?)?;
-            let value = self.bytes.float()?;
-            let is_active = self.bytes.byte()?;
-            self.tile(Tile { origin, edge: EDGES[0], value }, is_active != 0)?;
-        }
-        for _ in 0..children {
-            let origin = new(self.bytes.point()?)?;
-            self.node::<5>(1, origin)?;
-        }
-        Ok(())
-    }
-
-    /// A node of `2^LOG` tiles or children along each axis, whose edge is that of the level.
-    fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Fault> {
-        let size = 1 << (3 * LOG);
-        let children = self.bytes.take(size / 8)?;
-        let active = self.bytes.take(size / 8)?;
-        let values = self.packing.values(self.bytes, active, self.tree.background)?;
-        let edge = EDGES[level];
-        let place = |at: usize| -> [i32; 3] {
-            let axis = |j: usize| at >> (LOG * (2 - j)) & ((1 << LOG) - 1);
-            #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // below 32
-            std::array::from_fn(|j| origin[j] + axis(j) as i32 * edge)
-        };
-        for (at, value) in values.into_iter().enumerate() {
-            if !is_on(children, at) {
-                self.tile(Tile { origin: place(at), edge, value }, is_on(active, at))?;
-            }
-        }
-        for at in (0..size).filter(|&at| is_on(children, at)) {
-            if level == 1 {
-                self.node::<4>(2, place(at))?;
-            } else {
-                let mask = self.bytes.take(MASK)?;
-                self.tree.active += count_on(mask) as u64;
-                self.masks.push(mask);
-                self.tree.leaves.push(Leaf { origin: place(at), values: Vec::new() });
-            }
-        }
-        Ok(())
+impl Growing {
+    /// An empty tree.
+    pub(in crate::files) fn new(background: f32) -> Self {
+        let (tiles, leaves) = (Vec::new(), Vec::new());
+        Self { tree: Tree { background, tiles, leaves, active: 0 }, filled: 0 }
     }
 
     /// Tiles do not overlap: many of them with more voxels than any medium may have are not kept, for a small file may have
     /// very many. Of few, whoever makes a medium of them says how large it would be.
-    fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
+    pub(in crate::files) fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
         let voxels = u64::from(tile.edge.unsigned_abs()).pow(3);
         if is_active {
             self.tree.active = self.tree.active.saturating_add(voxels);
@@ -172,14 +122,77 @@ impl Reader<'_, '_> {
         }
         Ok(())
     }
+}
+
+struct Reader<'a, 'b> {
+    bytes: &'b mut Bytes<'a>,
+    packing: Packing,
+    tree: Growing,
+    /// The masks of the leaves.
+    masks: Vec<&'a [u8]>,
+}
+
+impl Reader<'_, '_> {
+    fn root(&mut self) -> Result<(), Fault> {
+        let (tiles, children) = (self.bytes.number()?, self.bytes.number()?);
+        let mut origins = BTreeSet::new();
+        let mut new = |origin: [i32; 3]| {
+            if origin.iter().all(|x| x % EDGES[0] == 0) && origins.insert(origin) {
+                return Ok(origin);
+            }
+            damaged(format!("a node of its tree has its origin at {origin:?}"))
+        };
+        for _ in 0..tiles {
+            let origin = new(self.bytes.point()?)?;
+            let value = self.bytes.float()?;
+            let is_active = self.bytes.byte()?;
+            self.tree.tile(Tile { origin, edge: EDGES[0], value }, is_active != 0)?;
+        }
+        for _ in 0..children {
+            let origin = new(self.bytes.point()?)?;
+            self.node::<5>(1, origin)?;
+        }
+        Ok(())
+    }
+
+    /// A node of `2^LOG` tiles or children along each axis, whose edge is that of the level.
+    fn node<const LOG: usize>(&mut self, level: usize, origin: [i32; 3]) -> Result<(), Fault> {
+        let size = 1 << (3 * LOG);
+        let children = self.bytes.take(size / 8)?;
+        let active = self.bytes.take(size / 8)?;
+        let values = self.packing.values(self.bytes, active, self.tree.tree.background)?;
+        let edge = EDGES[level];
+        let place = |at: usize| -> [i32; 3] {
+            let axis = |j: usize| at >> (LOG * (2 - j)) & ((1 << LOG) - 1);
+            #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap)] // below 32
+            std::array::from_fn(|j| origin[j] + axis(j) as i32 * edge)
+        };
+        for (at, value) in values.into_iter().enumerate() {
+            if !is_on(children, at) {
+                self.tree.tile(Tile { origin: place(at), edge, value }, is_on(active, at))?;
+            }
+        }
+        for at in (0..size).filter(|&at| is_on(children, at)) {
+            if level == 1 {
+                self.node::<4>(2, place(at))?;
+            } else {
+                let mask = self.bytes.take(MASK)?;
+                self.tree.tree.active += count_on(mask) as u64;
+                self.masks.push(mask);
+                self.tree.tree.leaves.push(Leaf { origin: place(at), values: Vec::new() });
+            }
+        }
+        Ok(())
+    }
 
     fn blocks(&mut self) -> Result<(), Fault> {
-        for (leaf, known) in self.tree.leaves.iter_mut().zip(&self.masks) {
+        let Tree { background, ref mut leaves, .. } = self.tree.tree;
+        for (leaf, known) in leaves.iter_mut().zip(&self.masks) {
             let mask = self.bytes.take(known.len())?;
             if mask != *known {
                 return damaged(format!("the leaf at {:?} has two masks that differ", leaf.origin));
             }
-            leaf.values = self.packing.values(self.bytes, mask, self.tree.background)?;
+            leaf.values = self.packing.values(self.bytes, mask, background)?;
         }
         Ok(())
     }

@@ -19,6 +19,8 @@ pub fn section(record: &Record, plots: &[Vec<Plot>]) -> Markup {
                 details.case {
                     summary { b { (case.name) } " " span.quiet { (totals::words(case)) } }
                     p { (case.title) }
+                    @for note in &case.notes { p { b { "Note: " } (note) } }
+                    @for fact in &case.facts { p.quiet { (fact) } }
                     dl.facts { @for (name, value) in facts(case) { div { dt { (name) } dd { (value) } } } }
                     @for plot in plots { (plot.show()) }
                 }

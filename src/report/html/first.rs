@@ -88,6 +88,7 @@ pub fn section(record: &Record) -> Markup {
         @for (verdict, title) in [(Verdict::Fail, "What fails"), (Verdict::Inconclusive, "What is inconclusive")] {
             (failures(title, &failing(record, verdict)))
         }
+        (notes(record))
         section aria-labelledby="facts" {
             h2 #facts { "The run" }
             dl.facts { @for (name, value) in facts(record) { div { dt { (name) } dd { (value) } } } }
@@ -162,6 +163,22 @@ fn suspects(record: &Record) -> Markup {
                     }
                 }
                 (more(triage.len(), SUSPECTS))
+            }
+        }
+    }
+}
+
+/// What is doubtful about cases.
+fn notes(record: &Record) -> Markup {
+    let cases = record.results.cases.iter();
+    let all: Vec<_> =
+        cases.flat_map(|case| case.notes.iter().map(move |note| (case, note))).collect();
+    html! {
+        @if !all.is_empty() {
+            section.findings {
+                h2 { "Notes" }
+                ul { @for (case, note) in all.iter().take(MOST) { li { (case.name) ": " (note) } } }
+                (more(all.len(), MOST))
             }
         }
     }

@@ -136,8 +136,13 @@ def index(grid, p):
     return [Fraction(x) for x in grid.transform.worldToIndex(tuple(p))]
 
 
-def depth(grid, origin, end):
-    """∫ over the straight line from `origin` to `end`: Simpson's rule in each cell, which cubics need no more than."""
+def within(u, box):
+    return all(low <= x <= high for x, low, high in zip(u, *box))
+
+
+def depth(grid, origin, end, box):
+    """∫ over the straight line from `origin` to `end`, in a box of indices: Simpson's rule in each cell, which cubics need
+    no more than."""
     voxel = grid.getConstAccessor()
     a, b = index(grid, origin), index(grid, end)
     cuts = {Fraction(0), Fraction(1)}
@@ -145,11 +150,13 @@ def depth(grid, origin, end):
         if p != q:
             low, high = sorted((p, q))
             cuts |= {(n - p) / (q - p) for n in range(math.ceil(low), math.floor(high) + 1)}
-    at = lambda t: trilinear(voxel, [p + t * (q - p) for p, q in zip(a, b)])
+    place = lambda t: [p + t * (q - p) for p, q in zip(a, b)]
+    at = lambda t: trilinear(voxel, place(t))
     cuts = sorted(cuts)
     total = Fraction(0)
     for s, t in zip(cuts, cuts[1:]):
-        total += (t - s) / 6 * (at(s) + 4 * at((s + t) / 2) + at(t))
+        if within(place((s + t) / 2), box):
+            total += (t - s) / 6 * (at(s) + 4 * at((s + t) / 2) + at(t))
     return float(total) * math.dist(origin, end)
 
 
@@ -157,14 +164,18 @@ def expected(file, again, name=""):
     grid = vdb.read(file, name) if name else vdb.readAll(file)[0][0]
     low, high = None, None
     for value in grid.iterAllValues():
-        if value.value != 0:
+        if value.value != grid.background:
             box = (value.min, value.max)
             low = box[0] if low is None else tuple(map(min, low, box[0]))
             high = box[1] if high is None else tuple(map(max, high, box[1]))
     # The leaf's own box is that of its voxels here: iterAllValues goes voxel by voxel.
     corner = lambda x: grid.transform.indexToWorld(tuple(x))
-    faces = [corner([x - 1 for x in low]), corner([x + 1 for x in high])]
-    low, high = [[f(*pair) for pair in zip(*faces)] for f in (min, max)]
+    ends = [[x - 1 for x in low], [x + 1 for x in high]]
+    # A medium ends where OpenVDB's background goes on.
+    is_in = lambda p: grid.background == 0 or within(index(grid, p), ends)
+    halves = [[x - 0.5 for x in low], [x + 0.5 for x in high]]
+    corners = [corner([ends[n >> j & 1][j] for j in range(3)]) for n in range(8)]
+    low, high = [[f(column) for column in zip(*corners)] for f in (min, max)]
     inside = lambda *share: [a + s * (b - a) for a, b, s in zip(low, high, share)]
     shares = [(37 * n % 64 + 0.3) / 64 for n in range(40)]
     points = [inside(shares[i], shares[11 * i % 40], shares[7 * i % 40]) for i in range(40)]
@@ -181,10 +192,16 @@ def expected(file, again, name=""):
         "low": low,
         "high": high,
         "points": [
-            {"at": p, "value": float(trilinear(voxel, index(grid, p))), "box": box, "nearest": nearest}
+            {
+                "at": p,
+                "value": float(trilinear(voxel, index(grid, p))) if is_in(p) else 0.0,
+                "box": box if is_in(p) else 0.0,
+                # Of a background that is not 0 the half voxels beyond the last ones are not compared.
+                "nearest": nearest if grid.background == 0 or within(index(grid, p), halves) else None,
+            }
             for p, (box, nearest) in zip(points, sampled)
         ],
-        "rays": [{"from": o, "to": e, "depth": depth(grid, o, e)} for o, e in rays],
+        "rays": [{"from": o, "to": e, "depth": depth(grid, o, e, ends)} for o, e in rays],
     }
 
 
@@ -209,4 +226,5 @@ def main():
         out.write(f"[\n{lines}\n]\n")
 
 
-main()
+if __name__ == "__main__":
+    main()

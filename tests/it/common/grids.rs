@@ -4,14 +4,14 @@
 
 use std::io::Write;
 
-use trueflight::media::grid_file::{MOST_SAMPLES, Samples, Unreadable, read};
+use trueflight::media::grid_file::{Choice, MOST_SAMPLES, Samples, Unreadable, read};
 
 /// Reads bytes as a grid of the given ending; asserts that what is read is a grid.
 pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     let suffix = format!(".{ending}");
     let mut file = tempfile::Builder::new().suffix(&suffix).tempfile().expect("a file");
     file.write_all(bytes).expect("written");
-    match read(file.path(), None) {
+    match read(file.path(), &Choice::default()) {
         Ok(samples) => {
             let count = samples.size.iter().product::<usize>();
             assert!(count > 0 && count as u64 <= MOST_SAMPLES);
@@ -26,10 +26,17 @@ pub fn reads_or_refuses(ending: &str, bytes: &[u8]) -> Option<Samples> {
     }
 }
 
-/// A small `.vol`, `.npy` or `.vdb` file, to be spoilt.
+/// A small file of an ending, to be spoilt.
 pub fn good(ending: &str) -> Vec<u8> {
-    if ending == "vdb" {
-        return include_bytes!("../../data/vdb/moved.vdb").to_vec();
+    match ending {
+        "vdb" => return include_bytes!("../../data/vdb/moved.vdb").to_vec(),
+        "nvdb" => return include_bytes!("../../data/grids/mixed-fpN.nvdb").to_vec(),
+        "pbrt" => {
+            return b"WorldBegin Translate 1 2 3 MakeNamedMedium \"a\" \"string type\" \"uniformgrid\" \"integer nx\" 2 \
+                     \"integer ny\" [ 1 ] \"integer nz\" [ 2 ] \"point3 p1\" [ 2 1 4 ] \"float density\" [ 0.5 1 2 .25 ]\n"
+                .to_vec();
+        }
+        _ => {}
     }
     let values = [0.5f32, 1.0, 0.0, 2.0];
     let samples = values.iter().flat_map(|x| x.to_le_bytes());

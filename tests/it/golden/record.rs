@@ -216,6 +216,7 @@ fn sweep() -> CaseRecord {
             ],
         }),
         anatomy: None,
+        ..CaseRecord::default()
     }
 }
 
@@ -267,6 +268,7 @@ fn ray() -> CaseRecord {
             measured: vec![measured(2.0, 0.41), measured(4.0, 0.27)],
             transmittance,
         }),
+        ..CaseRecord::default()
     }
 }
 

@@ -7,8 +7,10 @@
 //! exr   the first layer of a picture: R, G, B, else Y, else its first channel; alpha is left out
 //! ```
 //!
-//! One file is a stack, several are one pass each.
+//! One file is a stack, several are one pass each. Files with the extension `exr` whose data windows differ are laid into their
+//! display window, see [`Frame`].
 
+mod frame;
 mod npy;
 
 use std::path::Path;
@@ -16,6 +18,8 @@ use std::path::Path;
 use super::error::ImageError;
 use super::picture::{Picture, Size, Stack};
 use crate::files::{Pixels, exr, pfm};
+
+pub use frame::Frame;
 
 /// The relative rounding of numbers of 24 bits.
 const SINGLE: f64 = 0.5 * f32::EPSILON as f64;
@@ -29,6 +33,15 @@ const HALF: f64 = 1.0 / 2048.0;
 ///
 /// The file cannot be read, or is no picture.
 pub fn picture(path: &Path) -> Result<Picture, ImageError> {
+    picture_in(path, Frame::default())
+}
+
+/// Reads a picture as it is laid beside others.
+///
+/// # Errors
+///
+/// The file cannot be read, or is no picture.
+pub fn picture_in(path: &Path, frame: Frame) -> Result<Picture, ImageError> {
     let file = path.display().to_string();
     match ending(path).as_deref() {
         Some("npy") => npy::picture(path, &file),
@@ -37,9 +50,15 @@ pub fn picture(path: &Path) -> Result<Picture, ImageError> {
             of_pixels(pfm::read(&bytes(path, &file)?), ["a pfm file", cure], file)
         }
         Some("exr") => {
-            let cure =
-                "give a whole file with one layer of R, G, B or Y as half or float, or npy or pfm";
-            of_pixels(exr::read(bytes(path, &file)?), ["an exr file", cure], file)
+            let cure = "give a whole file with one layer of R, G, B or Y as half or float, compressed by ZIP or not at \
+                        all, or npy or pfm";
+            let bytes = bytes(path, &file)?;
+            let data = exr::parts(&bytes).ok().and_then(|parts| Some(parts.first()?.data));
+            let read = exr::read(bytes).map(|pixels| match data {
+                Some(data) => frame.laid(pixels, data),
+                None => pixels,
+            });
+            of_pixels(read, ["an exr file", cure], file)
         }
         _ => Err(ImageError::Format { file }),
     }
@@ -51,17 +70,26 @@ pub fn picture(path: &Path) -> Result<Picture, ImageError> {
 ///
 /// A file cannot be read or is no picture, they are of different sizes, or there is one pass alone.
 pub fn stack(paths: &[impl AsRef<Path>]) -> Result<Stack, ImageError> {
+    stack_in(paths, Frame::of(paths)?)
+}
+
+/// Reads a stack as it is laid beside others.
+///
+/// # Errors
+///
+/// A file cannot be read or is no picture, they are of different sizes, or there is one pass alone.
+pub fn stack_in(paths: &[impl AsRef<Path>], frame: Frame) -> Result<Stack, ImageError> {
     let [first, others @ ..] = paths else { return Err(ImageError::OnePass) };
     let first = first.as_ref();
     if others.is_empty() {
         return match ending(first).as_deref() {
             Some("npy") => npy::stack(first, &first.display().to_string()),
-            _ => picture(first).and(Err(ImageError::OnePass)),
+            _ => picture_in(first, frame).and(Err(ImageError::OnePass)),
         };
     }
-    let Picture { size, mut values, mut rounding } = picture(first)?;
+    let Picture { size, mut values, mut rounding } = picture_in(first, frame)?;
     for path in others {
-        let other = picture(path.as_ref())?;
+        let other = picture_in(path.as_ref(), frame)?;
         if other.size != size {
             return Err(ImageError::Differ {
                 file: path.as_ref().display().to_string(),

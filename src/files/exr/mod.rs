@@ -1,4 +1,5 @@
-//! `OpenEXR` pictures: read by the crate `exr`, scan lines or tiles, of every compression that it knows; written plainly.
+//! `OpenEXR` pictures: read by the crate `exr`, scan lines or tiles, of every compression that it knows (none, RLE, ZIPS, ZIP,
+//! PIZ, PXR24, B44 and B44A); written plainly.
 //!
 //! ```text
 //! magic, version 2; attributes: name, type, length and value; 0
@@ -9,6 +10,8 @@
 //!
 //! Source: *`OpenEXR` File Layout*, Academy Software Foundation.
 
+mod header;
+
 use std::io::Cursor;
 
 use exr::block::UncompressedBlock;
@@ -16,6 +19,7 @@ use exr::block::reader::ChunksReader;
 use exr::prelude::{SampleType, Vec2, f16};
 
 use super::Pixels;
+pub use header::{Channel, Part, Window, parts};
 
 /// The most values of a picture: 2 GiB in memory.
 const MOST: usize = 1 << 28;
@@ -93,21 +97,16 @@ pub fn write(
 ///
 /// What is wrong with it.
 pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
+    refuse(&parts(&bytes)?)?;
     let wrong = |error: exr::error::Error| error.to_string();
     let reader = exr::block::read(Cursor::new(bytes), false).map_err(wrong)?;
     let header = reader.headers().first().ok_or("it has no layer")?.clone();
-    if header.deep {
-        return Err("its pixels are deep".to_owned());
-    }
     let list = &header.channels.list;
     let place = |name: &str| list.iter().position(|channel| channel.name.eq(name));
     let kept = match (place("R"), place("G"), place("B")) {
         (Some(red), Some(green), Some(blue)) => vec![red, green, blue],
         _ => vec![place("Y").unwrap_or(0)],
     };
-    if let Some(thin) = list.iter().find(|channel| channel.sampling != Vec2(1, 1)) {
-        return Err(format!("its channel {} has not a value for each pixel", thin.name));
-    }
     let has_halves = kept.iter().any(|&place| list[place].sample_type == SampleType::F16);
     let Vec2(columns, rows) = header.layer_size;
     let channels = kept.len();
@@ -140,6 +139,29 @@ pub fn read(bytes: Vec<u8>) -> Result<Pixels, String> {
         }
     }
     Ok(Pixels { size: [columns, rows], channels, values, has_halves })
+}
+
+/// Refuses what the crate does not read, by its name. The crate reads no file that has a deep part, whichever part is wanted.
+fn refuse(parts: &[Part]) -> Result<(), String> {
+    let named = |part: &Part| match parts.len() {
+        1 => String::new(),
+        _ => format!(" (part \"{}\")", part.name),
+    };
+    if let Some(deep) = parts.iter().find(|part| part.is_deep()) {
+        return Err(format!("it has {}{}, which must be flattened first", deep.kind, named(deep)));
+    }
+    if let Some(packed) = parts.iter().find(|part| !part.is_read) {
+        let compression = &packed.compression;
+        return Err(format!(
+            "its compression is {compression}{}, which is not read: none, RLE, ZIPS, ZIP, PIZ, PXR24, B44 and B44A are",
+            named(packed)
+        ));
+    }
+    let thin = |channel: &&Channel| channel.sampling != [1, 1];
+    if let Some(thin) = parts.iter().flat_map(|part| &part.channels).find(thin) {
+        return Err(format!("its channel {} has not a value for each pixel", thin.name));
+    }
+    Ok(())
 }
 
 /// The numbers of a line: the crate keeps the byte order of the file, low bytes first.

@@ -1,0 +1,79 @@
+//! Pictures.
+
+use super::item::{Item, Spread};
+use crate::files::exr::{self, Part};
+use crate::files::{Fault, Pixels, pfm, wrong};
+
+const PIXELS: &str = "pixels (columns, rows)";
+
+/// The parts of an `OpenEXR` file.
+pub fn exr(bytes: Vec<u8>) -> Result<Vec<Item>, Fault> {
+    let whole = "write it by OpenEXR, to its end";
+    let parts = exr::parts(&bytes).or_else(|cause| wrong(cause, whole))?;
+    let mut items: Vec<Item> = parts.iter().map(|part| item(part, parts.len() > 1)).collect();
+    let is_simple = parts.iter().all(|part| !part.is_deep() && part.is_read);
+    let first = items.first_mut();
+    match (exr::read(bytes), first) {
+        (Ok(pixels), Some(first)) => {
+            Spread::of(pixels.values).tell(first);
+            let read = if pixels.channels == 3 { "R, G and B" } else { "Y, or the first channel" };
+            first.details.push(format!("values are those of {read}"));
+        }
+        (Err(cause), _) if is_simple => return wrong(cause, whole),
+        (Err(cause), Some(first)) => first.notes.push(format!("not read: {cause}")),
+        _ => {}
+    }
+    for other in items.iter_mut().skip(1) {
+        other.notes.push("not read: the first part is".to_owned());
+    }
+    Ok(items)
+}
+
+fn item(part: &Part, is_one_of_several: bool) -> Item {
+    let kinds: Vec<&str> = part.channels.iter().map(|channel| channel.kind).collect();
+    let mut different = kinds.clone();
+    different.dedup();
+    let name = |channel: &exr::Channel| match (different.len(), channel.sampling) {
+        (1, [1, 1]) => channel.name.clone(),
+        (_, [1, 1]) => format!("{} {}", channel.name, channel.kind),
+        (_, [x, y]) => format!("{} {} (one of {x} × {y} pixels)", channel.name, channel.kind),
+    };
+    let names: Vec<String> = part.channels.iter().map(name).collect();
+    let [columns, rows] = part.data.size();
+    let mut details = vec![
+        format!("channels {}", names.join(", ")),
+        format!("{}, compression {}", part.kind, part.compression),
+    ];
+    if part.data == part.display {
+        details.push(format!("data and display window {}", part.data));
+    } else {
+        details.push(format!("data window {}, display window {}", part.data, part.display));
+    }
+    Item {
+        format: if is_one_of_several { "OpenEXR, several parts" } else { "OpenEXR" }.to_owned(),
+        name: part.name.clone(),
+        kind: if different.len() == 1 { different[0].to_owned() } else { "mixed".to_owned() },
+        size: vec![columns as u64, rows as u64],
+        counts: PIXELS,
+        channels: Some(part.channels.len() as u64),
+        details,
+        ..Item::default()
+    }
+}
+
+/// The picture of a PFM file.
+pub fn pfm(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let cure = "write Pf or PF, columns, rows, -1 and all values as float32";
+    let pixels = pfm::read(bytes).or_else(|cause| wrong(cause, cure))?;
+    let Pixels { size: [columns, rows], channels, values, .. } = pixels;
+    let mut item = Item {
+        format: "portable float map".to_owned(),
+        kind: "float32".to_owned(),
+        size: vec![columns as u64, rows as u64],
+        counts: PIXELS,
+        channels: Some(channels as u64),
+        ..Item::default()
+    };
+    Spread::of(values).tell(&mut item);
+    Ok(vec![item])
+}

@@ -1,0 +1,186 @@
+//! What is known of a grid, an image, an array or a column of draws.
+
+use std::fmt::Write;
+
+use crate::catalogue::digits::{count, short};
+
+/// A part of a file. What is unknown or makes no sense for it is `None`, or empty.
+#[derive(Debug, Clone, Default, PartialEq, serde::Serialize)]
+pub struct Item {
+    /// The file.
+    pub file: String,
+    /// The format of the file.
+    pub format: String,
+    /// The name of the grid, the medium, the part or the column.
+    pub name: String,
+    /// The type of its numbers.
+    pub kind: String,
+    /// The class of a grid, such as `fog volume`.
+    pub class: String,
+    /// How many numbers there are along each axis.
+    pub size: Vec<u64>,
+    /// What the numbers of `size` count, such as `voxels (x, y, z)`.
+    pub counts: &'static str,
+    /// Values of a voxel or a pixel.
+    pub channels: Option<u64>,
+    /// The lowest corner of its box in the world.
+    pub low: Option<[f64; 3]>,
+    /// The highest corner.
+    pub high: Option<[f64; 3]>,
+    /// The edges of a voxel in the world.
+    pub voxel: Option<[f64; 3]>,
+    /// The smallest finite value.
+    pub least: Option<f64>,
+    /// The largest finite value.
+    pub most: Option<f64>,
+    /// The mean of the finite values.
+    pub mean: Option<f64>,
+    /// The value outside the voxels that are stored.
+    pub background: Option<f64>,
+    /// How many voxels are active.
+    pub active: Option<u64>,
+    /// What else the file says: compression, windows, channels, version.
+    pub details: Vec<String>,
+    /// What keeps it from being what it may be taken for.
+    pub notes: Vec<String>,
+}
+
+/// The smallest, the largest and the mean of numbers, and how many are not finite.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Spread {
+    ends: Option<[f64; 2]>,
+    sum: f64,
+    finite: f64,
+    /// How many are not finite.
+    pub wrong: f64,
+    /// How many are negative.
+    pub negative: f64,
+}
+
+impl Spread {
+    /// Adds a value so many times.
+    pub fn add(&mut self, value: f64, times: f64) {
+        if !value.is_finite() {
+            self.wrong += times;
+            return;
+        }
+        let [low, high] = self.ends.unwrap_or([value; 2]);
+        self.ends = Some([low.min(value), high.max(value)]);
+        self.sum += value * times;
+        self.finite += times;
+        if value < 0.0 {
+            self.negative += times;
+        }
+    }
+
+    /// That of a list.
+    pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
+        let mut spread = Self::default();
+        values.into_iter().for_each(|value| spread.add(value, 1.0));
+        spread
+    }
+
+    /// Fills in an item.
+    pub fn tell(&self, item: &mut Item) {
+        if let Some([least, most]) = self.ends {
+            (item.least, item.most) = (Some(least), Some(most));
+            item.mean = Some(self.sum / self.finite);
+        }
+        if self.wrong > 0.0 {
+            item.notes.push(format!("{} values are NaN or infinite", self.wrong));
+        }
+    }
+}
+
+fn point(point: [f64; 3]) -> String {
+    format!("[{}]", point.map(|x| short(x, 6)).join(", "))
+}
+
+impl Item {
+    /// The item in a few lines.
+    pub fn paragraph(&self) -> String {
+        let kind = [self.kind.as_str(), self.class.as_str()];
+        let kind = kind.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+        let name = if self.name.is_empty() { "" } else { &format!("{}  ", self.name) };
+        let mut text = format!("  {name}{kind}\n");
+        let mut line = |parts: &[Option<String>]| {
+            let parts: Vec<&str> = parts.iter().flatten().map(String::as_str).collect();
+            if !parts.is_empty() {
+                let _ = writeln!(text, "    {}", parts.join(", "));
+            }
+        };
+        let sizes: Vec<String> = self.size.iter().map(u64::to_string).collect();
+        line(&[
+            (!sizes.is_empty()).then(|| format!("{} {}", sizes.join(" × "), self.counts)),
+            self.channels.filter(|&n| n != 1).map(|n| format!("{n} channels")),
+            self.active.map(|n| format!("{} active", count(n))),
+        ]);
+        let corners = self.low.zip(self.high);
+        line(&[
+            corners.map(|(low, high)| format!("box {} to {}", point(low), point(high))),
+            self.voxel.map(|edges| format!("voxel {}", edges.map(|x| short(x, 6)).join(" × "))),
+        ]);
+        let range = self.least.zip(self.most);
+        line(&[
+            range.map(|(least, most)| format!("values {} to {}", short(least, 6), short(most, 6))),
+            self.mean.map(|mean| format!("mean {}", short(mean, 6))),
+            self.background.map(|x| format!("background {}", short(x, 6))),
+        ]);
+        self.details.iter().for_each(|detail| line(&[Some(detail.clone())]));
+        self.notes.iter().for_each(|note| line(&[Some(format!("note {note}"))]));
+        text
+    }
+}
+
+/// The items as a table of text: lists are in one field each.
+pub fn csv(items: &[Item]) -> anyhow::Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record([
+        "file",
+        "format",
+        "name",
+        "kind",
+        "class",
+        "size",
+        "counts",
+        "channels",
+        "low",
+        "high",
+        "voxel",
+        "least",
+        "most",
+        "mean",
+        "background",
+        "active",
+        "details",
+        "notes",
+    ])?;
+    let number = |x: Option<f64>| x.map(|x| x.to_string()).unwrap_or_default();
+    let triple =
+        |x: Option<[f64; 3]>| x.map(|x| x.map(|x| x.to_string()).join(" ")).unwrap_or_default();
+    let whole = |n: Option<u64>| n.map(|n| n.to_string()).unwrap_or_default();
+    for item in items {
+        let size: Vec<String> = item.size.iter().map(u64::to_string).collect();
+        writer.write_record([
+            item.file.clone(),
+            item.format.clone(),
+            item.name.clone(),
+            item.kind.clone(),
+            item.class.clone(),
+            size.join(" "),
+            item.counts.to_owned(),
+            whole(item.channels),
+            triple(item.low),
+            triple(item.high),
+            triple(item.voxel),
+            number(item.least),
+            number(item.most),
+            number(item.mean),
+            number(item.background),
+            whole(item.active),
+            item.details.join("; "),
+            item.notes.join("; "),
+        ])?;
+    }
+    Ok(String::from_utf8(writer.into_inner()?)?)
+}

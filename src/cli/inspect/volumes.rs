@@ -1,0 +1,193 @@
+//! Voxel grids.
+
+use super::item::{Item, Spread};
+use crate::catalogue::number;
+use crate::files::vdb::{Grid, Transform};
+use crate::files::{Fault, nvdb, pbrt, vdb, vol::Vol};
+use crate::media::grid_file::Format;
+use crate::media::grid_vdb;
+
+const VOXELS: &str = "voxels (x, y, z)";
+
+/// The grids of a file.
+pub fn items(format: Format, bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    match format {
+        Format::Vol => of_vol(bytes),
+        Format::Pbrt => of_pbrt(bytes),
+        Format::Vdb => of_vdb(bytes),
+        Format::Nvdb => of_nvdb(bytes),
+        Format::Npy => super::arrays::items(bytes),
+    }
+}
+
+/// Adds that an item is no medium, where a value is negative or no number.
+pub fn doubt(item: &mut Item, spread: &Spread) {
+    if spread.negative > 0.0 {
+        let many = spread.negative;
+        item.notes.push(format!("no medium: {many} values are negative, and an extinction is not"));
+    }
+}
+
+/// Adds the box to an item, or that there is none.
+fn place(item: &mut Item, [low, high]: [[f64; 3]; 2]) {
+    (item.low, item.high) = (Some(low), Some(high));
+    let edges: [f64; 3] = std::array::from_fn(|j| (high[j] - low[j]) / item.size[j] as f64);
+    if edges.iter().all(|edge| *edge > 0.0 && edge.is_finite()) {
+        item.voxel = Some(edges);
+    } else {
+        item.notes.push("its corners do not make a box: give `bounds.box`".to_owned());
+    }
+}
+
+fn of_vol(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let vol = Vol::read(bytes)?;
+    if vol.size.contains(&0) {
+        return crate::files::wrong("the file holds no sample", "write one with samples");
+    }
+    let channels = usize::try_from(vol.channels).unwrap_or(usize::MAX);
+    let items = (0..channels.min(64)).map(|channel| {
+        let spread = Spread::of(vol.values(channel));
+        let mut item = Item {
+            format: "Mitsuba grid".to_owned(),
+            name: if channels == 1 { String::new() } else { format!("channel {channel}") },
+            kind: vol.encoding.name().to_owned(),
+            size: vol.size.to_vec(),
+            counts: VOXELS,
+            channels: Some(vol.channels),
+            ..Item::default()
+        };
+        spread.tell(&mut item);
+        doubt(&mut item, &spread);
+        place(&mut item, vol.corners);
+        item
+    });
+    Ok(items.collect())
+}
+
+fn of_pbrt(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let Ok(text) = std::str::from_utf8(bytes) else {
+        return crate::files::wrong(
+            "the file is no text",
+            "give a scene file of pbrt that is not packed",
+        );
+    };
+    let items = pbrt::grids(text)?.into_iter().map(|(name, grid)| {
+        let mut item = Item { format: "pbrt scene".to_owned(), name, ..Item::default() };
+        match grid {
+            Ok(grid) => {
+                let spread = Spread::of(grid.density.iter().copied());
+                (item.kind, item.class) = ("text".to_owned(), "density".to_owned());
+                (item.size, item.counts) = (grid.size.to_vec(), VOXELS);
+                spread.tell(&mut item);
+                doubt(&mut item, &spread);
+                place(&mut item, grid.corners);
+            }
+            Err(Fault { message, help }) => item.notes.push(format!("not read: {message}; {help}")),
+        }
+        item
+    });
+    Ok(items.collect())
+}
+
+fn of_vdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let items = vdb::list(bytes)?.into_iter().map(|listed| {
+        let format = "OpenVDB".to_owned();
+        let listed = match listed {
+            Ok(listed) => listed,
+            Err((name, Fault { message, help })) => {
+                let notes = vec![format!("not read: {message}; {help}")];
+                return Item { format, name, notes, ..Item::default() };
+            }
+        };
+        let mut item = Item {
+            format,
+            name: listed.name.clone(),
+            kind: listed.kind,
+            class: listed.class,
+            active: listed.active,
+            ..Item::default()
+        };
+        if listed.is_read {
+            tree(&mut item, vdb::read(bytes, Some(&listed.name)));
+        } else {
+            item.voxel = Some(listed.transform.voxel());
+            item.notes.push("not read: grids of the type Tree_float_5_4_3 are".to_owned());
+        }
+        item
+    });
+    Ok(items.collect())
+}
+
+fn of_nvdb(bytes: &[u8]) -> Result<Vec<Item>, Fault> {
+    let items = nvdb::list(bytes)?.into_iter().map(|listed| {
+        let mut item = Item {
+            format: "NanoVDB".to_owned(),
+            name: listed.name.clone(),
+            kind: listed.kind.clone(),
+            class: listed.class.clone(),
+            active: Some(listed.active),
+            details: vec![format!("version {}, packed by {}", listed.version, listed.codec)],
+            ..Item::default()
+        };
+        if listed.is_read() {
+            tree(&mut item, nvdb::read(bytes, Some(&listed.name)));
+        } else {
+            item.notes
+                .push("not read: grids of the types Float, Fp4, Fp8, Fp16 and FpN are".to_owned());
+        }
+        item
+    });
+    Ok(items.collect())
+}
+
+/// Adds what the voxels of a grid say.
+fn tree(item: &mut Item, read: Result<Grid, Fault>) {
+    let grid = match read {
+        Ok(grid) => grid,
+        Err(Fault { message, help }) => {
+            item.notes.push(format!("not read: {message}; {help}"));
+            return;
+        }
+    };
+    let background = grid.tree.background;
+    item.background = Some(background.into());
+    item.active = Some(grid.tree.active);
+    item.voxel = Some(grid.transform.voxel());
+    if let Some([low, high]) = grid_vdb::reach(&grid.tree) {
+        item.size = (0..3).map(|j| high[j].abs_diff(low[j]) + 1).collect();
+        item.counts = VOXELS;
+        let all: f64 = item.size.iter().map(|&n| n as f64).product();
+        let (mut spread, mut filled) = (Spread::default(), 0.0);
+        for (_, edge, value) in grid_vdb::values(&grid.tree) {
+            let voxels = (edge as f64).powi(3);
+            if value.to_bits() != background.to_bits() {
+                spread.add(value.into(), voxels);
+                filled += voxels;
+            }
+        }
+        if all > filled {
+            spread.add(background.into(), all - filled);
+        }
+        spread.tell(item);
+        let [low, high] = world(&grid.transform, [low.map(|n| n - 1), high.map(|n| n + 1)]);
+        (item.low, item.high) = (Some(low), Some(high));
+        if grid.transform.scale().is_none() {
+            let rows = grid.transform.matrix.map(|row| row.map(number).join(" ")).join("; ");
+            item.details
+                .push(format!("turned or sheared by the matrix [{rows}]; the box is about it"));
+        }
+    }
+    match grid_vdb::samples(&grid) {
+        Ok(samples) => item.notes.extend(Some(samples.remark).filter(|remark| !remark.is_empty())),
+        Err(Fault { message, help }) => item.notes.push(format!("no medium: {message}; {help}")),
+    }
+}
+
+/// The box along the axes about a box of indices.
+fn world(transform: &Transform, ends: [[i64; 3]; 2]) -> [[f64; 3]; 2] {
+    let corner = |n: usize| transform.world(std::array::from_fn(|j| ends[n >> j & 1][j] as f64));
+    let corners = (1..8).map(corner);
+    corners.fold([corner(0); 2], |[low, high], at| {
+        [[0, 1, 2].map(|j| at[j].min(low[j])), [0, 1, 2].map(|j| at[j].max(high[j]))]
+    })
+}

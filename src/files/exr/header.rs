@@ -1,0 +1,200 @@
+//! The headers of `OpenEXR` files, those of kinds included that the crate `exr` refuses before it names them.
+//!
+//! ```text
+//! magic, version and flags (2 u32): 0x200 one part of tiles, 0x800 deep, 0x1000 several parts
+//! a header: attributes, each a name and a type that end with 0, a length (i32) and a value; 0
+//! of several parts: header after header; 0
+//! ```
+//!
+//! Source: *`OpenEXR` File Layout*, Academy Software Foundation.
+
+/// Compressions by their number.
+const COMPRESSIONS: [&str; 12] = [
+    "none", "RLE", "ZIPS", "ZIP", "PIZ", "PXR24", "B44", "B44A", "DWAA", "DWAB", "HTJ2K256",
+    "HTJ2K32",
+];
+
+/// The first compression that is not read.
+const FIRST_UNREAD: u8 = 8;
+
+/// A rectangle of pixels, its ends included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Window {
+    /// The first column and row.
+    pub low: [i32; 2],
+    /// The last column and row.
+    pub high: [i32; 2],
+}
+
+impl Window {
+    /// Columns and rows.
+    pub fn size(&self) -> [usize; 2] {
+        let count = |axis: usize| i64::from(self.high[axis]) - i64::from(self.low[axis]) + 1;
+        [0, 1].map(|axis| usize::try_from(count(axis)).unwrap_or(0))
+    }
+}
+
+impl std::fmt::Display for Window {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let ([left, top], [right, bottom]) = (self.low, self.high);
+        write!(f, "({left}, {top}) to ({right}, {bottom})")
+    }
+}
+
+/// A channel of a part.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Channel {
+    /// Its name, as in `R` or `diffuse.R`.
+    pub name: String,
+    /// `uint32`, `float16` or `float32`.
+    pub kind: &'static str,
+    /// Columns and rows of pixels for each value: 1 and 1 where each pixel has one.
+    pub sampling: [i32; 2],
+}
+
+/// What a header says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Part {
+    /// Its name; empty in a file of one part that has none.
+    pub name: String,
+    /// `scan lines`, `tiles`, `deep scan lines` or `deep tiles`.
+    pub kind: &'static str,
+    /// How pixels are compressed.
+    pub compression: String,
+    /// Whether the compression is read.
+    pub is_read: bool,
+    /// The pixels that are stored.
+    pub data: Window,
+    /// The picture.
+    pub display: Window,
+    /// Its channels, by name.
+    pub channels: Vec<Channel>,
+}
+
+impl Part {
+    /// Whether its pixels have several samples each.
+    pub fn is_deep(&self) -> bool {
+        self.kind.starts_with("deep")
+    }
+}
+
+/// The parts of a file.
+///
+/// # Errors
+///
+/// What is wrong with the headers.
+pub fn parts(bytes: &[u8]) -> Result<Vec<Part>, String> {
+    let mut rest = bytes;
+    if number(&mut rest).ok() != Some(0x0131_2f76) {
+        return Err("it does not begin as OpenEXR files do".to_owned());
+    }
+    let version = number(&mut rest)?;
+    if version & 0xff != 2 {
+        return Err(format!("it has the version {}, not 2", version & 0xff));
+    }
+    let (is_tiled, is_deep, has_parts) =
+        (version & 0x200 != 0, version & 0x800 != 0, version & 0x1000 != 0);
+    let usual = match (is_deep, is_tiled) {
+        (false, false) => "scan lines",
+        (false, true) => "tiles",
+        (true, false) => "deep scan lines",
+        (true, true) => "deep tiles",
+    };
+    let mut parts = vec![part(&mut rest, usual)?];
+    while has_parts && rest.first() != Some(&0) {
+        parts.push(part(&mut rest, usual)?);
+    }
+    Ok(parts)
+}
+
+const SHORT: &str = "its header is cut";
+
+fn take<'a>(rest: &mut &'a [u8], count: usize) -> Result<&'a [u8], String> {
+    let (taken, after) = rest.split_at_checked(count).ok_or(SHORT)?;
+    *rest = after;
+    Ok(taken)
+}
+
+fn number(rest: &mut &[u8]) -> Result<u32, String> {
+    let mut word = [0; 4];
+    word.copy_from_slice(take(rest, 4)?);
+    Ok(u32::from_le_bytes(word))
+}
+
+/// A text that ends with 0, of 255 bytes at most.
+fn text<'a>(rest: &mut &'a [u8]) -> Result<&'a [u8], String> {
+    let length = rest.iter().take(256).position(|&byte| byte == 0).ok_or(SHORT)?;
+    let text = take(rest, length)?;
+    take(rest, 1)?;
+    Ok(text)
+}
+
+fn window(mut value: &[u8]) -> Result<Window, String> {
+    let mut ends = [0; 4];
+    for end in &mut ends {
+        *end = number(&mut value)?.cast_signed();
+    }
+    let [left, top, right, bottom] = ends;
+    let window = Window { low: [left, top], high: [right, bottom] };
+    if window.size().contains(&0) {
+        return Err(format!("its window {window} holds no pixel"));
+    }
+    Ok(window)
+}
+
+fn part(rest: &mut &[u8], usual: &'static str) -> Result<Part, String> {
+    let (mut name, mut kind, mut code) = (String::new(), usual, None);
+    let (mut data, mut display, mut list) = (None, None, None);
+    loop {
+        let attribute = text(rest)?;
+        if attribute.is_empty() {
+            break;
+        }
+        text(rest)?;
+        let length = number(rest)? as usize;
+        let value = take(rest, length)?;
+        match attribute {
+            b"name" => name = String::from_utf8_lossy(value).into_owned(),
+            b"type" => {
+                kind = match value {
+                    b"scanlineimage" => "scan lines",
+                    b"tiledimage" => "tiles",
+                    b"deepscanline" => "deep scan lines",
+                    b"deeptile" => "deep tiles",
+                    _ => usual,
+                }
+            }
+            b"compression" => code = value.first().copied(),
+            b"dataWindow" => data = Some(window(value)?),
+            b"displayWindow" => display = Some(window(value)?),
+            b"channels" => list = Some(channels(value)?),
+            _ => {}
+        }
+    }
+    let (Some(code), Some(data), Some(display), Some(channels)) = (code, data, display, list)
+    else {
+        return Err("its header lacks channels, a compression or a window".to_owned());
+    };
+    let known = COMPRESSIONS.get(usize::from(code));
+    let compression = known.map_or_else(|| format!("number {code}"), |name| (*name).to_owned());
+    Ok(Part { name, kind, compression, is_read: code < FIRST_UNREAD, data, display, channels })
+}
+
+fn channels(mut value: &[u8]) -> Result<Vec<Channel>, String> {
+    let mut channels = Vec::new();
+    loop {
+        let name = String::from_utf8_lossy(text(&mut value)?).into_owned();
+        if name.is_empty() {
+            return Ok(channels);
+        }
+        let kind = match number(&mut value)? {
+            0 => "uint32",
+            1 => "float16",
+            2 => "float32",
+            other => return Err(format!("its channel {name} has the type {other}")),
+        };
+        number(&mut value)?;
+        let [x, y] = [number(&mut value)?, number(&mut value)?].map(u32::cast_signed);
+        channels.push(Channel { name, kind, sampling: [x, y] });
+    }
+}

@@ -1,0 +1,101 @@
+//! Real numbers of every width, as arrays store them.
+
+use exr::prelude::f16;
+
+/// A number's type, width and byte order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Number {
+    kind: Kind,
+    width: usize,
+    is_big: bool,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Float,
+    Signed,
+    Unsigned,
+}
+
+impl Number {
+    /// The number of an element type of `NumPy`, such as `<f4`, `>i2` or `|u1`; booleans are 0 and 1.
+    pub fn named(name: &str) -> Option<Self> {
+        let mut letters = name.chars();
+        let order = letters.next()?;
+        let (kind, width) = (letters.next()?, letters.as_str().parse::<usize>().ok()?);
+        let kind = match (kind, width) {
+            ('f', 2 | 4 | 8) => Kind::Float,
+            ('i', 1 | 2 | 4 | 8) => Kind::Signed,
+            ('u', 1 | 2 | 4 | 8) | ('b', 1) => Kind::Unsigned,
+            _ => return None,
+        };
+        match order {
+            '<' | '=' => Some(Self { kind, width, is_big: false }),
+            '>' => Some(Self { kind, width, is_big: true }),
+            '|' if width == 1 => Some(Self { kind, width, is_big: false }),
+            _ => None,
+        }
+    }
+
+    /// Bytes.
+    pub fn width(self) -> usize {
+        self.width
+    }
+
+    /// The numbers in whole words of bytes. Integers beyond 2⁵³ are rounded.
+    pub fn all(self, bytes: &[u8]) -> Vec<f64> {
+        bytes.chunks_exact(self.width).map(|word| self.one(word)).collect()
+    }
+
+    fn one(self, word: &[u8]) -> f64 {
+        // High bytes first, so that a number is the end of its word.
+        let mut bits = 0_u64;
+        for place in 0..self.width {
+            let byte = if self.is_big { word[place] } else { word[self.width - 1 - place] };
+            bits = bits << 8 | u64::from(byte);
+        }
+        let unused = 64 - 8 * u32::try_from(self.width).unwrap_or(8);
+        #[expect(clippy::cast_possible_truncation)] // the bits of the width
+        match (self.kind, self.width) {
+            (Kind::Float, 2) => f16::from_bits(bits as u16).to_f64(),
+            (Kind::Float, 4) => f64::from(f32::from_bits(bits as u32)),
+            (Kind::Float, _) => f64::from_bits(bits),
+            (Kind::Signed, _) => ((bits << unused).cast_signed() >> unused) as f64,
+            (Kind::Unsigned, _) => bits as f64,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_every_type_are_read() {
+        for (name, bytes, value) in [
+            ("<f2", &[0x00, 0x3c][..], 1.0),
+            (">f2", &[0xc0, 0x00], -2.0),
+            ("<f4", &1.5_f32.to_le_bytes(), 1.5),
+            (">f4", &1.5_f32.to_be_bytes(), 1.5),
+            ("<f8", &(-0.1_f64).to_le_bytes(), -0.1),
+            (">f8", &(-0.1_f64).to_be_bytes(), -0.1),
+            ("|u1", &[255], 255.0),
+            ("|i1", &[255], -1.0),
+            ("|b1", &[1], 1.0),
+            ("<i2", &[0xfe, 0xff], -2.0),
+            (">u2", &[1, 2], 258.0),
+            ("<i4", &(-7_i32).to_le_bytes(), -7.0),
+            (">u4", &u32::MAX.to_be_bytes(), 4_294_967_295.0),
+            ("<i8", &i64::MIN.to_le_bytes(), -9_223_372_036_854_775_808.0),
+            ("<u8", &u64::MAX.to_le_bytes(), 18_446_744_073_709_551_615.0),
+        ] {
+            let number = Number::named(name).expect(name);
+            assert_eq!((number.width(), number.all(bytes)), (bytes.len(), vec![value]), "{name}");
+        }
+        for name in
+            ["", "<", "<f", "<f3", "<c16", "|f4", "<U1", "f4", "<f16", "[('a', '<f8')]", "|O"]
+        {
+            assert_eq!(Number::named(name), None, "{name}");
+        }
+    }
+}

@@ -1,0 +1,309 @@
+//! The media of a scene file that are grids.
+
+use super::super::{Fault, shown, wrong};
+use super::words::{Word, Words};
+
+/// A grid of densities in a box.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Grid {
+    /// The name of the medium.
+    pub name: String,
+    /// Samples along x, y and z.
+    pub size: [u64; 3],
+    /// The corners of the box.
+    pub corners: [[f64; 3]; 2],
+    /// The densities, x fastest, then y, then z.
+    pub density: Vec<f64>,
+}
+
+/// A medium as it is written.
+#[derive(Default)]
+struct Medium {
+    name: String,
+    line: usize,
+    kind: String,
+    file: String,
+    counts: [Option<f64>; 3],
+    corners: [Option<Vec<f64>>; 2],
+    density: Option<Vec<f64>>,
+    moved: Moved,
+}
+
+/// A scale and a translation: p → scale·p + shift; or the directive that turns the axes.
+#[derive(Debug, Clone)]
+struct Moved {
+    scale: [f64; 3],
+    shift: [f64; 3],
+    turned_by: Option<&'static str>,
+}
+
+impl Default for Moved {
+    fn default() -> Self {
+        Self { scale: [1.0; 3], shift: [0.0; 3], turned_by: None }
+    }
+}
+
+impl Moved {
+    fn translate(&mut self, by: [f64; 3]) {
+        self.shift = [0, 1, 2].map(|j| self.shift[j] + self.scale[j] * by[j]);
+    }
+
+    fn scale(&mut self, by: [f64; 3]) {
+        self.scale = [0, 1, 2].map(|j| self.scale[j] * by[j]);
+    }
+}
+
+const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" [ 64 ] …";
+
+/// The media of a scene file that are grids, with what is wrong with one.
+///
+/// # Errors
+///
+/// The text is no scene file, or has no medium.
+pub fn grids(text: &str) -> Result<Vec<(String, Result<Grid, Fault>)>, Fault> {
+    let (media, included) = media(text)?;
+    if media.is_empty() {
+        return match included {
+            Some(file) => wrong(
+                format!("it makes no medium, but includes {}", shown(&file)),
+                "files that are included are not read: give the one with the medium",
+            ),
+            None => wrong("it makes no medium", ADVICE),
+        };
+    }
+    Ok(media.into_iter().map(|medium| (medium.name.clone(), medium.grid())).collect())
+}
+
+/// Reads the medium of a name; without one, the file's only grid.
+///
+/// # Errors
+///
+/// Whatever keeps the file from having such a medium.
+pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Fault> {
+    let mut media = grids(text)?;
+    let list = |media: &[(String, Result<Grid, Fault>)]| {
+        media.iter().map(|(name, _)| shown(name)).take(20).collect::<Vec<_>>().join(", ")
+    };
+    if let Some(name) = name {
+        let Some(place) = media.iter().position(|(other, _)| other == name) else {
+            let message = format!("it has no medium {}, but {}", shown(name), list(&media));
+            return wrong(message, "choose one of its grids");
+        };
+        return media.swap_remove(place).1;
+    }
+    if media.len() > 1 && media.iter().any(|(_, grid)| grid.is_ok()) {
+        media.retain(|(_, grid)| grid.is_ok());
+    }
+    if media.len() > 1 {
+        return wrong(
+            format!("it has several media: {}", list(&media)),
+            "choose one: `grid = \"…\"`",
+        );
+    }
+    media.pop().map_or_else(|| wrong("it makes no medium", ADVICE), |(_, grid)| grid)
+}
+
+fn media(text: &str) -> Result<(Vec<Medium>, Option<String>), Fault> {
+    let mut words = Words::new(text);
+    let (mut media, mut included) = (Vec::new(), None);
+    let (mut moved, mut outer) = (Moved::default(), Vec::new());
+    while let Some(word) = words.next()? {
+        let Word::Plain(directive) = word else { continue };
+        match directive {
+            "MakeNamedMedium" => {
+                let medium = medium(&mut words, moved.clone())?;
+                media.push(medium);
+            }
+            "Include" | "Import" => {
+                if let Some(Word::Text(file)) = words.next()? {
+                    included = Some(file.to_owned());
+                }
+            }
+            "WorldBegin" | "Identity" => moved = Moved::default(),
+            "AttributeBegin" | "TransformBegin" | "ObjectBegin" => outer.push(moved.clone()),
+            "AttributeEnd" | "TransformEnd" | "ObjectEnd" => {
+                moved = outer.pop().unwrap_or_default()
+            }
+            "Translate" => moved.translate(three(&mut words)?),
+            "Scale" => moved.scale(three(&mut words)?),
+            "Rotate" => moved.turned_by = Some("Rotate"),
+            "LookAt" => moved.turned_by = Some("LookAt"),
+            "CoordSysTransform" => moved.turned_by = Some("CoordSysTransform"),
+            "Transform" | "ConcatTransform" => {
+                if directive == "Transform" {
+                    moved = Moved::default();
+                }
+                matrix(&mut words, &mut moved)?;
+            }
+            _ => {}
+        }
+    }
+    Ok((media, included))
+}
+
+fn three(words: &mut Words) -> Result<[f64; 3], Fault> {
+    let mut numbers = [0.0; 3];
+    for number in &mut numbers {
+        match words.next()? {
+            Some(Word::Plain(text)) if text.parse::<f64>().is_ok() => {
+                *number = text.parse().unwrap_or_default()
+            }
+            _ => {
+                return words.wrong(
+                    "a directive lacks one of its three numbers",
+                    "give them, as in Translate 0 0 1",
+                );
+            }
+        }
+    }
+    Ok(numbers)
+}
+
+/// A matrix that points are multiplied with from the left, column after column as pbrt writes it.
+fn matrix(words: &mut Words, moved: &mut Moved) -> Result<(), Fault> {
+    let numbers = words.numbers()?;
+    let Ok(matrix) = <[f64; 16]>::try_from(numbers) else {
+        return words.wrong("a matrix has not 16 numbers", "give 16, the translation last but one");
+    };
+    let at = |row: usize, column: usize| matrix[4 * row + column];
+    let is_plain =
+        (0..4).all(|row| (0..4).all(|column| row == column || row == 3 || at(row, column) == 0.0));
+    if !is_plain || at(3, 3) != 1.0 {
+        moved.turned_by = Some("Transform");
+        return Ok(());
+    }
+    moved.translate([0, 1, 2].map(|j| at(3, j)));
+    moved.scale([0, 1, 2].map(|j| at(j, j)));
+    Ok(())
+}
+
+/// The parameters after `MakeNamedMedium`.
+fn medium(words: &mut Words, moved: Moved) -> Result<Medium, Fault> {
+    let line = words.line;
+    let Some(Word::Text(name)) = words.next()? else {
+        return words.wrong("a medium has no name", ADVICE);
+    };
+    let mut medium = Medium { name: name.to_owned(), line, moved, ..Medium::default() };
+    while let Some(Word::Text(parameter)) = words.peek()? {
+        words.next()?;
+        let mut parts = parameter.split_whitespace();
+        let (kind, key) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());
+        match (kind, key) {
+            ("integer", "nx") => medium.counts[0] = words.numbers()?.first().copied(),
+            ("integer", "ny") => medium.counts[1] = words.numbers()?.first().copied(),
+            ("integer", "nz") => medium.counts[2] = words.numbers()?.first().copied(),
+            ("point" | "point3", "p0") => medium.corners[0] = Some(words.numbers()?),
+            ("point" | "point3", "p1") => medium.corners[1] = Some(words.numbers()?),
+            ("float", "density") => medium.density = Some(words.numbers()?),
+            ("string", "type" | "filename") => {
+                let into = if key == "type" { &mut medium.kind } else { &mut medium.file };
+                words.values(|_, word| {
+                    if let Word::Text(text) = word {
+                        text.clone_into(into);
+                    }
+                    Ok(())
+                })?;
+            }
+            _ => words.values(|_, _| Ok(()))?,
+        }
+    }
+    Ok(medium)
+}
+
+impl Medium {
+    fn grid(self) -> Result<Grid, Fault> {
+        let place = format!("medium {} in line {}", shown(&self.name), self.line);
+        match self.kind.as_str() {
+            "uniformgrid" | "heterogeneous" => {}
+            // Both kinds of file leave the type out where another file has it.
+            "" if self.density.is_some() => {}
+            "nanovdb" => {
+                let file = shown(&self.file);
+                let help = format!("read the file itself: `file = {file}`");
+                return wrong(format!("{place} is of the type \"nanovdb\""), help);
+            }
+            other => {
+                let message = format!("{place} is of the type {}", shown(other));
+                return wrong(message, "media of the type \"uniformgrid\" are read");
+            }
+        }
+        let Some(density) = self.density else {
+            return wrong(
+                format!("{place} has no \"float density\""),
+                "give it: \"rgb\" and \"spectrum\" densities are not read",
+            );
+        };
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked first
+        let count = |n: Option<f64>| match n.unwrap_or(1.0) {
+            n if n >= 1.0 && n <= f64::from(u32::MAX) && n.fract() == 0.0 => Some(n as u64),
+            _ => None,
+        };
+        let [Some(x), Some(y), Some(z)] = self.counts.map(count) else {
+            let message = format!(
+                "{place} has {:?} samples along its axes",
+                self.counts.map(|n| n.unwrap_or(1.0))
+            );
+            return wrong(
+                message,
+                "give whole numbers above 0 as \"integer nx\", \"ny\" and \"nz\"",
+            );
+        };
+        let wanted = [y, z].iter().try_fold(x, |product, &n| product.checked_mul(n));
+        if wanted != Some(density.len() as u64) {
+            let found = density.len();
+            return wrong(
+                format!("{place} has {found} densities for {x} × {y} × {z} samples"),
+                "give nx · ny · nz of them, x fastest",
+            );
+        }
+        if let Some(directive) = self.moved.turned_by {
+            return wrong(
+                format!("{place} stands under {directive}, which turns its box"),
+                "make the medium before it, or after Identity",
+            );
+        }
+        let corner = |given: &Option<Vec<f64>>, default: f64| match given.as_deref() {
+            None => Some([default; 3]),
+            Some(&[x, y, z]) => Some([x, y, z]),
+            Some(_) => None,
+        };
+        let (Some(low), Some(high)) =
+            (corner(&self.corners[0], 0.0), corner(&self.corners[1], 1.0))
+        else {
+            return wrong(
+                format!("{place} has a corner of its box without three numbers"),
+                "give [ x y z ]",
+            );
+        };
+        let Moved { scale, shift, .. } = self.moved;
+        let ends = |j: usize| [low, high].map(|corner| scale[j] * corner[j] + shift[j]);
+        let corners = [
+            [0, 1, 2].map(|j| ends(j)[0].min(ends(j)[1])),
+            [0, 1, 2].map(|j| ends(j)[0].max(ends(j)[1])),
+        ];
+        let size = [x, y, z];
+        // p0 and p1 are corners in any order, but the samples begin at the lowest; a mirror turns them about.
+        let density = mirrored(density, size, scale.map(|x| x < 0.0));
+        Ok(Grid { name: self.name, size, corners, density })
+    }
+}
+
+/// The samples with some axes turned about.
+fn mirrored(density: Vec<f64>, [nx, ny, nz]: [u64; 3], about: [bool; 3]) -> Vec<f64> {
+    if about == [false; 3] {
+        return density;
+    }
+    let place = |n: u64, size: u64, is_about: bool| if is_about { size - 1 - n } else { n };
+    let mut turned = Vec::with_capacity(density.len());
+    for z in 0..nz {
+        for y in 0..ny {
+            for x in 0..nx {
+                let (x, y, z) =
+                    (place(x, nx, about[0]), place(y, ny, about[1]), place(z, nz, about[2]));
+                let at = usize::try_from((z * ny + y) * nx + x).unwrap_or(usize::MAX);
+                turned.extend(density.get(at).copied());
+            }
+        }
+    }
+    turned
+}

@@ -1,0 +1,138 @@
+//! Mitsuba's voxel grids.
+//!
+//! ```text
+//! "VOL", version 3 (1 byte), then little-endian: encoding (i32), nx ny nz channels (i32), low and high corner of the box (6 f32),
+//! samples: channels first, then x, then y, then z
+//! encoding   1 float32   2 float16   3 uint8, where 255 is 1   4 directions in two bytes, which are refused
+//! ```
+//!
+//! Mitsuba 3 writes the first encoding, Mitsuba 0.6 the first and the third.
+//!
+//! Sources: W. Jakob et al., *Mitsuba 3 renderer* (2022), plugin `gridvolume`; W. Jakob, *Mitsuba documentation*,
+//! version 0.6 (2014), plugin `gridvolume`.
+
+use super::number::Number;
+use super::{Fault, damaged, wrong};
+
+/// Bytes before the samples.
+const HEADER: usize = 48;
+
+/// How samples are stored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Encoding {
+    /// float32.
+    Single,
+    /// float16.
+    Half,
+    /// uint8, where 255 is 1.
+    Byte,
+}
+
+impl Encoding {
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Single => "float32",
+            Self::Half => "float16",
+            Self::Byte => "uint8, where 255 is 1",
+        }
+    }
+
+    fn number(self) -> Option<Number> {
+        Number::named(match self {
+            Self::Single => "<f4",
+            Self::Half => "<f2",
+            Self::Byte => "|u1",
+        })
+    }
+}
+
+/// A grid whose samples are not converted yet.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vol<'a> {
+    /// How samples are stored.
+    pub encoding: Encoding,
+    /// Samples along x, y and z.
+    pub size: [u64; 3],
+    /// Values of a sample.
+    pub channels: u64,
+    /// The corners of the box, whether or not they make one.
+    pub corners: [[f64; 3]; 2],
+    samples: &'a [u8],
+}
+
+impl<'a> Vol<'a> {
+    /// Reads the header, and checks that the samples are there.
+    ///
+    /// # Errors
+    ///
+    /// The file is none of those that are described above, or its length is not that of its samples.
+    pub fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
+        let Some(header) = bytes.get(..HEADER) else {
+            return wrong("the file ends within its header of 48 bytes", "write the file anew");
+        };
+        if !header.starts_with(b"VOL") {
+            return wrong("the file does not begin with `VOL`", "write it by Mitsuba's VolumeGrid");
+        }
+        if header[3] != 3 {
+            let message = format!("the file has the version {}", header[3]);
+            return wrong(message, "version 3 is read: write it by Mitsuba's VolumeGrid");
+        }
+        let word = |n: usize| std::array::from_fn::<u8, 4, _>(|i| header[4 + 4 * n + i]);
+        let integer = |n| i32::from_le_bytes(word(n));
+        let encoding = match integer(0) {
+            1 => Encoding::Single,
+            2 => Encoding::Half,
+            3 => Encoding::Byte,
+            4 => {
+                let help = "encodings 1 to 3 are read: float32, float16 and uint8";
+                return wrong("the samples are directions (encoding 4)", help);
+            }
+            other => {
+                let help = "encodings 1 to 3 are read: float32, float16 and uint8";
+                return wrong(format!("the samples have the encoding {other}"), help);
+            }
+        };
+        let size = [1, 2, 3].map(integer);
+        let channels = integer(4);
+        let [Ok(x), Ok(y), Ok(z), Ok(channels)] =
+            [size[0], size[1], size[2], channels].map(u64::try_from)
+        else {
+            return damaged(format!("the file announces {size:?} samples of {channels} channels"));
+        };
+        let size = [x, y, z];
+        let corner = |n: usize| [0, 1, 2].map(|i| f64::from(f32::from_le_bytes(word(n + i))));
+        let samples = &bytes[HEADER..];
+        let width = encoding.number().map_or(0, Number::width) as u64;
+        let factors = size.into_iter().chain([channels]);
+        let wanted = factors.fold(Some(width), |product, n| product?.checked_mul(n));
+        if wanted.is_none_or(|wanted| wanted != samples.len() as u64) {
+            let than = if wanted.is_none_or(|wanted| wanted > samples.len() as u64) {
+                "shorter"
+            } else {
+                "longer"
+            };
+            let [x, y, z] = size;
+            return wrong(
+                format!(
+                    "the file is {than} than its {x} × {y} × {z} samples of {channels} {} in {}",
+                    if channels == 1 { "channel" } else { "channels" },
+                    encoding.name()
+                ),
+                "write the file anew, with nothing but the samples after the header",
+            );
+        }
+        Ok(Self { encoding, size, channels, corners: [corner(5), corner(8)], samples })
+    }
+
+    /// The samples of a channel, x fastest.
+    pub fn values(&self, channel: usize) -> Vec<f64> {
+        let Some(number) = self.encoding.number() else { return Vec::new() };
+        let pixel = number.width() * usize::try_from(self.channels).unwrap_or(usize::MAX);
+        let unit = if self.encoding == Encoding::Byte { 255.0 } else { 1.0 };
+        let first = channel * number.width();
+        let words = self.samples.chunks_exact(pixel.max(1));
+        let words = words.filter_map(|pixel| pixel.get(first..first + number.width()));
+        words.flat_map(|word| number.all(word)).map(|x| x / unit).collect()
+    }
+}
