@@ -6,7 +6,8 @@ use super::axes::Axes;
 use super::grid_file::{self, Choice, Format, MOST_SAMPLES, Samples};
 use super::voxels::Placement;
 use super::{body, lattice};
-use crate::catalogue::{Settings, Value, number};
+use crate::catalogue::digits::short;
+use crate::catalogue::{Settings, Value};
 use crate::geometry::{Aabb, Bounds, Point};
 
 /// The format of the file, where the samples are of one.
@@ -76,7 +77,7 @@ pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec
     // A layer of background stands about the voxels of such a file.
     let layer = if format(settings).is_some_and(Format::has_transform) { 2 } else { 0 };
     let [x, y, z] = samples.size.map(|n| n - layer);
-    let corner = |point: Point| point.0.map(number).join(", ");
+    let corner = |point: Point| point.0.map(|x| short(x, 6)).join(", ");
     let (low, high) = (corner(bounds.low), corner(bounds.high));
     let about = if samples.turned.is_some() { "turned, in the box" } else { "box" };
     let mut facts =

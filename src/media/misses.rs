@@ -12,17 +12,27 @@ pub fn notes(body: &Body) -> Vec<String> {
     for channel in body.channels() {
         let note = match channel {
             Body::Volume { volume, ray, .. } => of_volume(&**volume, ray, &channel.medium()),
-            one => is_nothing(&one.medium()).then(|| "σ_t is 0 along the whole span".to_owned()),
+            one => of_line(&one.medium()),
         };
         notes.extend(note.filter(|note| !notes.contains(note)));
     }
     notes
 }
 
+fn of_line(medium: &Medium) -> Option<String> {
+    if medium.span().is_empty() {
+        return Some("the span has the length 0, and holds nothing of the medium".to_owned());
+    }
+    is_nothing(medium).then(|| "σ_t is 0 along the whole span".to_owned())
+}
+
 fn of_volume(volume: &Volume, ray: &Ray, medium: &Medium) -> Option<String> {
     let bounds = volume.bounds();
     let inside = medium.support();
-    if inside.is_empty() && !ray.span().is_empty() {
+    if ray.span().is_empty() {
+        return Some("the ray has the length 0, and meets nothing of the volume".to_owned());
+    }
+    if inside.is_empty() {
         return Some(format!(
             "the ray meets nothing of the volume, whose {}: {}",
             place(bounds),
@@ -33,7 +43,8 @@ fn of_volume(volume: &Volume, ray: &Ray, medium: &Medium) -> Option<String> {
     is_nothing(medium).then(|| match bounds {
         Bounds::Everywhere => "σ_t is 0 along the whole ray".to_owned(),
         _ => format!(
-            "σ_t is 0 along the whole ray, which is in the volume from {from} to {to}, and its {}",
+            "the ray meets nothing of the volume, whose {}: it is in there from {from} to {to}, and σ_t is 0 along the \
+             whole ray",
             place(bounds)
         ),
     })
@@ -47,7 +58,7 @@ fn is_nothing(medium: &Medium) -> bool {
 
 /// Where the bounds are.
 fn place(bounds: Bounds) -> String {
-    let point = |point: Point| format!("[{}]", point.0.map(number).join(", "));
+    let point = |point: Point| format!("[{}]", point.0.map(|x| short(x, 6)).join(", "));
     match bounds {
         Bounds::Everywhere => "bounds are nowhere".to_owned(),
         Bounds::Box(bounds) => format!("box is {} to {}", point(bounds.low), point(bounds.high)),

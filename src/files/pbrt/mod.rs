@@ -15,6 +15,7 @@
 //! Sources: M. Pharr, W. Jakob, G. Humphreys, *Physically Based Rendering*, 4th edition (2023), and the description of its
 //! scene format.
 
+mod moved;
 mod scene;
 mod words;
 

@@ -1,6 +1,7 @@
 //! The media of a scene file that are grids.
 
 use super::super::{Fault, shown, wrong};
+use super::moved::{Moved, mirrored};
 use super::words::{Word, Words};
 
 /// A grid of densities in a box.
@@ -27,30 +28,6 @@ struct Medium {
     corners: [Option<Vec<f64>>; 2],
     density: Option<Vec<f64>>,
     moved: Moved,
-}
-
-/// A scale and a translation: p → scale·p + shift; or the directive that turns the axes.
-#[derive(Debug, Clone)]
-struct Moved {
-    scale: [f64; 3],
-    shift: [f64; 3],
-    turned_by: Option<&'static str>,
-}
-
-impl Default for Moved {
-    fn default() -> Self {
-        Self { scale: [1.0; 3], shift: [0.0; 3], turned_by: None }
-    }
-}
-
-impl Moved {
-    fn translate(&mut self, by: [f64; 3]) {
-        self.shift = [0, 1, 2].map(|j| self.shift[j] + self.scale[j] * by[j]);
-    }
-
-    fn scale(&mut self, by: [f64; 3]) {
-        self.scale = [0, 1, 2].map(|j| self.scale[j] * by[j]);
-    }
 }
 
 const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" [ 64 ] …";
@@ -286,24 +263,4 @@ impl Medium {
         let density = mirrored(density, size, scale.map(|x| x < 0.0));
         Ok(Grid { name: self.name, size, corners, density })
     }
-}
-
-/// The samples with some axes turned about.
-fn mirrored(density: Vec<f64>, [nx, ny, nz]: [u64; 3], about: [bool; 3]) -> Vec<f64> {
-    if about == [false; 3] {
-        return density;
-    }
-    let place = |n: u64, size: u64, is_about: bool| if is_about { size - 1 - n } else { n };
-    let mut turned = Vec::with_capacity(density.len());
-    for z in 0..nz {
-        for y in 0..ny {
-            for x in 0..nx {
-                let (x, y, z) =
-                    (place(x, nx, about[0]), place(y, ny, about[1]), place(z, nz, about[2]));
-                let at = usize::try_from((z * ny + y) * nx + x).unwrap_or(usize::MAX);
-                turned.extend(density.get(at).copied());
-            }
-        }
-    }
-    turned
 }

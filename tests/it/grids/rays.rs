@@ -58,18 +58,18 @@ fn a_ray_that_misses_is_told_with_the_box_and_the_cure() {
 
 #[test]
 fn a_ray_through_nothing_but_zeros_is_told() {
-    let half = "{ radial = { breaks = [0, 1], values = [0], bounds.sphere = { centre = [0, 0, 0], radius = 1 } } }";
-    let _ = half;
     let told = notes(
         "title = \"t\"\n[problem.transmittance]\nvolume.constant = { extinction = 0, bounds.box = { low = [0, 0, 0], high = [1, 1, 1] } }\n\
          ray = { origin = [-1, 0.5, 0.5], direction = [1, 0, 0], length = 9 }\nestimators = [{ analog-free-flight = {} }]",
     );
     assert_eq!(
         told,
-        [
-            "σ_t is 0 along the whole ray, which is in the volume from 1 to 2, and its box is [0, 0, 0] to [1, 1, 1]"
-        ]
+        ["the ray meets nothing of the volume, whose box is [0, 0, 0] to [1, 1, 1]: it is in there from 1 to 2, and \
+          σ_t is 0 along the whole ray"]
     );
+    let ray = "origin = [0, 0, 0], direction = [1, 0, 0], length = 0";
+    let none = through("transmittance", CUBE, ray, ALONG);
+    assert_eq!(none, ["the ray has the length 0, and meets nothing of the volume"]);
     let line = notes(
         "title = \"t\"\n[problem.transmittance]\nmedium.constant.extinction = 0\nspan = [0, 1]\nestimators = [{ analog-free-flight = {} }]",
     );
