@@ -36,6 +36,13 @@ pub fn count(n: u64) -> String {
     if n < 1_000_000 { n.to_string() } else { short(n as f64, 4) }
 }
 
+/// A number of draws that is enough where so many are needed: rounded up to two significant digits, as options take it.
+pub fn enough(draws: f64) -> String {
+    let power = draws.log10().floor() - 1.0;
+    let unit = if power > 0.0 { 10f64.powi(power as i32) } else { 1.0 };
+    short((draws / unit).ceil() * unit, 2)
+}
+
 /// Two places and a sign, for z-scores; an exponent where that would be wide.
 pub fn signed(z: f64) -> String {
     if z.abs() < 1e4 || !z.is_finite() { format!("{z:+.2}") } else { format!("{z:+.1e}") }
@@ -119,6 +126,23 @@ mod tests {
         assert_eq!(signed(-0.314), "-0.31");
         assert_eq!(signed(2.0), "+2.00");
         assert_eq!(signed(123_456.0), "+1.2e5");
+    }
+
+    #[test]
+    fn what_is_enough_is_never_less_and_an_option_reads_it() {
+        let cases = [
+            (1_410_001.0, "1.5e6"),
+            (7.2e6, "7.2e6"),
+            (432.0, "4.4e2"),
+            (9.99e8, "1e9"),
+            (3.2, "4"),
+            (17.0, "17"),
+            (99.5, "1e2"),
+        ];
+        for (needed, text) in cases {
+            assert_eq!(enough(needed), text);
+            assert!(text.parse::<f64>().expect("a number") >= needed);
+        }
     }
 
     #[test]

@@ -5,7 +5,9 @@
 //! in `list` and `explain` is the file's own documentation, so that neither can go stale.
 
 pub mod additions;
+pub mod causes;
 mod choices;
+pub mod deviation;
 pub mod digits;
 #[cfg(test)]
 pub mod fixture;

@@ -69,7 +69,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     output::writable(&arguments.out)?;
     let baselines = arguments.open()?;
     // Whatever is timed on, the plan may use all processors.
-    let plan = selection::on_threads(0, || experiments.plan(&cases, &options))?;
+    let plan = selection::on_threads(0, || experiments.plan(&cases, &options, console))?;
     let ready = drawable(&plan)?;
     let level = arguments.level.unwrap_or_else(Level::new);
     let total = ready * u64::from(*rounds) * draws;
@@ -101,7 +101,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let stored = errors.keep(baselines.store(why_not, |path| now.write(path)));
     let is_told = arguments.format == Format::Table && !console.quiet;
     if let Some(files) = files.filter(|_| is_told) {
-        let said = format!("{files} files in {}\n{stored}", arguments.out.display());
+        let (out, page) = (arguments.out.display(), output::report_in(&arguments.out));
+        let said = format!("{files} files in {out}\n{stored}{page}");
         errors.keep(output::print(&said));
     }
     Ok(errors.close(u8::from(is_worse)))

@@ -12,16 +12,14 @@ use clap::Args;
 
 use super::baseline::BaselineArguments;
 use super::numbers::Budget;
-use super::output::Errors;
+use super::output::{Errors, Format};
 use super::selection::{Looks, Selection};
 use super::verdict::{self, Inconclusive};
 use super::{Console, drawing, numbers, output};
 use crate::files;
 use crate::harness::Catalogue;
 use crate::harness::{Case, Options, Record};
-use crate::report::{
-    Report, annotations, console, html, junit, markdown, record_json, summary_csv,
-};
+use crate::report::{Report, annotations, html, junit, markdown, record_json, summary_csv};
 
 /// So many draws per experiment where neither an argument nor the case says.
 const DRAWS: u64 = 400_000;
@@ -31,7 +29,8 @@ const DRAWS: u64 = 400_000;
 pub struct Arguments {
     #[command(flatten)]
     selection: Selection,
-    /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws (1e8)
+    /// Stop after a time (30s, 5m; results then depend on the machine) or a number of draws of all experiments
+    /// together (1e8, at least one block of 16384)
     #[arg(long, value_name = "B", value_parser = numbers::budget, allow_negative_numbers = true)]
     budget: Option<Budget>,
     /// What an inconclusive experiment counts as [default: exit code 3]
@@ -71,15 +70,17 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let options = arguments.looks.of(options);
     arguments.writable(&cases)?;
     let baselines = arguments.baseline.open()?;
-    let record = selection.with_plan(&cases, &options, |plan| Ok(drawing::draw(plan, console)))?;
+    let record =
+        selection.with_plan(&cases, &options, console, |plan| Ok(drawing::draw(plan, console)))?;
     let (record, run) = baselines.compare(record, &cases);
     let mut errors = Errors::default();
     arguments.write(&record, &mut errors);
-    errors.keep(arguments.print(&record, console));
+    errors.keep(output::print_run(&record, Format::Table, arguments.verbose, console));
     errors.extend(baselines.complaint(&record));
     let stored = errors.keep(baselines.store(&record, run.as_ref()));
     if !console.quiet {
-        errors.keep(output::print(&stored));
+        let page = arguments.out.as_deref().map_or(String::new(), output::report_in);
+        errors.keep(output::print(&(stored + &page)));
     }
     if std::env::var_os("GITHUB_ACTIONS").is_some_and(|value| value == "true") {
         errors.keep(output::print(&annotations::text(&record)));
@@ -138,18 +139,6 @@ impl Arguments {
             let files: Result<Vec<_>, _> = pages.iter().map(|render| render(record)).collect();
             errors.write(files.map(|files| files.concat()), out);
         }
-    }
-
-    fn print(&self, record: &Record, options: &Console) -> anyhow::Result<()> {
-        if options.quiet {
-            return Ok(());
-        }
-        let pen = output::pen(options);
-        output::print(&if self.verbose {
-            console::table(record, console::View::Run, pen)
-        } else {
-            console::brief(record, pen)
-        })
     }
 }
 

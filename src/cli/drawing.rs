@@ -6,14 +6,14 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Context;
-use indicatif::ProgressBar;
 
 use super::{Console, output};
 use crate::baseline::fingerprint;
 use crate::files;
 use crate::harness::cache::Cache;
+use crate::harness::progress::Step;
 use crate::harness::record::Record;
-use crate::harness::share::Share;
+use crate::harness::share::{self, Share};
 use crate::harness::store::Store;
 use crate::harness::{Plan, run, verdict};
 
@@ -45,10 +45,14 @@ pub fn draw_share(
     store: &Store,
     console: &Console,
 ) -> anyhow::Result<bool> {
-    let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
-    let draws: u64 = ready.map(|(_, planned)| planned.horizon).sum();
-    let bar = output::progress("drawing", "draws", draws / u64::from(share.of), console);
-    let is_whole = run::draw_share(plan, share, store, &|draws| bar.inc(draws));
+    // A share is drawn up to the horizon: nobody looks at it before all shares are there.
+    let steps = share::pieces(plan, share).map(|piece| piece.experiments.len() as u64);
+    let bar = output::progress("drawing", "draws", steps.sum::<u64>() * plan.step(), console);
+    let is_whole = run::draw_share(plan, share, store, &|step| match step {
+        Step::Drawn(draws) => bar.inc(draws),
+        Step::Kept(draws) => bar.dec_length(draws),
+        Step::Expected(draws) => bar.set_length(draws),
+    });
     bar.finish_and_clear();
     store.fault().map_or(Ok(()), Err)?;
     Ok(is_whole)
@@ -56,8 +60,13 @@ pub fn draw_share(
 
 fn judged(plan: &Plan, cache: &mut Cache, store: &Store, console: &Console) -> Record {
     let begin = Instant::now();
-    let bar = progress(plan, console);
-    let draws = run::draw_with(plan, cache, store, &|draws| bar.inc(draws));
+    let bar = output::progress("drawing", "draws", 0, console);
+    // What an earlier run drew says nothing about the speed of this one.
+    let draws = run::draw_heard(plan, cache, store, &|step| match step {
+        Step::Drawn(draws) => bar.inc(draws),
+        Step::Expected(draws) => bar.set_length(draws),
+        Step::Kept(_) => {}
+    });
     bar.finish_and_clear();
     cache.keep(plan, &draws);
     verdict::judged(plan, &draws, begin.elapsed().as_secs_f64())
@@ -83,10 +92,4 @@ pub fn keep(cache: &Cache, out: &Path) -> anyhow::Result<()> {
     let path = out.join(CACHE);
     let bytes = cache.bytes().with_context(|| format!("cannot encode {}", path.display()))?;
     files::replace(&path, &bytes).with_context(|| format!("cannot write {}", path.display()))
-}
-
-fn progress(plan: &Plan, console: &Console) -> ProgressBar {
-    let ready = plan.experiments().filter(|(_, planned)| planned.outcome.is_ok());
-    let draws = ready.map(|(_, planned)| planned.draws).sum();
-    output::progress("drawing", "draws", draws, console)
 }

@@ -27,7 +27,10 @@ pub struct Arguments {
     /// What an inconclusive experiment counts as [default: exit code 3]
     #[arg(long, value_enum, value_name = "AS")]
     inconclusive: Option<Inconclusive>,
-    /// How the rows are printed
+    /// Print every row, not only those that do not pass
+    #[arg(long, short)]
+    verbose: bool,
+    /// How the rows are printed; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
@@ -54,6 +57,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let mut asked = run::Arguments::of(&header.words)?;
     asked.out.clone_from(&arguments.out);
     (asked.inconclusive, asked.format) = (arguments.inconclusive, arguments.format);
+    asked.verbose = arguments.verbose;
     // What an earlier run has drawn is not asked.
     asked.fresh = true;
     run::judge(&asked, catalogue, console, |plan| {

@@ -4,6 +4,8 @@ use std::fmt::Display;
 use std::ops::RangeInclusive;
 use std::str::FromStr;
 
+use crate::harness::plan::BLOCK;
+
 /// Whole numbers of a range.
 pub fn whole<N>(range: RangeInclusive<N>) -> impl Fn(&str) -> Result<N, String> + Clone
 where
@@ -27,12 +29,16 @@ pub fn threads(text: &str) -> Result<u16, String> {
 }
 
 /// A number of draws such as 4e6.
-#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
 pub fn draws(text: &str) -> Result<u64, String> {
-    match text.parse::<f64>() {
-        Ok(n) if n.fract() == 0.0 && (2.0..=1e12).contains(&n) => Ok(n as u64),
-        _ => Err("it takes a whole number from 2 to 1e12, such as 4e6".into()),
-    }
+    whole_draws(text).ok_or_else(|| "it takes a whole number from 2 to 1e12, such as 4e6".into())
+}
+
+/// A whole number that may be written with an exponent.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // checked just before
+fn whole_draws(text: &str) -> Option<u64> {
+    let number = text.parse::<f64>().ok();
+    let number = number.filter(|n| n.fract() == 0.0 && (2.0..=1e12).contains(n));
+    number.map(|n| n as u64)
 }
 
 /// Any number.
@@ -64,10 +70,9 @@ pub fn seconds(text: &str) -> Result<f64, String> {
         Some(number) => (number, 1.0),
         None => (text, 1.0),
     };
-    match number.parse::<f64>() {
-        Ok(time) if time > 0.0 && time.is_finite() => Ok(time * unit),
-        _ => Err("it takes a time such as 30s, 5m or 1h".into()),
-    }
+    let time = number.parse::<f64>().map(|time| time * unit);
+    let wrong = || "it takes a time above 0, such as 30s, 5m or 1h; without a unit it is in seconds";
+    time.ok().filter(|time| *time > 0.0 && time.is_finite()).ok_or_else(|| wrong().into())
 }
 
 /// What a run may cost.
@@ -79,19 +84,53 @@ pub enum Budget {
     Draws(u64),
 }
 
-/// A time with its unit, or a number of draws.
+/// A time with its unit, or a number of draws: one block at least, for all experiments together.
 pub fn budget(text: &str) -> Result<Budget, String> {
-    let budget = if text.ends_with(['s', 'm', 'h']) {
-        seconds(text).map(Budget::Seconds)
-    } else {
-        draws(text).map(Budget::Draws)
-    };
-    budget.map_err(|_| "it takes a time such as 30s or 5m, or a number of draws such as 1e8".into())
+    let takes = format!("a time such as 30s or 5m, or a number of draws from {BLOCK} to 1e12, such as 1e8");
+    if text.ends_with(['s', 'm', 'h']) {
+        return seconds(text).map(Budget::Seconds).map_err(|_| format!("it takes {takes}"));
+    }
+    let small = |number: &f64| *number > 0.0 && *number < BLOCK as f64;
+    match (whole_draws(text).filter(|&draws| draws >= BLOCK), text.parse::<f64>().ok().filter(small)) {
+        (Some(draws), _) => Ok(Budget::Draws(draws)),
+        // Five of what?
+        (None, Some(_)) => Err(format!(
+            "without a unit it is a number of draws, and {text} is less than one block of {BLOCK}: give \
+             {text}s, {text}m or {text}h for a time, or {BLOCK} draws at least"
+        )),
+        (None, None) => Err(format!("it takes {takes}")),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_budget_says_what_it_counts() {
+        assert_eq!(budget("5m"), Ok(Budget::Seconds(300.0)));
+        assert_eq!(budget("0.5s"), Ok(Budget::Seconds(0.5)));
+        assert_eq!(budget("16384"), Ok(Budget::Draws(16384)));
+        assert_eq!(budget("1e8"), Ok(Budget::Draws(100_000_000)));
+        for few in ["5", "1", "0.5", "60", "3600", "16383", "1e4"] {
+            let said = budget(few).expect_err("too few draws");
+            for cure in [format!("{few}s"), format!("{few}m"), "16384".to_owned()] {
+                assert!(said.contains(&cure), "{said}");
+            }
+        }
+        for wrong in ["0", "-1", "-5m", "nan", "inf", "1e308", "1e13", "16384.5", "1e308h", "0s", "m", "", "many"] {
+            let said = budget(wrong).expect_err(wrong);
+            assert!(said.contains("30s") && said.contains("1e8"), "{wrong}: {said}");
+        }
+    }
+
+    #[test]
+    fn a_time_is_finite_and_above_0() {
+        assert_eq!((seconds("90"), seconds("1.5m"), seconds("1h")), (Ok(90.0), Ok(90.0), Ok(3600.0)));
+        for wrong in ["0", "-1", "nan", "inf", "1e308h", "5d", "s", "", "5 m"] {
+            assert!(seconds(wrong).is_err_and(|said| said.contains("30s")), "{wrong}");
+        }
+    }
 
     #[test]
     fn what_a_number_may_be_is_said() {

@@ -65,6 +65,24 @@ pub fn print_record(
     print(&text)
 }
 
+/// Prints what a run found to stdout: what does not pass and a line for each case, or every row.
+pub fn print_run(
+    record: &Record,
+    format: Format,
+    is_verbose: bool,
+    options: &Console,
+) -> anyhow::Result<()> {
+    if format != Format::Table || is_verbose || options.quiet {
+        return print_record(record, View::Run, format, options);
+    }
+    print(&console::brief(record, pen(options)))
+}
+
+/// The last line of a command that wrote a page: where to open it.
+pub fn report_in(out: &Path) -> String {
+    format!("report: {}\n", out.join("report.html").display())
+}
+
 /// Writes to stdout. A reader that has seen enough (`| head`) is no error.
 pub fn print(text: &str) -> anyhow::Result<()> {
     match std::io::stdout().write_all(text.as_bytes()) {
@@ -160,7 +178,7 @@ pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> Pr
     if !options.quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
         let template =
-            format!("{doing} {{wide_bar}} {{human_pos}}/{{human_len}} {things}, {{eta}} left");
+            format!("{doing} {{wide_bar}} {{human_pos}} of {{human_len}} {things}, {{eta}} left");
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }

@@ -29,7 +29,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let selection = &arguments.selection;
     let cases = selection.read(catalogue, console)?;
     let (record, [kept, ready]) =
-        selection.with_plan(&cases, &selection.options(DRAWS)?, |plan| {
+        selection.with_plan(&cases, &selection.options(DRAWS)?, console, |plan| {
             Ok((verdict::planned(plan), drawing::cached(&arguments.out)?.count(plan)))
         })?;
     output::print_record(&record, View::Plan, arguments.format, console)?;

@@ -33,7 +33,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let predict =
         if arguments.optimum { verdict::predicted_with_optima } else { verdict::predicted };
     let options = selection.options(DRAWS)?;
-    let record = selection.with_plan(&cases, &options, |plan| Ok(predict(plan)))?;
+    let record = selection.with_plan(&cases, &options, console, |plan| Ok(predict(plan)))?;
     let view = if arguments.moments { View::Moments } else { View::Predict };
     output::print_record(&record, view, arguments.format, console)?;
     Ok(0)

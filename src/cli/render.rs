@@ -63,7 +63,8 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     let rows = report::render::table::csv(records.iter().map(|(record, _)| record))?;
     write(&[Artifact::text("gallery.csv", rows), page], &out)?;
     if !console.quiet {
-        output::print(&format!("{} pictures in {}\n", records.len(), out.display()))?;
+        let page = output::report_in(&out);
+        output::print(&format!("{} pictures in {}\n{page}", records.len(), out.display()))?;
     }
     Ok(0)
 }

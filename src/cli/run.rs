@@ -1,6 +1,5 @@
 //! `trueflight run`: the main job, whole, a share of it, or what an interrupted one has left.
 
-use std::fmt::Write;
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 
@@ -19,7 +18,7 @@ use crate::harness::share::{Header, Share};
 use crate::harness::store::Store;
 use crate::harness::workers::{Threads, Workers};
 use crate::harness::{Case, Catalogue, Options, Plan};
-use crate::report::{self, console::View};
+use crate::report;
 
 /// Arguments of `run`.
 #[derive(Debug, Clone, Args)]
@@ -37,7 +36,7 @@ pub struct Arguments {
     /// Draw a share of all blocks, such as part 3 of 16, and judge nothing: that does `trueflight merge`
     #[arg(long, value_name = "K/N", conflicts_with_all = ["time", "save_baseline", "baseline"])]
     pub shard: Option<Share>,
-    /// Stop drawing after this time, such as 30s or 5m; results then depend on the machine
+    /// Stop drawing after this time, such as 30s, 5m or 90 (seconds); results then depend on the machine
     #[arg(long, value_name = "T", value_parser = numbers::seconds, allow_negative_numbers = true)]
     time: Option<f64>,
     #[command(flatten)]
@@ -51,7 +50,10 @@ pub struct Arguments {
     pub inconclusive: Option<Inconclusive>,
     #[command(flatten)]
     baseline: BaselineArguments,
-    /// How the rows are printed
+    /// Print every row, not only those that do not pass
+    #[arg(long, short)]
+    pub verbose: bool,
+    /// How the rows are printed; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
 }
@@ -135,7 +137,7 @@ fn draw_share(
     let cases = selection.read(catalogue, console)?;
     output::writable(&arguments.out)?;
     let out = arguments.out.display();
-    let (is_whole, was_finished) = selection.with_plan(&cases, &arguments.options()?, |plan| {
+    let (is_whole, was_finished) = selection.with_plan(&cases, &arguments.options()?, console, |plan| {
         let store = store(plan)?;
         let was_finished = store.files.iter().any(|file| file.is_finished);
         let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
@@ -174,7 +176,7 @@ pub fn judge(
     // A comparison wants times and evidence of its own.
     cache.is_fresh = arguments.fresh || arguments.baseline.is_used();
     let (record, [reused, ready], store) =
-        selection.with_plan(&cases, &arguments.options()?, |plan| {
+        selection.with_plan(&cases, &arguments.options()?, console, |plan| {
             let (counts, store) = (cache.count(plan), store(plan)?);
             let record = drawing::draw_with(plan, &mut cache, &store, console);
             let kept = || {
@@ -196,22 +198,23 @@ pub fn judge(
         errors.keep(journal::end(&arguments.out));
     }
     drop(store);
-    errors.keep(output::print_record(&record, View::Run, arguments.format, console));
+    errors.keep(output::print_run(&record, arguments.format, arguments.verbose, console));
     errors.extend(baselines.complaint(&record));
     // What is to be gone on with is no baseline yet.
     let store = || baselines.store(&record, run.as_ref());
     let stored = if was_stopped { String::new() } else { errors.keep(store()) };
     let is_told = arguments.format == Format::Table && !console.quiet;
     if let Some(files) = files.filter(|_| is_told) {
-        let mut said = format!("{files} files in {}\n", arguments.out.display());
-        if reused > 0 {
-            let _ = writeln!(
-                said,
+        let reuse = if reused > 0 {
+            format!(
                 "{reused} of {ready} experiments have not changed since the last run there: their \
-                 draws were reused (--fresh makes them anew)"
-            );
-        }
-        errors.keep(output::print(&(said + &stored)));
+                 draws were reused (--fresh makes them anew)\n"
+            )
+        } else {
+            String::new()
+        };
+        let (out, page) = (arguments.out.display(), output::report_in(&arguments.out));
+        errors.keep(output::print(&format!("{files} files in {out}\n{reuse}{stored}{page}")));
     }
     let code = verdict::close(&record, arguments.inconclusive, &errors);
     if was_stopped {

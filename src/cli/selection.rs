@@ -108,9 +108,19 @@ impl Experiments {
         Ok(Options { seed, draws, kernel, filter, ..Options::default() })
     }
 
-    /// Plans the cases; a selection that keeps nothing is an error.
-    pub fn plan<'a>(&self, cases: &'a [Case], options: &Options) -> anyhow::Result<Plan<'a>> {
-        let plan = Plan::new(cases, options);
+    /// Plans the cases, with a bar of progress; a selection that keeps nothing is an error.
+    pub fn plan<'a>(
+        &self,
+        cases: &'a [Case],
+        options: &Options,
+        console: &Console,
+    ) -> anyhow::Result<Plan<'a>> {
+        let bar = output::progress("planning", "experiments", 0, console);
+        let plan = Plan::heard(cases, options, &|prepared, all| {
+            bar.set_length(all as u64);
+            bar.set_position(prepared as u64);
+        });
+        bar.finish_and_clear();
         if plan.cases.is_empty() {
             let filter = self.filter.as_deref().unwrap_or_default();
             anyhow::bail!(
@@ -160,10 +170,11 @@ impl Selection {
         &self,
         cases: &[Case],
         options: &Options,
+        console: &Console,
         f: impl FnOnce(&Plan) -> anyhow::Result<T> + Send,
     ) -> anyhow::Result<T> {
         on_threads(self.threads.map_or(0, usize::from), || {
-            f(&self.experiments.plan(cases, options)?)
+            f(&self.experiments.plan(cases, options, console)?)
         })
     }
 }

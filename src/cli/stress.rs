@@ -42,5 +42,8 @@ pub fn main(arguments: &Arguments, console: &Console) -> anyhow::Result<u8> {
     if let Some(error) = written.into_iter().next() {
         return Err(error.into());
     }
+    if !console.quiet {
+        output::print(&output::report_in(&arguments.out.join("stress")))?;
+    }
     Ok(u8::from(!found.holds()))
 }

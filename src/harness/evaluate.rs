@@ -12,10 +12,13 @@
 
 use super::checks::{Always, Inspected, Kind, Question, Scalar};
 use super::drawn::{Drawn, Draws, GateState, Total};
+use super::foreseen::{lack, too_weak, untestable};
 use super::plan::{BLOCK, Plan, Planned, PlannedCase};
 use super::plot_data::thinned;
 use super::qualify::{qualify_means, show_anywhere};
 use super::record::{Finding, GateFinding, Verdict};
+use crate::catalogue::deviation::{Deviation, signed_percent};
+use crate::catalogue::digits::{self, short};
 use crate::numeric::parallel;
 use crate::numeric::sum::Sum;
 use crate::stats::gate::Decision;
@@ -125,8 +128,8 @@ impl Experiment<'_> {
                 Finding { block, verdict, reason, ..finding }
             }
             (Kind::Untestable(why), _) => {
-                let reason = format!("{} cannot be tested: {why}", question.what);
-                let verdict = self.too_weak(question);
+                let reason = untestable(&question.what, why);
+                let verdict = too_weak(self.plan, self.case, question);
                 Finding { verdict, reason, ..finding }
             }
             _ => return None,
@@ -161,26 +164,18 @@ impl Experiment<'_> {
         match state.decision {
             Decision::Passed => (Verdict::Pass, String::new()),
             Decision::Failed => {
-                let error = (scalar.design.variance / state.draws as f64).sqrt();
-                let (off, z) = (state.mean, state.mean / error);
                 let reason = format!(
-                    "{what} is off by {off:+.2e}, {z:+.1} standard errors (ln E = {:.1} ≥ {:.1} after \
-                     {} draws)",
-                    evidence.ln_e, self.plan.levels.ln_fail, state.draws
+                    "{what} is off by {} (ln E = {:.1} ≥ {:.1})",
+                    self.deviation(question, scalar, state),
+                    evidence.ln_e,
+                    self.plan.levels.ln_fail
                 );
                 (Verdict::Fail, reason)
             }
             Decision::Open => {
                 if let Some(needed) = scalar.underpowered {
-                    let reason = if needed.is_finite() {
-                        format!("{what} needs {needed:.1e} draws")
-                    } else {
-                        format!(
-                            "the prediction of {what} is known to {:.0e} only",
-                            scalar.design.floor
-                        )
-                    };
-                    return (self.too_weak(question), reason);
+                    let verdict = too_weak(self.plan, self.case, question);
+                    return (verdict, lack(what, scalar, needed));
                 }
                 let [above, below] = evidence.ln_pass;
                 let reason = format!(
@@ -192,14 +187,23 @@ impl Experiment<'_> {
         }
     }
 
-    /// The verdict on a question that was never promised to pass.
-    fn too_weak(&self, question: &Question) -> Verdict {
-        let counts = question.check == "mean" && !self.case.case.allow_underpowered;
-        if counts || self.plan.options.strict {
-            Verdict::Inconclusive
-        } else {
-            Verdict::Underpowered
+    /// How far a scalar is from theory, in words.
+    fn deviation(&self, question: &Question, scalar: &Scalar, state: &GateState) -> String {
+        let &Scalar { expected, scale, design, .. } = scalar;
+        let error = (design.variance / state.draws as f64).sqrt();
+        let measured = expected + scale * state.mean;
+        let told = Deviation::new(measured, expected, state.draws).with_z(state.mean / error);
+        let mut text = told.to_string();
+        // A thin medium is judged by its opacity.
+        if question.check == "mean" && (scale - expected.abs()).abs() > 1e-9 * scale {
+            text = format!("{text}, {} of the opacity", signed_percent(state.mean));
         }
+        let channel = question.channel.zip(self.planned.outcome.as_ref().ok());
+        let unit = channel.map_or(0.0, |(c, ready)| ready.prediction.channels[c].log_unit);
+        if question.check == "mean" && unit != 0.0 {
+            text = format!("{text}, in units of exp(−{})", short(unit, 6));
+        }
+        text
     }
 
     /// The verdict on a bias that the case declares.
@@ -220,17 +224,6 @@ impl Experiment<'_> {
             }
         }
     }
-}
-
-/// Why what a channel's draws would say cannot be tested, whatever they say: known before the first
-/// draw. Empty where all of it can.
-pub fn untestable(planned: &Planned, channel: usize) -> String {
-    let about = |question: &&Question| question.channel.is_none_or(|about| about == channel);
-    let reasons = planned.questions.iter().filter(about).filter_map(|question| {
-        let Kind::Untestable(why) = &question.kind else { return None };
-        Some(format!("{} cannot be tested: {why}", question.what))
-    });
-    reasons.collect::<Vec<_>>().join("; ")
 }
 
 /// A relative difference in percent.
@@ -255,11 +248,13 @@ fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String)
     } else if largest.is_nan() {
         (Verdict::Fail, "draws are not finite numbers".into())
     } else {
-        let bound = always.bound;
-        (
-            Verdict::Fail,
-            format!("{what} is off by {largest:.1e} in a draw; {bound:.1e} is rounding"),
-        )
+        let reason = if question.check == "lookups" {
+            format!("{what} is off by {largest:.0} in a draw; it is the same in all draws")
+        } else {
+            let (largest, bound) = (digits::percent(largest), digits::percent(always.bound));
+            format!("{what} is off by {largest} in a draw; rounding explains {bound}")
+        };
+        (Verdict::Fail, reason)
     }
 }
 

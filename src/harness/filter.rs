@@ -19,6 +19,11 @@ impl Filter {
         Pattern::new(pattern).map(Self)
     }
 
+    /// The pattern as it was written.
+    pub fn pattern(&self) -> &str {
+        self.0.as_str()
+    }
+
     /// Whether an experiment is meant; `estimator` is its label, settings included.
     pub fn keeps(&self, case: &str, estimator: &str) -> bool {
         let name = estimator.split(' ').next().unwrap_or_default();

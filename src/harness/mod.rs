@@ -9,8 +9,8 @@
 //! ```text
 //! words       shorthand  source  rewrite  sweep  names  filter  options  addresses  normality  suite
 //! case        ready  estimator  problem  plot_data  course  scenario  case  catalogue
-//! plan        checks  levels  plan  mutation
-//! draws       draw  drawn  cache  share  workers  frames  blocks  store  run
+//! plan        checks  levels  plan  foreseen  mutation
+//! draws       progress  draw  drawn  cache  share  workers  frames  blocks  store  run
 //! record      comparison  record
 //! verdict     qualify  evaluate  theory_rows  measured  repeat  anatomy  curves  summary  verdict
 //! ```
@@ -30,6 +30,7 @@ pub mod drawn;
 pub mod estimator;
 pub mod evaluate;
 pub mod filter;
+pub mod foreseen;
 mod frames;
 pub mod levels;
 mod measured;
@@ -39,6 +40,7 @@ pub mod normality;
 pub mod options;
 pub mod plan;
 mod plot_data;
+pub mod progress;
 pub mod problem;
 pub mod qualify;
 pub mod ready;

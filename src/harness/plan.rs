@@ -8,6 +8,8 @@
 //! α        4/5 to the gate, by e-Bonferroni; 1/5 to the p-values, by Holm
 //! ```
 
+use std::sync::atomic::{AtomicUsize, Ordering};
+
 pub use crate::stats::verdict::MISS;
 
 use super::addresses;
@@ -135,7 +137,28 @@ impl<'a> Plan<'a> {
 
     /// Prepares every experiment of the cases.
     pub fn new(cases: &'a [Case], options: &Options) -> Self {
-        let mut cases = parallel::map(cases, |case| plan_case(case, options));
+        Self::heard(cases, options, &|_, _| {})
+    }
+
+    /// Prepares every experiment of the cases; `listen` is told how many are prepared, of how many.
+    pub fn heard(
+        cases: &'a [Case],
+        options: &Options,
+        listen: &(dyn Fn(usize, usize) + Sync),
+    ) -> Self {
+        let points: Vec<Vec<(usize, Variation)>> =
+            cases.iter().map(|case| points(case, options)).collect();
+        let (prepared, all) = (AtomicUsize::new(0), points.iter().map(Vec::len).sum());
+        listen(0, all);
+        let both: Vec<_> = cases.iter().zip(&points).collect();
+        let mut cases = parallel::map(&both, |&(case, points)| {
+            let experiments = parallel::map(points, |&point| {
+                let planned = plan_experiment(case, options, point);
+                listen(prepared.fetch_add(1, Ordering::Relaxed) + 1, all);
+                planned
+            });
+            PlannedCase { case, experiments }
+        });
         cases.retain(|case| !case.experiments.is_empty());
         let ready =
             |case: &PlannedCase| case.experiments.iter().filter(|e| e.outcome.is_ok()).count();
@@ -206,7 +229,8 @@ impl<'a> Plan<'a> {
     }
 }
 
-fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
+/// The experiments of a case that are not left out: each estimator at each value of the sweep.
+fn points(case: &Case, options: &Options) -> Vec<(usize, Variation)> {
     let mut points: Vec<(usize, Variation)> = Vec::new();
     for estimator in 0..case.scenario.estimators() {
         match &case.sweep {
@@ -222,8 +246,7 @@ fn plan_case<'a>(case: &'a Case, options: &Options) -> PlannedCase<'a> {
             filter.keeps(&case.name, &case.scenario.names(estimator, variation).estimator)
         });
     }
-    let experiments = parallel::map(&points, |&point| plan_experiment(case, options, point));
-    PlannedCase { case, experiments }
+    points
 }
 
 fn plan_experiment(

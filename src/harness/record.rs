@@ -115,6 +115,9 @@ pub struct CaseRecord {
     /// How many draws its scalars took to pass, all together, in units of what is typical,
     /// `17 V/ε²` draws each.
     pub pace: Option<f64>,
+    /// Of a plan: the command that decides the rows that its draws leave inconclusive. Empty where there are none.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub decide: String,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<Row>,
     /// What was swept, with the theory's curves.
@@ -179,6 +182,15 @@ pub struct Row {
     pub stream: Option<u64>,
     /// The command that repeats the experiment.
     pub command: String,
+    /// The command that decides an inconclusive experiment; empty where no number of draws does, and for all others.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub decide: String,
+    /// Of a plan: `inconclusive` or `underpowered` where the planned draws are too few for a pass.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub foreseen: Option<Verdict>,
+    /// Of a plan: how many draws such a row needs; `None` where no number of draws is enough.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub needed_draws: Option<f64>,
     /// The mean of the draws.
     pub mean: Option<f64>,
     /// The standard error of the mean from the draws' own variance.
@@ -269,6 +281,15 @@ pub struct Row {
 }
 
 impl Row {
+    /// The command to run next, with the word before it: what decides an inconclusive row, else what repeats it.
+    pub fn next_command(&self) -> Option<(&'static str, &str)> {
+        let next = match self.verdict {
+            Some(Verdict::Inconclusive) => ("decide", self.decide.as_str()),
+            _ => ("repeat", self.command.as_str()),
+        };
+        Some(next).filter(|next| !next.1.is_empty())
+    }
+
     /// `log₁₀ LTUV`, LTUV = V · lookups of a draw with its share of the setup lookups: the lookups to unit variance of
     /// Miller et al. 2019, section 6; the figure of merit upside down.
     pub fn log10_ltuv(&self) -> Option<f64> {

@@ -20,6 +20,7 @@ use super::checks::Kind;
 use super::draw::Block;
 use super::drawn::{Drawn, Draws, Standing, Total};
 use super::plan::{BLOCK, Plan, Planned};
+use super::progress::{self, Listener, Progress, Step};
 use super::share::{self, Piece, Share};
 use super::store::Store;
 use super::workers::Drawing;
@@ -61,14 +62,25 @@ pub fn draw_with(
     store: &Store,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Draws {
+    draw_heard(plan, cache, store, &|step| match step {
+        Step::Drawn(draws) | Step::Kept(draws) if draws > 0 => progress(draws),
+        _ => {}
+    })
+}
+
+/// Draws what neither an earlier run nor a store has; `listen` hears of every step.
+pub fn draw_heard(plan: &Plan, cache: &Cache, store: &Store, listen: &Listener) -> Draws {
     let begin = Instant::now();
     let is_late =
         || plan.options.seconds.is_some_and(|limit| begin.elapsed().as_secs_f64() >= limit);
     let is_over = || is_late() || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
     let (mut cases, mut running) = begin_all(plan, cache, store);
+    let progress = Progress::new(plan, listen);
+    let listen = |step| progress.hear(step);
     // What a run before had merged.
-    running.iter().map(|one| one.at.drawn.draws).filter(|&draws| draws > 0).for_each(progress);
+    running.iter().for_each(|one| listen(Step::Kept(one.at.drawn.draws)));
+    progress.expect(running.iter().map(Running::expected));
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);
     while !cut_by_time && running.iter().any(|one| !one.at.is_done) {
@@ -89,7 +101,7 @@ pub fn draw_with(
                 break;
             }
             let pieces: Vec<Piece> = units.iter().map(|unit| unit.piece(&running)).collect();
-            let drawn = store.blocks(&pieces, &drawing, progress);
+            let drawn = store.blocks(&pieces, &drawing, &listen);
             let members = units.iter().flat_map(|unit| &unit.running);
             for (&one, block) in members.zip(drawn.into_iter().flatten()) {
                 // What comes after a missing block is left out: the first blocks are kept.
@@ -108,6 +120,7 @@ pub fn draw_with(
             one.merge();
             one.look(plan);
         }
+        progress.expect(running.iter().map(Running::expected));
     }
     store.synchronise();
     for one in running {
@@ -124,12 +137,7 @@ pub fn draw_with(
 }
 
 /// Draws a share of a plan into the file of a store, without a look at it; whether all of it is there.
-pub fn draw_share(
-    plan: &Plan,
-    share: Share,
-    store: &Store,
-    progress: &(dyn Fn(u64) + Sync),
-) -> bool {
+pub fn draw_share(plan: &Plan, share: Share, store: &Store, listen: &Listener) -> bool {
     let is_over = || store.is_stopped();
     let drawing = Drawing::new(plan, &is_over);
     let mut pieces = share::pieces(plan, share);
@@ -139,7 +147,7 @@ pub fn draw_share(
             store.synchronise();
             return !store.is_stopped();
         }
-        store.blocks(&some, &drawing, progress);
+        store.blocks(&some, &drawing, listen);
     }
 }
 
@@ -311,6 +319,14 @@ impl Running<'_> {
     /// The last look.
     fn last(&self) -> u64 {
         self.planned.horizon.div_ceil(self.step)
+    }
+
+    /// The draws that it is expected to make in all, those ahead of a look that never comes with them.
+    fn expected(&self) -> u64 {
+        let ahead: u64 = self.ahead.iter().map(|block| block.draws).sum();
+        let made = self.at.drawn.draws + ahead;
+        let look = (self.at.look * self.step).min(self.planned.horizon);
+        if self.at.is_done { made } else { made.max(look).max(progress::expected(self.planned)) }
     }
 
     /// The draws up to the next look.

@@ -6,6 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use super::blocks::{Blocks, Fault, Key};
 use super::draw::Block;
 use super::drawn::Standing;
+use super::progress::{Listener, Step};
 use super::share::Piece;
 use super::workers::{Drawing, Threads, Workers};
 
@@ -61,18 +62,18 @@ impl Store {
         self.files.iter().find_map(|file| file.standing(experiment).cloned())
     }
 
-    /// The blocks of pieces, in their order: read where they are in a file, drawn and kept otherwise. `progress` is told
+    /// The blocks of pieces, in their order: read where they are in a file, drawn and kept otherwise. `listen` is told
     /// how many draws each piece was.
     pub fn blocks(
         &self,
         pieces: &[Piece],
         drawing: &Drawing,
-        progress: &(dyn Fn(u64) + Sync),
+        listen: &Listener,
     ) -> Vec<Vec<Option<Block>>> {
         let kept = |piece: &Piece| -> Vec<Option<Block>> {
             let found = |&one: &u32| self.find((one, piece.block));
             let blocks: Vec<Option<Block>> = piece.experiments.iter().map(found).collect();
-            progress(draws(&blocks));
+            listen(Step::Kept(draws(&blocks)));
             blocks
         };
         let mut blocks: Vec<Vec<Option<Block>>> = pieces.iter().map(kept).collect();
@@ -93,7 +94,7 @@ impl Store {
             asked.iter().map(|_| Mutex::default()).collect();
         self.workers.draw(&asked, drawing, &|number, new| {
             self.keep(&asked[number], &new);
-            progress(draws(&new));
+            listen(Step::Drawn(draws(&new)));
             *lock(&drawn[number]) = new;
         });
         for (number, drawn) in numbers.into_iter().zip(drawn) {

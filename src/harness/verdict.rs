@@ -2,12 +2,13 @@
 
 use super::anatomy::anatomy;
 use super::drawn::{Drawn, Draws};
+use super::foreseen::Foreseen;
 use super::measured::{measure, measure_lookups, not_normal};
 use super::plan::{MISS, Plan, Planned, PlannedCase};
 use super::record::{
     Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Sweep, Timing, Verdict,
 };
-use super::repeat::command;
+use super::repeat::{command, deciding, deciding_all};
 use super::theory_rows::{finite, theory_rows};
 use super::{curves, evaluate, summary};
 use crate::numeric::pack;
@@ -22,7 +23,9 @@ pub fn planned(plan: &Plan) -> Record {
             for (channel, row) in
                 rows.iter_mut().enumerate().filter(|(_, row)| row.verdict.is_none())
             {
-                row.reason = evaluate::untestable(planned, channel);
+                let foreseen = Foreseen::of(plan, case, planned, channel);
+                (row.foreseen, row.needed_draws) = (foreseen.verdict, foreseen.needed);
+                row.reason = foreseen.reason;
             }
             rows
         });
@@ -36,6 +39,7 @@ pub fn planned(plan: &Plan) -> Record {
             std::iter::repeat_n(draws, planned.channels())
         });
         case.rows.iter_mut().zip(draws).for_each(|(row, draws)| row.draws = draws);
+        case.decide = deciding_all(plan, planned_case);
     }
     record
 }
@@ -125,6 +129,7 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             draws_per_ray: Some(planned.case.draws_per_ray),
             visible_bias: None,
             pace: None,
+            decide: String::new(),
             rows,
             sweep,
             anatomy,
@@ -204,6 +209,9 @@ fn drawn_rows(
         row.detectable_bias = gate("mean").map(|gate| gate.tolerance);
         let (verdict, reason) = worst(&row.findings);
         (row.verdict, row.reason) = (Some(verdict), reason);
+        if verdict == Verdict::Inconclusive {
+            row.decide = deciding(plan, case, planned, findings);
+        }
     }
     rows
 }

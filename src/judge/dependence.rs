@@ -2,6 +2,7 @@
 
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::{DRIFT, Reading};
+use crate::catalogue::deviation::Deviation;
 use crate::stats::verdict::Verdict;
 
 /// Whether the mean changes on the way: only where that says more than that it is off.
@@ -14,9 +15,12 @@ pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     let from = change.from * reading.trial.wanted.batch;
     let verdict = if is_shown { Verdict::Fail } else { Verdict::Pass };
     let reason = if is_shown {
+        let claim = &reading.trial.claim;
+        let draws = (reading.draws() / reading.trial.wanted.batch).saturating_sub(change.from);
+        let later = Deviation::new(claim.truth + claim.unit * change.off, claim.truth, draws);
         format!(
-            "the mean changes: from draw {from} on it is off by {:+.2e} (ln E = {:.1} ≥ {limit:.1})",
-            change.off, change.ln_e
+            "the mean changes: from draw {from} on it is off by {later} (ln E = {:.1} ≥ {limit:.1})",
+            change.ln_e
         )
     } else {
         String::new()

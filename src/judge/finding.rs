@@ -3,11 +3,26 @@
 use super::grounds::{self, EFFECTIVE, Spread};
 use super::judgement::ScalarFinding;
 use super::scalar::Scalar;
+use super::trial::Trial;
+use crate::catalogue::deviation::Deviation;
 use crate::stats::gate::{self, Decision, Design};
 use crate::stats::verdict::BLOCK;
 use crate::stats::verdict::{GateFinding, Verdict};
 
 impl Scalar {
+    /// The scalar with the quantity that it stands for, by which messages tell it.
+    pub(super) fn of(self, trial: &Trial) -> Self {
+        let claim = &trial.claim;
+        let lookups = claim.lookups.map_or(1.0, |claimed| claimed.mean);
+        let (expected, scale) = match self.ask.check {
+            "variance" => (claim.variance.unwrap_or(1.0), claim.variance.unwrap_or(1.0)),
+            "lookups" => (lookups, lookups),
+            _ => (claim.truth, claim.unit),
+        };
+        let unit = if trial.wanted.batch > 1 { "averages" } else { "draws" };
+        Self { expected, scale, unit, ..self }
+    }
+
     /// What was found.
     pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
@@ -74,6 +89,12 @@ impl Scalar {
         }
     }
 
+    /// How far the quantity is from what is claimed, where y is `off` on average.
+    fn deviation(&self, off: f64, draws: u64) -> Deviation {
+        let &Self { expected, scale, unit, .. } = self;
+        Deviation { unit, ..Deviation::new(expected + scale * off, expected, draws) }
+    }
+
     fn verdict(&self) -> (Verdict, String) {
         let what = self.ask.what;
         let weak = if self.is_promised { Verdict::Inconclusive } else { Verdict::Underpowered };
@@ -88,21 +109,17 @@ impl Scalar {
                 _ => self.past.variance(),
             };
             let z = off / (known / n as f64).sqrt();
+            let z = if self.past.kurtosis().is_finite() { z } else { f64::NAN };
             let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
-            let z = if z.is_finite() && self.past.kurtosis().is_finite() {
-                format!(", {z:+.1} standard errors")
-            } else {
-                String::new()
-            };
-            let reason = format!(
-                "the {what} is off by {off:+.2e}{z} (ln E = {found:.1} ≥ {limit:.1} after {n} draws)"
-            );
+            let told = self.deviation(off, n).with_z(z);
+            let reason = format!("the {what} is off by {told} (ln E = {found:.1} ≥ {limit:.1})");
             return (Verdict::Fail, reason);
         }
         let looks_off = || {
-            let (mean, cure) = (self.past.mean(), self.cure());
+            let told = self.deviation(self.past.mean(), self.past.draws());
+            let cure = self.cure();
             format!(
-                "the {what} looks off by {mean:+.2e}, but no number of draws can show that without {cure}"
+                "the {what} looks off by {told}, but no number of draws can show that without {cure}"
             )
         };
         let Some(design) = self.design.filter(|_| is_founded) else {

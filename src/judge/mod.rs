@@ -33,6 +33,7 @@ mod grounds;
 #[cfg(feature = "library")]
 pub mod images;
 pub mod judgement;
+mod likely;
 #[cfg(feature = "library")]
 mod of_case;
 pub mod reading;

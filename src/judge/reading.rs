@@ -109,7 +109,7 @@ impl Reading {
         let planned = planned(&asks, length);
         let scalar = |check: &str| {
             let ask = asks.iter().find(|ask| ask.check == check);
-            ask.map(|&ask| Scalar::new(ask, planned, levels))
+            ask.map(|&ask| Scalar::new(ask, planned, levels).of(&trial))
         };
         Self {
             trial,

@@ -66,6 +66,12 @@ pub(super) struct Change {
 /// A scalar on its way.
 pub(super) struct Scalar {
     pub ask: Ask,
+    /// The quantity that y stands for, as it is claimed.
+    pub(super) expected: f64,
+    /// How much of the quantity y = 1 is.
+    pub(super) scale: f64,
+    /// What is counted, in the plural.
+    pub(super) unit: &'static str,
     pub(super) levels: Levels,
     /// n: how many draws are planned, if anybody knows.
     pub(super) planned: Option<f64>,
@@ -108,6 +114,9 @@ impl Scalar {
             is_doubted: false,
             change: Change { ln_e: 0.0, from: 0, off: 0.0 },
             seen: (0.0, 0),
+            expected: 0.0,
+            scale: 1.0,
+            unit: "draws",
             ask,
         };
         if let Some(Spread::Known(variance)) = ask.spread {

@@ -20,6 +20,7 @@ impl Judgement {
         lines.push(("order", order(&self.independence)));
         lines.extend(self.guarantees.iter().map(|promise| ("promise", promise.clone())));
         lines.push(("verdict", self.to_string()));
+        lines.extend(self.pattern().lines().into_iter().map(|line| ("likely", line)));
         lines
     }
 }

@@ -10,6 +10,7 @@ use crate::baseline::Comparison;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
+use crate::report::likely;
 
 /// How many of a kind GitHub shows.
 const MOST: usize = 10;
@@ -80,8 +81,11 @@ fn of_failure(verdict: Verdict, failure: &Failure) -> String {
     if !failure.check().is_empty() {
         said = format!("{}: {said}", failure.check());
     }
-    if !row.command.is_empty() {
-        said = format!("{said}\nrepeat: {}", row.command);
+    if let Some((word, command)) = row.next_command() {
+        said = format!("{said}\n{word}: {command}");
+    }
+    for line in likely::lines(case, row) {
+        said = format!("{said}\n{line}");
     }
     format!("{properties}::{}", message(&said))
 }

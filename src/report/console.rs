@@ -209,6 +209,11 @@ fn footnotes(
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
     limits(text, pen, case);
+    let mut commands: Vec<(&str, &str)> = Vec::new();
+    for row in case.rows.iter().filter(|row| row.verdict == Some(Verdict::Inconclusive)) {
+        let next = row.next_command().map(|(_, command)| (row.estimator.as_str(), command));
+        commands.extend(next.filter(|next| !commands.contains(next)));
+    }
     for rows in notes {
         let (row, status) = (rows[0], views::status(rows[0], view).text);
         let positions = views::positions(case, &rows, labels);
@@ -216,5 +221,9 @@ fn footnotes(
         let word = if status.is_empty() { "note" } else { &status };
         let note = format!("{word} {}{at}: {}", row.estimator, row.reason);
         pen.note(text, &note, (word, views::status(row, view).paint));
+    }
+    // Whole, so that it can be copied.
+    for (estimator, command) in commands {
+        let _ = writeln!(text, "  to decide {estimator}: {command}");
     }
 }

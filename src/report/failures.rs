@@ -2,9 +2,11 @@
 
 use std::borrow::Cow;
 
-use crate::catalogue::digits::{short, signed};
+use crate::catalogue::deviation::signed_percent;
+use crate::catalogue::digits::{percent, short, signed};
 use crate::harness::record::{CaseRecord, Finding, Record, Row, Verdict};
 use crate::report::labels::Labels;
+use crate::report::likely;
 
 /// A finding that is not as it should be, with what it belongs to.
 #[derive(Debug, Clone, Copy)]
@@ -112,10 +114,11 @@ impl<'a> Failure<'a> {
         format!("{} ({})", parts.join(": "), self.place())
     }
 
-    /// Everything that is known, one name and value to a line.
+    /// Everything that is known, one name and value to a line, and what usually causes it.
     pub fn details(&self) -> String {
-        let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}\n"));
-        lines.collect()
+        let lines = self.facts().into_iter().map(|(name, value)| format!("{name}: {value}"));
+        let all: Vec<String> = lines.chain(likely::lines(self.case, self.row)).collect();
+        all.join("\n") + "\n"
     }
 
     fn facts(&self) -> Vec<(&'static str, Cow<'a, str>)> {
@@ -156,14 +159,16 @@ impl<'a> Failure<'a> {
             let is_declared = finding.is_some_and(|finding| finding.expects_bias);
             let word = if is_declared { "shows the declared bias" } else { "fails" };
             add("draws of the gate", Some(gate.draws.to_string().into()));
-            add("mean deviation, relative", Some(number(gate.mean)));
-            add("tolerance", Some(number(gate.tolerance)));
+            add("deviation", Some(signed_percent(gate.mean).into()));
+            add("tolerance", Some(percent(gate.tolerance).into()));
             add("ln E", Some(limited(&short(gate.ln_e, 4), word, gate.ln_e_limit)));
             let both = format!("{above} and {below}");
             add("ln P", Some(limited(&both, "passes", gate.ln_p_limit)));
             add("draws needed", gate.needed.map(number));
         }
-        add("repeat", Some(row.command.as_str().into()).filter(|_| !row.command.is_empty()));
+        if let Some((word, command)) = row.next_command() {
+            add(word, Some(command.into()));
+        }
         facts.retain(|fact| !fact.1.is_empty());
         facts
     }

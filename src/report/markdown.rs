@@ -8,6 +8,7 @@ use crate::catalogue::digits::range;
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::{Failure, failing};
+use crate::report::likely;
 use crate::report::totals;
 
 /// A job's summary may have a mebibyte: beyond so many rows the file only counts.
@@ -62,15 +63,31 @@ fn section(text: &mut String, title: &str, failures: &[Failure]) {
         let _ = writeln!(text, "| {} |", cells.map(|cell| escaped(&cell)).join(" | "));
     }
     more(text, failures.len());
-    let mut commands: Vec<&str> = Vec::new();
+    let mut told: Vec<Vec<String>> = Vec::new();
     for failure in failures.iter().take(MOST) {
-        let command = failure.row.command.as_str();
-        if !command.is_empty() && !commands.contains(&command) {
-            commands.push(command);
+        let lines = likely::lines(failure.case, failure.row);
+        if lines.is_empty() || told.contains(&lines) {
+            continue;
         }
+        let first = format!("{}: {}: {}", failure.case.name, failure.row.estimator, lines[0]);
+        let _ = writeln!(text, "\n{}\n", escaped(&first));
+        for line in &lines[1..] {
+            let item = line.strip_prefix("- ").unwrap_or(line);
+            let _ = writeln!(text, "- {}", escaped(item));
+        }
+        told.push(lines);
     }
-    if !commands.is_empty() {
-        let _ = writeln!(text, "\nTo repeat:\n\n```sh\n{}\n```", commands.join("\n"));
+    let mut commands: Vec<(&str, &str)> = Vec::new();
+    for failure in failures.iter().take(MOST) {
+        let next = failure.row.next_command();
+        commands.extend(next.filter(|next| !commands.contains(next)));
+    }
+    for word in ["repeat", "decide"] {
+        let of_word = commands.iter().filter(|next| next.0 == word).map(|next| next.1);
+        let of_word: Vec<&str> = of_word.collect();
+        if !of_word.is_empty() {
+            let _ = writeln!(text, "\nTo {word}:\n\n```sh\n{}\n```", of_word.join("\n"));
+        }
     }
     text.push('\n');
 }

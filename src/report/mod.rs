@@ -16,6 +16,7 @@ pub mod html;
 pub mod judge;
 pub mod junit;
 pub mod labels;
+pub mod likely;
 pub mod markdown;
 pub mod plots;
 pub mod record_json;

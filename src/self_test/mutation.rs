@@ -6,10 +6,11 @@
 
 use std::collections::HashMap;
 
+use crate::catalogue::causes::Pattern;
 use crate::estimators::{DrawBuffer, Experiment};
 use crate::harness::levels::Levels;
 use crate::harness::mutation::{self, Walk};
-use crate::harness::options::Options;
+use crate::harness::options::{Amount, Options};
 use crate::harness::plan::{BLOCK, Plan, Planned};
 use crate::harness::record::{Finding, Verdict};
 use crate::harness::{Case, CaseError, evaluate, run, suite};
@@ -93,6 +94,34 @@ pub fn of(seed: u64, is_wanted: &dyn Fn(&str) -> bool) -> Result<Vec<Caught>, Ca
     Ok(caught)
 }
 
+/// Which checks fail of each mutant of some names where nothing stops the drawing early, in the order of
+/// [`mutants::all`], those of streams at the end.
+///
+/// # Errors
+///
+/// A built-in case that cannot be read.
+pub fn patterns(
+    seed: u64,
+    draws: u64,
+    is_wanted: &dyn Fn(&str) -> bool,
+) -> Result<Vec<(&'static str, Pattern)>, CaseError> {
+    let cases: Vec<Case> = suite::suite().iter().map(Case::read).collect::<Result<_, _>>()?;
+    let options = Options { seed, draws: Amount::Exactly(draws), ..Options::default() };
+    let levels = Plan::new(&cases, &options).levels;
+    let bench = Bench { cases: &cases, options, levels };
+    let abouts: Vec<About> =
+        mutants::all().into_iter().filter(|about| is_wanted(about.name)).collect();
+    let of_streams: Vec<&StreamMutant> =
+        streams::MUTANTS.iter().filter(|mutant| is_wanted(mutant.name)).collect();
+    let mut found = parallel::map(&abouts, |about| {
+        (about.name, bench.faulty(about, None).map(|judged| judged.pattern()).unwrap_or_default())
+    });
+    found.extend(parallel::map(&of_streams, |mutant| {
+        (mutant.name, bench.with_streams(mutant, None).map(|j| j.pattern()).unwrap_or_default())
+    }));
+    Ok(found)
+}
+
 /// The built-in suite, on which mutants are drawn one experiment at a time.
 struct Bench<'a> {
     cases: &'a [Case],
@@ -124,34 +153,48 @@ impl<'a> Bench<'a> {
             .all(|finding| matches!(finding.verdict, Verdict::Pass | Verdict::Underpowered))
     }
 
+    /// The plan of a mutant's experiment, and the mutant or its twin.
+    fn walk(
+        &self,
+        about: &About,
+        walk: Walk,
+        until_failed: Option<&str>,
+    ) -> Option<(Plan<'a>, Box<dyn Experiment>)> {
+        let plan = self.plan(&about.target, until_failed)?;
+        let case = plan.cases.first()?;
+        let (case, planned) = (case.case, case.experiments.first()?);
+        let drawn = mutation::experiment(about, walk, case, planned, self.options.seed)?;
+        Some((plan, drawn.ok()?))
+    }
+
+    /// What is found of a mutant.
+    fn faulty(&self, about: &About, until_failed: Option<&str>) -> Option<Judged> {
+        let (mut plan, faulty) = self.walk(about, Walk::Faulty, until_failed)?;
+        let planned = plan.cases.first_mut()?.experiments.first_mut()?;
+        planned.outcome.as_mut().ok()?.experiment = faulty;
+        Some(Self::judged(&plan))
+    }
+
     fn estimator(&self, about: &About, honest_passes: bool) -> Caught {
-        let walk = |walk: Walk| -> Option<(Plan<'a>, Box<dyn Experiment>)> {
-            let plan = self.plan(&about.target, Some(about.check))?;
-            let case = plan.cases.first()?;
-            let (case, planned) = (case.case, case.experiments.first()?);
-            let drawn = mutation::experiment(about, walk, case, planned, self.options.seed)?;
-            Some((plan, drawn.ok()?))
-        };
-        let is_twin = walk(Walk::Twin).is_some_and(|(plan, twin)| {
+        let is_twin = self.walk(about, Walk::Twin, None).is_some_and(|(plan, twin)| {
             plan.cases[0].experiments.first().is_some_and(|planned| same(planned, twin.as_ref()))
         });
-        let judged = walk(Walk::Faulty).and_then(|(mut plan, faulty)| {
-            let planned = plan.cases.first_mut()?.experiments.first_mut()?;
-            planned.outcome.as_mut().ok()?.experiment = faulty;
-            Some(Self::judged(&plan))
-        });
+        let judged = self.faulty(about, Some(about.check));
         let About { name, bug, target, check } = *about;
         caught([name, bug, check], &target, judged.as_ref(), is_twin && honest_passes)
     }
 
+    /// What is found of wrong streams.
+    fn with_streams(&self, mutant: &StreamMutant, until_failed: Option<&str>) -> Option<Judged> {
+        let mut plan = self.plan(&streams::TARGET, until_failed)?;
+        for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
+            planned.find_streams = mutant.streams;
+        }
+        Some(Self::judged(&plan))
+    }
+
     fn streams(&self, mutant: &StreamMutant, twin_passes: bool) -> Caught {
-        let plan = self.plan(&streams::TARGET, Some(mutant.check));
-        let judged = plan.map(|mut plan| {
-            for planned in plan.cases.iter_mut().flat_map(|case| &mut case.experiments) {
-                planned.find_streams = mutant.streams;
-            }
-            Self::judged(&plan)
-        });
+        let judged = self.with_streams(mutant, Some(mutant.check));
         let words = [mutant.name, mutant.bug, mutant.check];
         caught(words, &streams::TARGET, judged.as_ref(), twin_passes)
     }
@@ -161,6 +204,17 @@ impl<'a> Bench<'a> {
 struct Judged {
     fixed: u64,
     findings: Vec<Finding>,
+}
+
+impl Judged {
+    /// Which checks fail.
+    fn pattern(&self) -> Pattern {
+        let mut pattern = Pattern::default();
+        for finding in self.findings.iter().filter(|found| found.verdict == Verdict::Fail) {
+            pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
+        }
+        pattern
+    }
 }
 
 fn caught(

@@ -6,6 +6,7 @@ mod bench;
 mod bidirectional_rod;
 mod calibration;
 mod cases;
+mod causes;
 mod channels;
 mod check;
 mod chromatic_slab;

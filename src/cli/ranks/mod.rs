@@ -96,7 +96,7 @@ fn serve(
     let drawn = run::Arguments::of(&words).and_then(|asked| {
         let selection = asked.selection.clone().on_threads_of(&arguments.selection);
         let cases = selection.read(catalogue, console)?;
-        selection.with_plan(&cases, &asked.options()?, |plan| {
+        selection.with_plan(&cases, &asked.options()?, console, |plan| {
             let header = Header::new(plan, &fingerprint()?, &words, None);
             draw(link, plan, header);
             Ok(())

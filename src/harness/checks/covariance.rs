@@ -52,7 +52,8 @@ fn ask(subject: &Subject, covariance: &Predicted) -> Option<Question> {
                     (a - truth[0]) * scale[0] * ((b - truth[1]) * scale[1]) - expected
                 }));
             };
-        Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Draw(Box::new(observe))))
+        let observe = Observe::Draw(Box::new(observe));
+        Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(covariance.value, 1.0 / unit))
     } else {
         Kind::Untestable("its variance overflows".into())
     };

@@ -29,7 +29,8 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
             let scale = 1.0 / mean;
             y.extend(counts.iter().map(|&m| f64::from(m) * scale - 1.0));
         };
-        Kind::Scalar(Scalar::new(subject, known, wanted, Observe::Lookups(Box::new(observe))))
+        let observe = Observe::Lookups(Box::new(observe));
+        Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(mean, mean))
     } else {
         let largest = move |draws: &DrawBuffer| {
             let counts = draws.lookups.iter();

@@ -98,5 +98,5 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Kind {
         move |x| (x - truth) * scale,
     );
     let wanted = Wanted { tolerance: subject.tolerance.mean, cap: CAP };
-    Kind::Scalar(Scalar::new(subject, known, wanted, observe))
+    Kind::Scalar(Scalar::new(subject, known, wanted, observe).of(truth, channel.unit))
 }

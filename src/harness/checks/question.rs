@@ -116,6 +116,10 @@ pub struct Scalar {
     /// The draws that it would need to pass, where more than are planned: it may fail, but was
     /// never promised to pass.
     pub underpowered: Option<f64>,
+    /// The quantity that y stands for, in theory: for messages.
+    pub expected: f64,
+    /// How much of the quantity y = 1 is.
+    pub scale: f64,
 }
 
 /// What is known of a scalar.
@@ -156,7 +160,14 @@ impl Scalar {
             (needed > draws * (1.0 + 1e-6)).then_some(needed)
         };
         let least = needs(Design::new(variance, widest, known.floor).tolerance);
-        Self { observe, bias: 0.0, design, draws: needs(design.tolerance), least, underpowered }
+        let draws = needs(design.tolerance);
+        let (expected, scale) = (0.0, 1.0);
+        Self { observe, bias: 0.0, design, draws, least, underpowered, expected, scale }
+    }
+
+    /// The question with its quantity: `expected` in theory, and `expected + scale y` where y is measured.
+    pub fn of(self, expected: f64, scale: f64) -> Self {
+        Self { expected, scale, ..self }
     }
 }
 

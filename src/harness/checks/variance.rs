@@ -58,5 +58,6 @@ fn kind(subject: &Subject, index: usize, channel: &Channel) -> Option<Kind> {
         },
     );
     let wanted = Wanted { tolerance: subject.tolerance.variance, cap: CAP };
-    Some(Kind::Scalar(Scalar::new(subject, known, wanted, observe)))
+    let scalar = Scalar::new(subject, known, wanted, observe);
+    Some(Kind::Scalar(scalar.of(variance, variance)))
 }

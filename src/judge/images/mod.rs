@@ -39,6 +39,7 @@ mod claim;
 mod error;
 pub mod files;
 pub mod judgement;
+mod likely;
 mod neighbours;
 mod order;
 mod picture;

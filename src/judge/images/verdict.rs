@@ -2,7 +2,8 @@
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Judgement, Refuted, Tile};
-use crate::catalogue::digits::short;
+use crate::catalogue::deviation::Deviation;
+use crate::catalogue::digits::percent;
 use crate::stats::gate::VARIANCE_MARGIN;
 use crate::stats::verdict::Verdict;
 
@@ -24,8 +25,8 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
     let mut failing = Vec::new();
     if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
         failing.push(format!(
-            "the variance is too small: values spread {:.3} times as wide (ln E = {:.1} ≥ {:.1})",
-            variance.about_mean, variance.ln_e, variance.limit
+            "the variance is too small: that of the values is {} of it (ln E = {:.1} ≥ {:.1})",
+            percent(variance.about_mean), variance.ln_e, variance.limit
         ));
         // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
         let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
@@ -131,19 +132,15 @@ fn channel(judgement: &Judgement, channel: usize) -> String {
 }
 
 fn off(judgement: &Judgement, tile: &Tile) -> String {
-    let z = tile.z.map_or(String::new(), |z| format!(", z = {z:+.2}"));
+    let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64).with_z(tile.z.unwrap_or(f64::NAN));
+    let told = Deviation { unit: "passes", ..told };
     let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
     let channel = if is_whole {
         channel(judgement, tile.channel).replacen(", ", " in ", 1)
     } else {
         String::new()
     };
-    format!(
-        "mean {}{channel}, truth {}{z} (ln E = {:.1})",
-        short(tile.mean, 7),
-        short(tile.truth, 7),
-        tile.ln_e
-    )
+    format!("the mean{channel} is off by {told} (ln E = {:.1})", tile.ln_e)
 }
 
 /// What is wrong with a value.

@@ -3,13 +3,14 @@
 
 use std::fmt::Write;
 
-use super::layout::{Grid, Paint, Pen};
+use super::layout::{Grid, Paint, Pen, wrapped};
 use super::{View, views};
 use crate::baseline::Comparison;
 use crate::catalogue::digits::{fixed, range, short};
 use crate::harness::record::{CaseRecord, Record, Verdict};
 use crate::report::diff;
 use crate::report::failures::failing;
+use crate::report::likely;
 use crate::report::totals;
 
 /// Beyond so many, suspects are only counted.
@@ -21,6 +22,9 @@ pub fn write(text: &mut String, pen: Pen, record: &Record, view: View) {
         visible(text, pen, record);
         suspects(text, pen, record);
         failures(text, pen, record);
+    }
+    if view == View::Plan {
+        foreseen(text, pen, &record.results.cases);
     }
     counts(text, pen, record, view);
     let mut facts = totals::control(record);
@@ -89,18 +93,62 @@ fn suspects(text: &mut String, pen: Pen, record: &Record) {
     text.push('\n');
 }
 
+/// A line below a failure, wrapped.
+fn indented(line: &str, pen: Pen) -> Vec<String> {
+    let parts = wrapped(line, pen.width.saturating_sub(6)).into_iter().enumerate();
+    parts.map(|(i, part)| format!("{}{part}", if i == 0 { "    " } else { "      " })).collect()
+}
+
 /// One line per failing finding, and the command that repeats it, whole so that it can be copied.
 fn failures(text: &mut String, pen: Pen, record: &Record) {
     let failures = failing(record, Verdict::Fail);
-    for failure in &failures {
+    let mut told: Vec<Vec<String>> = Vec::new();
+    for (i, failure) in failures.iter().enumerate() {
         let word = Verdict::Fail.word();
         pen.note(text, &format!("{word} {}", failure.line()), (word, Paint::Red));
-        if !failure.row.command.is_empty() {
-            let _ = writeln!(text, "    repeat: {}", failure.row.command);
+        if let Some((word, command)) = failure.row.next_command() {
+            let _ = writeln!(text, "    {word}: {command}");
+        }
+        // Once for all findings of a row, and once for all rows alike of an estimator.
+        let likely = likely::lines(failure.case, failure.row);
+        let next = failures.get(i + 1);
+        let is_last = next.is_none_or(|next| !std::ptr::eq(next.row, failure.row));
+        if is_last && !likely.is_empty() && !told.contains(&likely) {
+            for part in likely.iter().flat_map(|line| indented(line, pen)) {
+                let _ = writeln!(text, "{part}");
+            }
+            told.push(likely);
         }
     }
     if !failures.is_empty() {
         text.push('\n');
+    }
+}
+
+/// What the planned draws leave inconclusive, case by case, with the command that decides it.
+fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
+    let rows = |case: &CaseRecord, verdict| {
+        case.rows.iter().filter(|row| row.foreseen == Some(verdict)).count()
+    };
+    let open = cases.iter().filter(|case| rows(case, Verdict::Inconclusive) > 0);
+    for case in open {
+        let word = Verdict::Inconclusive.word();
+        let (open, all) = (rows(case, Verdict::Inconclusive), case.rows.len());
+        let draws = "the planned draws are too few for a pass";
+        pen.note(text, &format!("{word} {}: {open} of {all} rows: {draws}", case.name), (word, Paint::Yellow));
+        if !case.decide.is_empty() {
+            let _ = writeln!(text, "    decide: {}", case.decide);
+        }
+    }
+    let weak: usize = cases.iter().map(|case| rows(case, Verdict::Underpowered)).sum();
+    if weak > 0 {
+        let word = Verdict::Underpowered.word();
+        let rows = if weak == 1 { "1 row".to_owned() } else { format!("{weak} rows") };
+        let note = format!(
+            "{word} {rows}: a check other than the mean, or one that the case allows, has too few draws for a \
+             pass; the column `needed` says how many it takes"
+        );
+        pen.note(text, &note, (word, Paint::Dim));
     }
 }
 

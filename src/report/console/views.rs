@@ -1,6 +1,6 @@
 //! Which columns each view of the table has, and what stands in them.
 
-use crate::catalogue::digits::{count, fixed, percent, short, signed};
+use crate::catalogue::digits::{count, enough, fixed, percent, short, signed};
 use crate::harness::record::{CaseRecord, Row, Verdict};
 use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
@@ -80,6 +80,7 @@ const MOMENTS: &[Spec] = &[
 ];
 
 const PLAN: &[Spec] = &[
+    ("needed", true, 1, |row| row.needed_draws.map(enough).unwrap_or_default()),
     ("lookups", true, 2, |row| digits(row.predicted_lookups, 4)),
     SETUP,
     NEEDS,
@@ -182,8 +183,13 @@ pub fn is_skipped(row: &Row, view: View) -> bool {
 
 /// The word for what became of a row.
 pub fn status(row: &Row, view: View) -> Field {
+    let status_of = |verdict: Option<Verdict>| {
+        let paint = verdict.map_or(Paint::Plain, paint);
+        Field { text: verdict.map_or("", Verdict::word).to_owned(), paint }
+    };
     match row.verdict {
-        Some(verdict) => Field { text: verdict.word().to_owned(), paint: paint(verdict) },
+        Some(_) => status_of(row.verdict),
+        None if row.foreseen.is_some() => status_of(row.foreseen),
         None if is_skipped(row, view) => Field { text: "skipped".to_owned(), paint: Paint::Dim },
         None => Field::plain(String::new()),
     }

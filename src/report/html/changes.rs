@@ -42,7 +42,7 @@ fn drift(drift: &Drift) -> Markup {
         th scope="row" { (id) }
         td { (check) }
         td colspan="4" { "ln E = " (words::evidence(*ln_e)) " ≥ " (short(*limit, 3)) }
-        td { (page::command(command)) }
+        td { (page::command(Some(("repeat", command)))) }
     } }
 }
 
@@ -76,6 +76,6 @@ fn change(change: &Change) -> Markup {
                 None => { "unknown" }
             }
         }
-        td { @if change.is_regression { (page::command(&change.command)) } }
+        td { @if change.is_regression { (page::command(Some(("repeat", &change.command)))) } }
     } }
 }

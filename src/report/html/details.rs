@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::plots::Plot;
 use super::{page, sparks, words};
 use crate::harness::record::{Finding, Row, Verdict};
+use crate::report::likely;
 use crate::report::rows::JoinedRow;
 
 /// Everything that is known of a row.
@@ -12,7 +13,8 @@ pub fn of(joined: &JoinedRow, plots: &[Plot]) -> Markup {
     let JoinedRow { case, row, .. } = joined;
     html! {
         @if !row.reason.is_empty() { p.reason { (row.reason) } }
-        (page::command(&row.command))
+        (page::command(row.next_command()))
+        (page::causes(&likely::lines(case, row)))
         p { a href={ "#" (words::anchor(case, row)) } { "Address of this row" } }
         @if row.verdict != Some(Verdict::Refused) { (numbers(row)) (sparks::evidence(&row.findings)) }
         dl.facts {

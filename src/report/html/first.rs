@@ -7,6 +7,7 @@ use crate::baseline::Comparison;
 use crate::catalogue::digits::{percent, range, short, time};
 use crate::harness::record::{Record, Verdict};
 use crate::report::failures::{Failure, experiment, failing};
+use crate::report::likely;
 use crate::report::totals;
 
 /// So many findings of a kind stand on the first screen; the table has all.
@@ -194,7 +195,8 @@ fn failures(title: &str, failures: &[Failure]) -> Markup {
                         h3 { a href={ "#" (words::anchor(failure.case, failure.row)) } { (failure.case.name) ": " (failure.experiment()) } }
                         p { @if !failure.check().is_empty() { b { (failure.check()) } ": " }
                             (failure.reason()) " (" (failure.place()) ")" }
-                        (page::command(&failure.row.command))
+                        (page::command(failure.row.next_command()))
+                        (page::causes(&likely::lines(failure.case, failure.row)))
                     }
                 }
                 (more(failures.len(), MOST))

@@ -34,11 +34,24 @@ pub fn document(title: &str, sections: &Markup) -> String {
     OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
 }
 
-/// A command to copy: the page's script adds a button that does it.
-pub fn command(command: &str) -> Markup {
+/// What usually causes a failure, folded.
+pub fn causes(lines: &[String]) -> Markup {
+    let item = |line: &String| line.strip_prefix("- ").unwrap_or(line).to_owned();
     html! {
-        @if !command.is_empty() {
-            p.command { code { (command) } }
+        @if let Some((first, rest)) = lines.split_first() {
+            details {
+                summary { (first) }
+                ul { @for line in rest { li { (item(line)) } } }
+            }
+        }
+    }
+}
+
+/// A command to copy, with the word that says what it does: the page's script adds a button that copies it.
+pub fn command(command: Option<(&str, &str)>) -> Markup {
+    html! {
+        @if let Some((word, command)) = command.filter(|command| !command.1.is_empty()) {
+            p.command title=(word) { code { (command) } }
         }
     }
 }

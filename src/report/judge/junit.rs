@@ -39,7 +39,10 @@ impl Told {
             name: name.to_owned(),
             verdict: judgement.verdict,
             reason: judgement.reason.clone(),
-            lines: known.chain(judgement.guarantees.iter().cloned()).collect(),
+            lines: known
+                .chain(judgement.guarantees.iter().cloned())
+                .chain(judgement.pattern().lines())
+                .collect(),
         }
     }
 
@@ -57,7 +60,10 @@ impl Told {
             name: name.to_owned(),
             verdict: judgement.verdict,
             reason: judgement.reason.clone(),
-            lines: numbers.chain(judgement.guarantees.iter().cloned()).collect(),
+            lines: numbers
+                .chain(judgement.guarantees.iter().cloned())
+                .chain(judgement.pattern().lines())
+                .collect(),
         }
     }
 }

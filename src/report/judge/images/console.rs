@@ -48,6 +48,9 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     let why =
         if judgement.reason.is_empty() { String::new() } else { format!(": {}", judgement.reason) };
     line("verdict", &format!("{}{why}", judgement.verdict.word()));
+    for likely in judgement.pattern().lines() {
+        line("likely", &likely);
+    }
     text
 }
 
