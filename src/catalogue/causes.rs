@@ -3,9 +3,9 @@
 //! A pattern is which checks failed, and on which side. The causes of a pattern are the frequent kinds of the known
 //! bugs (`trueflight self-test`) that leave it. They are likely, not certain.
 
-pub mod table;
+mod table;
 
-pub use table::{Cause, causes};
+pub use table::{CAUSES, Cause, Line, TABLE, line};
 
 /// The side on which a quantity is off.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -59,6 +59,22 @@ pub enum Place {
     HighEnd,
 }
 
+impl Place {
+    /// What that says by itself.
+    pub fn hint(self) -> Option<&'static str> {
+        match self {
+            Self::Anywhere => None,
+            Self::LowEnd => Some(
+                "where σ̂ is small, σ_t exceeds it: 1 − σ_t/σ̂ is negative there, and its sign, its size or a probability \
+                 made of it is wrong",
+            ),
+            Self::HighEnd => Some(
+                "where σ̂ is large, walks have many collisions: a cap on them, an early end, or rounding of small steps",
+            ),
+        }
+    }
+}
+
 /// Which checks of an experiment fail, and on which side.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Pattern {
@@ -101,11 +117,6 @@ impl Pattern {
             _ => {}
         }
     }
-
-    /// Whether nothing failed.
-    pub fn is_empty(&self) -> bool {
-        Self { place: Place::Anywhere, ..*self } == Self::default()
-    }
 }
 
 impl Pattern {
@@ -117,8 +128,11 @@ impl Pattern {
             Side::High => "high",
             Side::Both => "off",
         };
-        let sides =
-            [("the mean", self.mean), ("the variance", self.variance), ("the number of lookups", self.lookups)];
+        let sides = [
+            ("the mean", self.mean),
+            ("the variance", self.variance),
+            ("the number of lookups", self.lookups),
+        ];
         let mut said: Vec<String> = sides
             .iter()
             .filter(|(_, of)| of.is_off())
@@ -143,12 +157,10 @@ impl Pattern {
 
     /// The lines that follow a failure: its likely causes, and where the manual says more. Empty without a failure.
     pub fn lines(&self) -> Vec<String> {
-        let causes = causes(self);
-        if causes.is_empty() {
-            return Vec::new();
-        }
+        let Some(line) = line(self) else { return Vec::new() };
         let mut lines = vec![format!("usual causes where {}:", self.words())];
-        lines.extend(causes.iter().map(|cause| format!("- {}", cause.text)));
+        lines.extend(self.place.hint().map(|hint| format!("- {hint}")));
+        lines.extend(line.causes.iter().map(|cause| format!("- {}", cause.text)));
         lines.push(format!("more in the manual: {PAGE}, \"My estimator fails\""));
         lines
     }

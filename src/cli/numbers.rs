@@ -71,7 +71,8 @@ pub fn seconds(text: &str) -> Result<f64, String> {
         None => (text, 1.0),
     };
     let time = number.parse::<f64>().map(|time| time * unit);
-    let wrong = || "it takes a time above 0, such as 30s, 5m or 1h; without a unit it is in seconds";
+    let wrong =
+        || "it takes a time above 0, such as 30s, 5m or 1h; without a unit it is in seconds";
     time.ok().filter(|time| *time > 0.0 && time.is_finite()).ok_or_else(|| wrong().into())
 }
 
@@ -86,12 +87,16 @@ pub enum Budget {
 
 /// A time with its unit, or a number of draws: one block at least, for all experiments together.
 pub fn budget(text: &str) -> Result<Budget, String> {
-    let takes = format!("a time such as 30s or 5m, or a number of draws from {BLOCK} to 1e12, such as 1e8");
+    let takes =
+        format!("a time such as 30s or 5m, or a number of draws from {BLOCK} to 1e12, such as 1e8");
     if text.ends_with(['s', 'm', 'h']) {
         return seconds(text).map(Budget::Seconds).map_err(|_| format!("it takes {takes}"));
     }
     let small = |number: &f64| *number > 0.0 && *number < BLOCK as f64;
-    match (whole_draws(text).filter(|&draws| draws >= BLOCK), text.parse::<f64>().ok().filter(small)) {
+    match (
+        whole_draws(text).filter(|&draws| draws >= BLOCK),
+        text.parse::<f64>().ok().filter(small),
+    ) {
         (Some(draws), _) => Ok(Budget::Draws(draws)),
         // Five of what?
         (None, Some(_)) => Err(format!(
@@ -118,7 +123,10 @@ mod tests {
                 assert!(said.contains(&cure), "{said}");
             }
         }
-        for wrong in ["0", "-1", "-5m", "nan", "inf", "1e308", "1e13", "16384.5", "1e308h", "0s", "m", "", "many"] {
+        for wrong in [
+            "0", "-1", "-5m", "nan", "inf", "1e308", "1e13", "16384.5", "1e308h", "0s", "m", "",
+            "many",
+        ] {
             let said = budget(wrong).expect_err(wrong);
             assert!(said.contains("30s") && said.contains("1e8"), "{wrong}: {said}");
         }
@@ -126,7 +134,10 @@ mod tests {
 
     #[test]
     fn a_time_is_finite_and_above_0() {
-        assert_eq!((seconds("90"), seconds("1.5m"), seconds("1h")), (Ok(90.0), Ok(90.0), Ok(3600.0)));
+        assert_eq!(
+            (seconds("90"), seconds("1.5m"), seconds("1h")),
+            (Ok(90.0), Ok(90.0), Ok(3600.0))
+        );
         for wrong in ["0", "-1", "nan", "inf", "1e308h", "5d", "s", "", "5 m"] {
             assert!(seconds(wrong).is_err_and(|said| said.contains("30s")), "{wrong}");
         }

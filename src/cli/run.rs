@@ -137,15 +137,16 @@ fn draw_share(
     let cases = selection.read(catalogue, console)?;
     output::writable(&arguments.out)?;
     let out = arguments.out.display();
-    let (is_whole, was_finished) = selection.with_plan(&cases, &arguments.options()?, console, |plan| {
-        let store = store(plan)?;
-        let was_finished = store.files.iter().any(|file| file.is_finished);
-        let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
-        if is_whole && !was_finished {
-            store.files.iter().try_for_each(Blocks::finish)?;
-        }
-        Ok((is_whole, was_finished))
-    })?;
+    let (is_whole, was_finished) =
+        selection.with_plan(&cases, &arguments.options()?, console, |plan| {
+            let store = store(plan)?;
+            let was_finished = store.files.iter().any(|file| file.is_finished);
+            let is_whole = was_finished || drawing::draw_share(plan, share, &store, console)?;
+            if is_whole && !was_finished {
+                store.files.iter().try_for_each(Blocks::finish)?;
+            }
+            Ok((is_whole, was_finished))
+        })?;
     if !is_whole {
         let cure = journal::resume(&arguments.out);
         anyhow::bail!("interrupted: share {share} is not finished; {cure} goes on with it");

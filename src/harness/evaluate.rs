@@ -123,7 +123,7 @@ impl Experiment<'_> {
                 Finding { p: Some(look(&inspected)), verdict: Verdict::Pass, ..finding }
             }
             (Kind::Always(always), &Total::Largest(largest, block)) => {
-                let (verdict, reason) = kept(question, always, largest);
+                let (verdict, reason) = self.kept(question, always, largest);
                 let block = (verdict == Verdict::Fail).then_some(block);
                 Finding { block, verdict, reason, ..finding }
             }
@@ -224,38 +224,53 @@ impl Experiment<'_> {
             }
         }
     }
+
+    /// The verdict on a bound that every draw must keep.
+    fn kept(&self, question: &Question, always: &Always, largest: f64) -> (Verdict, String) {
+        let what = &question.what;
+        let is_kept = largest <= always.bound;
+        if question.expects_bias {
+            return if is_kept {
+                (Verdict::Fail, "expected a bias, found none".into())
+            } else {
+                (Verdict::Pass, format!("biased-as-expected: {}", percent(largest)))
+            };
+        }
+        if is_kept {
+            (Verdict::Pass, String::new())
+        } else if largest.is_nan() {
+            (Verdict::Fail, "draws are not finite numbers".into())
+        } else {
+            let (most, bound) = (digits::percent(largest), digits::percent(always.bound));
+            let reason = match (question.check.as_str(), self.mean(question)) {
+                ("lookups", _) => {
+                    format!(
+                        "{what} is off by {largest:.0} in a draw; theory has one number for all"
+                    )
+                }
+                ("mean", Some(mean)) => format!(
+                    "{what} is off by {mean}; a draw by up to {most}, of which rounding explains {bound}"
+                ),
+                _ => format!("{what} is off by {most} in a draw; rounding explains {bound}"),
+            };
+            (Verdict::Fail, reason)
+        }
+    }
+
+    /// How far the mean of a channel is from the truth; `None` for an experiment as a whole.
+    fn mean(&self, question: &Question) -> Option<Deviation> {
+        let index = question.channel?;
+        let channel = &self.planned.outcome.as_ref().ok()?.prediction.channels[index];
+        let (tally, truth) = (self.drawn.tallies.get(index)?, channel.truth.value);
+        let mean = channel.mean.value + tally.moments()?.mean * truth;
+        Some(Deviation::new(mean, truth, tally.draws))
+    }
 }
 
 /// A relative difference in percent.
 fn percent(difference: f64) -> String {
     let percent = 100.0 * difference;
     if percent.abs() >= 0.01 { format!("{percent:+.2} %") } else { format!("{percent:+.1e} %") }
-}
-
-/// The verdict on a bound that every draw must keep.
-fn kept(question: &Question, always: &Always, largest: f64) -> (Verdict, String) {
-    let what = &question.what;
-    let is_kept = largest <= always.bound;
-    if question.expects_bias {
-        return if is_kept {
-            (Verdict::Fail, "expected a bias, found none".into())
-        } else {
-            (Verdict::Pass, format!("biased-as-expected: {}", percent(largest)))
-        };
-    }
-    if is_kept {
-        (Verdict::Pass, String::new())
-    } else if largest.is_nan() {
-        (Verdict::Fail, "draws are not finite numbers".into())
-    } else {
-        let reason = if question.check == "lookups" {
-            format!("{what} is off by {largest:.0} in a draw; it is the same in all draws")
-        } else {
-            let (largest, bound) = (digits::percent(largest), digits::percent(always.bound));
-            format!("{what} is off by {largest} in a draw; rounding explains {bound}")
-        };
-        (Verdict::Fail, reason)
-    }
 }
 
 /// Judges the p-values of a run together.

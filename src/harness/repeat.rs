@@ -81,7 +81,8 @@ pub fn deciding(
     let together = case.experiments.iter().filter(|other| {
         filter.as_ref().is_some_and(|f| f.keeps(&case.case.name, &other.names.estimator))
     });
-    let draws = together.filter_map(|other| decisive_draws(plan, case, other, &[])).fold(own, f64::max);
+    let draws =
+        together.filter_map(|other| decisive_draws(plan, case, other, &[])).fold(own, f64::max);
     if draws > MAX_DRAWS { String::new() } else { check(plan, case, planned, &enough(draws)) }
 }
 

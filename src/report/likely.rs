@@ -20,7 +20,11 @@ pub fn pattern(case: &CaseRecord, row: &Row) -> Pattern {
     // A declared bias that is not shown has no bug behind it.
     let failing = row.findings.iter().filter(|f| f.verdict == Verdict::Fail && !f.expects_bias);
     for finding in failing {
-        pattern.note(&finding.check, finding.gate.map(|gate| gate.mean));
+        // Draws without chance fail by themselves, without the gate.
+        let measured = || row.mean.zip(row.truth).map(|(mean, truth)| mean - truth);
+        let off = finding.gate.map(|gate| gate.mean);
+        pattern
+            .note(&finding.check, off.or_else(|| measured().filter(|_| finding.check == "mean")));
     }
     pattern.place = place(case, row);
     pattern

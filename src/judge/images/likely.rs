@@ -16,7 +16,8 @@ impl Judgement {
         if self.variance.is_some_and(|variance| variance.is_refuted) {
             pattern.note("variance", Some(1.0));
         }
-        let failing = self.whole.iter().chain(&self.tiles).filter(|tile| tile.verdict == Verdict::Fail);
+        let failing =
+            self.whole.iter().chain(&self.tiles).filter(|tile| tile.verdict == Verdict::Fail);
         for tile in failing {
             pattern.note("mean", Some(tile.mean - tile.truth));
         }

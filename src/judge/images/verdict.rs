@@ -26,7 +26,9 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
     if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
         failing.push(format!(
             "the variance is too small: that of the values is {} of it (ln E = {:.1} ≥ {:.1})",
-            percent(variance.about_mean), variance.ln_e, variance.limit
+            percent(variance.about_mean),
+            variance.ln_e,
+            variance.limit
         ));
         // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
         let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
@@ -132,7 +134,8 @@ fn channel(judgement: &Judgement, channel: usize) -> String {
 }
 
 fn off(judgement: &Judgement, tile: &Tile) -> String {
-    let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64).with_z(tile.z.unwrap_or(f64::NAN));
+    let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
+        .with_z(tile.z.unwrap_or(f64::NAN));
     let told = Deviation { unit: "passes", ..told };
     let is_whole = (tile.height, tile.width) == (judgement.size.rows, judgement.size.columns);
     let channel = if is_whole {

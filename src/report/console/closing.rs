@@ -135,7 +135,11 @@ fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
         let word = Verdict::Inconclusive.word();
         let (open, all) = (rows(case, Verdict::Inconclusive), case.rows.len());
         let draws = "the planned draws are too few for a pass";
-        pen.note(text, &format!("{word} {}: {open} of {all} rows: {draws}", case.name), (word, Paint::Yellow));
+        pen.note(
+            text,
+            &format!("{word} {}: {open} of {all} rows: {draws}", case.name),
+            (word, Paint::Yellow),
+        );
         if !case.decide.is_empty() {
             let _ = writeln!(text, "    decide: {}", case.decide);
         }

@@ -1,0 +1,157 @@
+//! What usually causes a failure: the table against the patterns of all known bugs, and against the manual.
+//!
+//! `tests/data/known-bugs.csv` has the pattern that each known bug leaves in a million draws, from seed 1, and the kind
+//! of bug that it is, by hand. [`write_patterns`] prints the patterns anew.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use trueflight::catalogue::causes::{CAUSES, Pattern, Side, TABLE, line};
+use trueflight::mutants::{self, streams};
+use trueflight::self_test::mutation;
+
+/// What most of the known bugs must find in their list.
+const SHARE: f64 = 0.9;
+/// More causes than this are no hint.
+const MOST: usize = 4;
+
+type Flag = (char, fn(&mut Pattern) -> &mut bool);
+
+const FLAGS: [Flag; 6] = [
+    ('c', |p| &mut p.curve),
+    ('d', |p| &mut p.distribution),
+    ('b', |p| &mut p.balance),
+    ('n', |p| &mut p.number),
+    ('s', |p| &mut p.dependence),
+    ('r', |p| &mut p.resolution),
+];
+
+/// A pattern as one word of the table: mean, variance and lookups by their sign, then a letter for each other check.
+fn word(pattern: &Pattern) -> String {
+    let sides = [pattern.mean, pattern.variance, pattern.lookups];
+    let mut word: String = sides.map(Side::sign).iter().collect();
+    let mut pattern = *pattern;
+    word.extend(FLAGS.iter().filter(|flag| *flag.1(&mut pattern)).map(|flag| flag.0));
+    word
+}
+
+fn pattern(word: &str) -> Pattern {
+    let side = |sign: char| match sign {
+        '0' => Side::Right,
+        '-' => Side::Low,
+        '+' => Side::High,
+        '*' => Side::Both,
+        _ => panic!("{sign} is no side"),
+    };
+    let mut signs = word.chars();
+    let mut next = || side(signs.next().expect("a sign"));
+    let [mean, variance, lookups] = [next(), next(), next()];
+    let mut pattern = Pattern { mean, variance, lookups, ..Pattern::default() };
+    for letter in signs {
+        let flag = FLAGS.iter().find(|flag| flag.0 == letter).expect("a letter of a check");
+        *flag.1(&mut pattern) = true;
+    }
+    assert_eq!(self::word(&pattern), word);
+    pattern
+}
+
+/// The known bugs: name, pattern and kind.
+fn known_bugs() -> Vec<[String; 3]> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/known-bugs.csv");
+    let mut reader = csv::Reader::from_path(path).expect("the table");
+    let lines = reader.records().map(|line| line.expect("a line"));
+    lines.map(|line| [0, 1, 2].map(|field| line[field].to_owned())).collect()
+}
+
+#[test]
+fn every_known_bug_is_of_a_kind_that_the_table_knows() {
+    let bugs = known_bugs();
+    let named: BTreeSet<&str> = bugs.iter().map(|bug| bug[0].as_str()).collect();
+    let mut known: BTreeSet<&str> = mutants::all().iter().map(|about| about.name).collect();
+    known.extend(streams::MUTANTS.iter().map(|mutant| mutant.name));
+    assert_eq!((named.len(), &named), (bugs.len(), &known));
+    let kinds: BTreeSet<&str> = CAUSES.iter().map(|cause| cause.name).collect();
+    let used: BTreeSet<&str> = bugs.iter().map(|bug| bug[2].as_str()).collect();
+    assert_eq!((kinds.len(), kinds), (CAUSES.len(), used));
+}
+
+/// Of each line of the table: how many known bugs leave its pattern, and of how many it names the kind.
+fn explained() -> BTreeMap<&'static str, [usize; 2]> {
+    let mut counts: BTreeMap<&str, [usize; 2]> =
+        TABLE.iter().map(|line| (line.pattern, [0; 2])).collect();
+    for [name, word, kind] in known_bugs() {
+        let line = line(&pattern(&word)).unwrap_or_else(|| panic!("{name}: no line for {word}"));
+        let count = counts.get_mut(line.pattern).expect("a line of the table");
+        count[0] += 1;
+        count[1] += usize::from(line.causes.iter().any(|cause| cause.name == kind));
+    }
+    counts
+}
+
+#[test]
+fn the_causes_that_are_listed_explain_the_known_bugs() {
+    let counts = explained();
+    assert_eq!(counts.len(), TABLE.len(), "two lines have one name");
+    let [all, right] = counts.values().fold([0; 2], |[a, r], [b, s]| [a + b, r + s]);
+    let share = right as f64 / all as f64;
+    assert!(share >= SHARE, "{right} of {all}");
+    for line in TABLE {
+        assert!(!line.causes.is_empty() && line.causes.len() <= MOST, "{}", line.pattern);
+        // Each line by itself is better than half, too.
+        let [bugs, found] = counts[line.pattern];
+        assert!(2 * found >= bugs, "{}: {found} of {bugs}", line.pattern);
+    }
+}
+
+#[test]
+fn the_manual_has_the_table() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/failures.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let counts = explained();
+    for line in TABLE {
+        let [bugs, found] = counts[line.pattern];
+        let named: Vec<String> =
+            line.causes.iter().map(|cause| format!("[{0}](#{0})", cause.name)).collect();
+        let row = format!("| {} | {} | {found} of {bugs} |", line.pattern, named.join(", "));
+        assert!(page.contains(&row), "not in the page:\n{row}");
+    }
+    for cause in CAUSES {
+        assert!(page.contains(&format!("### {}\n", cause.name)), "no section {}", cause.name);
+    }
+}
+
+/// One bug of each kind that is quick to draw.
+const QUICK: [&str; 10] = [
+    "control-forgotten",
+    "lookup-at-previous",
+    "flight-log2",
+    "number-shared",
+    "cap-16",
+    "weight-absolute",
+    "majorant-too-low",
+    "next-flight-counted-twice",
+    "two-walks-averaged",
+    "weight-f32",
+];
+
+#[test]
+fn the_patterns_on_record_are_those_that_bugs_leave() {
+    let recorded: BTreeMap<String, String> =
+        known_bugs().into_iter().map(|[name, word, _]| (name, word)).collect();
+    let drawn = mutation::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
+    assert_eq!(drawn.len(), QUICK.len());
+    for (name, pattern) in drawn {
+        assert_eq!(word(&pattern), recorded[name], "{name}");
+    }
+}
+
+/// How many draws the record is of.
+const DRAWS: u64 = 1_000_000;
+
+#[test]
+#[ignore = "long: prints the patterns of all known bugs, some minutes of two cores"]
+fn write_patterns() {
+    for (name, pattern) in mutation::patterns(1, DRAWS, &|_| true).expect("cases") {
+        println!("PATTERN,{name},{}", word(&pattern));
+    }
+}

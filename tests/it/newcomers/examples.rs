@@ -1,0 +1,105 @@
+//! Every complete case in README, manual and package pages is run as a newcomer would: it passes, with exit code 0.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::Place;
+use crate::common::none;
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// README, the pages of the manual and those of the bindings.
+fn pages() -> Vec<PathBuf> {
+    let mut pages = vec![root().join("README.md"), root().join("bindings/python/README.md")];
+    let manual = fs::read_dir(root().join("docs")).expect("the manual");
+    pages.extend(manual.map(|entry| entry.expect("an entry").path()));
+    pages.retain(|page| page.extension().is_some_and(|ending| ending == "md"));
+    pages.sort();
+    pages
+}
+
+/// The blocks of TOML with a table of this name, each with a name of its own.
+fn shown(table: &str) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for page in pages() {
+        let text = fs::read_to_string(&page).expect("a page");
+        let stem = page.file_stem().expect("a name").to_string_lossy().into_owned();
+        let blocks = text.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+        for (i, block) in blocks.filter(|block| block.contains(table)).enumerate() {
+            found.push((format!("{stem}-{i}"), block.to_owned()));
+        }
+    }
+    found
+}
+
+/// A folder with what cases name: files of the checkout stand in it by the same paths.
+fn place() -> Place {
+    let place = Place::new(&[]);
+    let data = "tests/data/vdb";
+    fs::create_dir_all(place.path().join(data)).expect("a folder");
+    for entry in fs::read_dir(root().join(data)).expect("the folder") {
+        let from = entry.expect("an entry").path();
+        let to = place.path().join(data).join(from.file_name().expect("a name"));
+        fs::copy(from, to).expect("a copy");
+    }
+    place
+}
+
+/// What of the cases does not end with 0, or has a row that is neither a pass nor declared before the draws.
+fn wrong(command: &str, cases: &[(String, String)]) -> Vec<String> {
+    let place = place();
+    let mut wrong = Vec::new();
+    for (name, text) in cases {
+        fs::write(place.path().join(format!("{name}.toml")), text).expect("a case");
+        let output = place.run(&format!("{command} {name}.toml"));
+        let said = String::from_utf8_lossy(&output.stdout).into_owned();
+        let failed = ["fail ", "inconclusive "].iter().any(|word| said.contains(word));
+        if output.status.code() != Some(0) || failed {
+            let error = String::from_utf8_lossy(&output.stderr).into_owned();
+            wrong.push(format!("{command} {name}: {:?}\n{said}{error}", output.status.code()));
+        }
+    }
+    wrong
+}
+
+#[test]
+fn every_case_that_is_shown_passes_when_it_is_run() {
+    let cases = shown("[problem.");
+    assert!(cases.len() >= 15, "only {} cases are shown", cases.len());
+    none(&wrong("run", &cases));
+}
+
+#[test]
+fn every_case_that_is_shown_passes_in_a_ci() {
+    none(&wrong("check", &shown("[problem.")));
+}
+
+#[test]
+fn every_picture_that_is_shown_is_rendered() {
+    let pictures = shown("[picture.");
+    assert!(!pictures.is_empty());
+    let small = |text: &String| text.replace("size = [128, 128]", "size = [16, 16]");
+    let pictures: Vec<_> =
+        pictures.iter().map(|(name, text)| (name.clone(), small(text))).collect();
+    none(&wrong("render", &pictures));
+}
+
+#[test]
+fn the_examples_folder_passes() {
+    let place = Place::new(&[]);
+    let case = root().join("examples/openvdb.toml");
+    place.says(0, &format!("run '{}'", case.display()));
+}
+
+/// What the plan of a case says beforehand is what a run finds: the newcomer learns it before the draws.
+#[test]
+fn no_case_that_is_shown_is_planned_with_too_few_draws() {
+    let place = place();
+    for (name, text) in shown("[problem.") {
+        fs::write(place.path().join(format!("{name}.toml")), text).expect("a case");
+        let said = place.says(0, &format!("plan {name}.toml"));
+        assert!(!said.contains("inconclusive"), "{name}:\n{said}");
+    }
+}
