@@ -91,7 +91,9 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     let graphs: Vec<Graph> = quantities
         .into_iter()
         .enumerate()
-        .map(|(i, quantity)| Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series))
+        .map(|(i, quantity)| {
+            Graph::new(place(i, &x, y_axis(&quantity, &series)), quantity, &series)
+        })
         .collect();
     let entries: Vec<_> = series.iter().map(Series::entry).collect();
     let mut notes = vec![z_panel::note(sweep)];

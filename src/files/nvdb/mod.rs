@@ -23,8 +23,8 @@ mod nodes;
 mod unpacking;
 
 use super::vdb::{Grid, Transform};
-pub use listing::{Listed, list};
 use super::{Fault, damaged, shown, wrong};
+pub use listing::{Listed, list};
 
 /// Bytes before the tree.
 const GRID: usize = 672;

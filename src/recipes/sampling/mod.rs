@@ -42,11 +42,7 @@ pub trait Recipe: Send + Sync {
     /// # Errors
     ///
     /// What the recipe needs and does not find.
-    fn prepare_counted(
-        &self,
-        site: &Site,
-        control: &Control,
-    ) -> Result<(Piecewise, u64), Refusal> {
+    fn prepare_counted(&self, site: &Site, control: &Control) -> Result<(Piecewise, u64), Refusal> {
         self.prepare(site, control).map(|sampling| (sampling, 0))
     }
 

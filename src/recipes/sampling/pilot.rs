@@ -54,11 +54,7 @@ impl Recipe for Pilot {
         self.prepare_counted(site, control).map(|(sampling, _)| sampling)
     }
 
-    fn prepare_counted(
-        &self,
-        site: &Site,
-        control: &Control,
-    ) -> Result<(Piecewise, u64), Refusal> {
+    fn prepare_counted(&self, site: &Site, control: &Control) -> Result<(Piecewise, u64), Refusal> {
         let support = site.mesh.support();
         if support.is_empty() {
             return Ok((Piecewise::constant(0.0, support), 0));

@@ -93,11 +93,12 @@ impl Class {
 pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
     let mut equal: Vec<(String, Vec<char>)> = Vec::new();
     let mut upon: Vec<(String, Vec<char>)> = Vec::new();
-    let say = |list: &mut Vec<(String, Vec<char>)>, words: String, panel: char| {
-        match list.iter_mut().find(|(other, _)| *other == words) {
-            Some((_, panels)) => panels.push(panel),
-            None => list.push((words, vec![panel])),
-        }
+    let say = |list: &mut Vec<(String, Vec<char>)>, words: String, panel: char| match list
+        .iter_mut()
+        .find(|(other, _)| *other == words)
+    {
+        Some((_, panels)) => panels.push(panel),
+        None => list.push((words, vec![panel])),
     };
     for (panel, classes) in panels {
         for Class { members, hosts } in classes {
@@ -108,7 +109,11 @@ pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
                 say(&mut equal, names_of(members, " = "), *panel);
             }
             if !hosts.is_empty() {
-                say(&mut upon, format!("{} on {}", names[members[0]], names_of(hosts, ", ")), *panel);
+                say(
+                    &mut upon,
+                    format!("{} on {}", names[members[0]], names_of(hosts, ", ")),
+                    *panel,
+                );
             }
         }
     }
@@ -122,7 +127,9 @@ pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
     ];
     let lists = lists.into_iter().filter(|(_, list)| !list.is_empty());
     lists
-        .map(|(head, list)| format!("{head}: {}", list.iter().map(told).collect::<Vec<_>>().join("; ")))
+        .map(|(head, list)| {
+            format!("{head}: {}", list.iter().map(told).collect::<Vec<_>>().join("; "))
+        })
         .collect()
 }
 
@@ -132,9 +139,9 @@ pub fn side_by_side(points: &[[f64; 2]], apart: f64, most: f64) -> Vec<f64> {
     let mut placed: Vec<[f64; 2]> = Vec::with_capacity(points.len());
     let shifts = points.iter().map(|&[x, y]| {
         let is_free = |shift: &f64| {
-            !placed.iter().any(|other| {
-                (other[0] - x - shift).abs() < apart && (other[1] - y).abs() < apart
-            })
+            !placed
+                .iter()
+                .any(|other| (other[0] - x - shift).abs() < apart && (other[1] - y).abs() < apart)
         };
         let steps = (1..).map(|n| f64::from(n) * apart).take_while(|step| *step <= most);
         let mut shifts = std::iter::once(0.0).chain(steps.flat_map(|step| [step, -step]));
@@ -184,7 +191,10 @@ mod tests {
         // A solid line would hide what is below, a dashed one does not.
         assert_eq!(classes[3].dash(1, &[]), [9.0, 9.0]);
         assert_eq!(classes[3].dash(1, &[2.0, 3.0]), [2.0, 3.0]);
-        let notes = notes(&[('a', classes.clone()), ('b', classes)], &["A", "B", "C", "D", "E", "", "G", "H"]);
+        let notes = notes(
+            &[('a', classes.clone()), ('b', classes)],
+            &["A", "B", "C", "D", "E", "", "G", "H"],
+        );
         let expected = [
             "Equal in theory, one striped line: (a, b) E = G; (a, b) A = C",
             "Equal in theory where both are drawn, one line on the other: (a, b) B on A; (a, b) H on E",

@@ -87,10 +87,9 @@ fn points(sheet: &mut Sheet, panel: &Panel, series: &[Series]) -> bool {
             slot += if fixed { 0.0 } else { 1.0 };
             for row in &one.rows {
                 // What is not swept has a place of its own at the right edge, as in other panels.
-                let place =
-                    row.swept.map_or(Some(edge), |swept| {
-                        Some(panel.across(swept)?.clamp(least, most) + shift)
-                    });
+                let place = row.swept.map_or(Some(edge), |swept| {
+                    Some(panel.across(swept)?.clamp(least, most) + shift)
+                });
                 let (Some(x), Some(z)) = (place, score(row)) else { continue };
                 // An infinite score has no place on the axis, but is all the more beyond it.
                 let Some(y) = panel.down(z.clamp(-1e9, 1e9)) else { continue };

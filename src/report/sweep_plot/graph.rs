@@ -131,7 +131,8 @@ fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
         return if has_place { Line::Points(points) } else { Line::None };
     }
     let level = one.rows.iter().filter(|row| row.swept.is_none());
-    let level = level.filter_map(|row| (quantity.predicted)(row).or((quantity.measured)(row))).next();
+    let level =
+        level.filter_map(|row| (quantity.predicted)(row).or((quantity.measured)(row))).next();
     level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
 }
 
@@ -144,7 +145,9 @@ fn points(panel: &Panel, quantity: &Quantity, series: &[Series]) -> Vec<Point> {
             let x = row.swept.map_or(Some(edge), |swept| panel.across(swept));
             let measured = (quantity.measured)(row);
             let place = measured.and_then(|value| Some((value, [x?, panel.down(value)?])));
-            let Some((value, spot)) = place.filter(|(_, spot)| panel.holds(*spot)) else { continue };
+            let Some((value, spot)) = place.filter(|(_, spot)| panel.holds(*spot)) else {
+                continue;
+            };
             if row.swept.is_none() {
                 edge -= PLACE;
             }

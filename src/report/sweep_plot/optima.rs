@@ -52,7 +52,8 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]
 
 /// Where there is no maximum, and where the best σ̂ lies outside the sweep, in words.
 pub fn notes(series: &[Series]) -> Vec<String> {
-    let found = || series.iter().filter_map(|one| Some((one, one.curve?, one.curve?.best.as_ref()?)));
+    let found =
+        || series.iter().filter_map(|one| Some((one, one.curve?, one.curve?.best.as_ref()?)));
     let limits: Vec<String> = found()
         .filter_map(|(one, _, best)| Some(format!("{}: {}", one.label, short(best.limit?, 4))))
         .collect();

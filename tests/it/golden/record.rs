@@ -3,8 +3,8 @@
 use trueflight::baseline::LeftOut;
 use trueflight::baseline::{Change, Comparison, Drift, Quantity, Rules, Sequel};
 use trueflight::harness::record::{
-    Anatomy, Best, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding, MeasuredPoint,
-    Record, Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
+    Anatomy, Best, CaseRecord, Course, Curve, CurvePoint, Finding, Gate, GateFinding,
+    MeasuredPoint, Record, Results, Row, SCHEMA, Suspect, Sweep, Timing, Verdict,
 };
 
 /// Made-up laws of variance and lookups against the sampling extinction.

@@ -64,8 +64,10 @@ fn a_ray_through_nothing_but_zeros_is_told() {
     );
     assert_eq!(
         told,
-        ["the ray meets nothing of the volume, whose box is [0, 0, 0] to [1, 1, 1]: it is in there from 1 to 2, and \
-          σ_t is 0 along the whole ray"]
+        [
+            "the ray meets nothing of the volume, whose box is [0, 0, 0] to [1, 1, 1]: it is in there from 1 to 2, and \
+          σ_t is 0 along the whole ray"
+        ]
     );
     let ray = "origin = [0, 0, 0], direction = [1, 0, 0], length = 0";
     let none = through("transmittance", CUBE, ray, ALONG);
