@@ -96,7 +96,7 @@ enum Command {
     List(list::Arguments),
     /// The manual page of a medium, an estimator, a check, …
     Explain(explain::Arguments),
-    /// What files hold: grids, images and draws, with their sizes, boxes and ranges
+    /// List the grids, images and draws in files, with their sizes, boxes and ranges
     Inspect(inspect::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
     Judge(judge::Arguments),

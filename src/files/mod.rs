@@ -20,9 +20,9 @@ use std::path::{Path, PathBuf};
 /// Cause and cure of a file that cannot be read.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
-    /// What is wrong.
+    /// Cause.
     pub message: String,
-    /// What would be right.
+    /// Cure.
     pub help: String,
 }
 

@@ -17,7 +17,7 @@ use super::{Fault, damaged, wrong};
 /// Bytes before the samples.
 const HEADER: usize = 48;
 
-/// How samples are stored.
+/// Number format of samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Encoding {
     /// float32.
@@ -47,10 +47,10 @@ impl Encoding {
     }
 }
 
-/// A grid whose samples are not converted yet.
+/// A grid with the bytes of its samples.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vol<'a> {
-    /// How samples are stored.
+    /// Number format of its samples.
     pub encoding: Encoding,
     /// Samples along x, y and z.
     pub size: [u64; 3],
@@ -66,7 +66,7 @@ impl<'a> Vol<'a> {
     ///
     /// # Errors
     ///
-    /// The file is none of those that are described above, or its length is not that of its samples.
+    /// The header is not one of those above, or the length of the file does not fit its samples.
     pub fn read(bytes: &'a [u8]) -> Result<Self, Fault> {
         let Some(header) = bytes.get(..HEADER) else {
             return wrong("the file ends within its header of 48 bytes", "write the file anew");

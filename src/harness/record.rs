@@ -124,10 +124,10 @@ pub struct CaseRecord {
     pub sweep: Option<Sweep>,
     /// The ray seen from the side, for cases with a curve.
     pub anatomy: Option<Anatomy>,
-    /// What the files hold that the medium was read from, a sentence each.
+    /// Contents of the files of the medium, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub facts: Vec<String>,
-    /// What is doubtful about the medium and its ray, as where the ray meets nothing of the volume, a sentence each.
+    /// Doubts about the medium and its ray, such as a ray that meets nothing of the volume, a sentence each.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
 }

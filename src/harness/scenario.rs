@@ -95,12 +95,12 @@ impl Scenario {
         }))
     }
 
-    /// What the files hold that the medium was read from, a sentence each.
+    /// Contents of the files of the medium, a sentence each.
     pub fn facts(&self) -> Vec<String> {
         self.body.facts()
     }
 
-    /// What is doubtful about the medium and its ray, a sentence each.
+    /// Doubts about the medium and its ray, a sentence each.
     pub fn notes(&self) -> Vec<String> {
         if self.has_ray { misses::notes(&self.body) } else { Vec::new() }
     }

@@ -28,7 +28,7 @@ impl Axes {
         Self::NAMES.into_iter().find(is_this).unwrap_or_default()
     }
 
-    /// Sizes along x, y and z, and the values with x fastest, of an array of a shape, whose last axis varies fastest, or in
+    /// Sizes along x, y and z, and the values with x fastest, of an array of a shape. Its last axis varies fastest, or in
     /// Fortran's order its first.
     pub fn sorted(
         self,

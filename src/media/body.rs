@@ -147,7 +147,7 @@ impl Body {
         }
     }
 
-    /// What the files hold that the fields were read from, a sentence each, every sentence once.
+    /// Contents of the files of the fields, a sentence each, every sentence once.
     pub fn facts(&self) -> Vec<String> {
         let mut facts: Vec<String> = Vec::new();
         for channel in self.channels() {

@@ -65,7 +65,7 @@ use crate::numeric::{Known, Lane, Span};
 /// A voxel grid as a volume.
 pub struct Grid {
     voxels: Arc<Voxels>,
-    /// What the file holds; empty for one at random.
+    /// Contents of the file; empty for a random grid.
     facts: Vec<String>,
 }
 

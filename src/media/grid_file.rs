@@ -30,13 +30,13 @@ pub struct Samples {
     pub values: Vec<f64>,
     /// The corners of the box that the file gives, whether or not they are those of a box.
     pub bounds: Option<Aabb>,
-    /// Where the samples stand, if their axes are not those of the world.
+    /// Places of the samples, if their axes are not those of the world.
     pub turned: Option<Turned>,
-    /// What a user of the grid should know: empty where nothing is to be said.
+    /// A remark for users of the grid; often empty.
     pub remark: String,
 }
 
-/// A lattice whose axes are not those of the world: sample i stands at origin + steps · i.
+/// A lattice with axes of its own: sample i stands at origin + steps · i.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turned {
     /// The place of the first sample.

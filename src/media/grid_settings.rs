@@ -69,7 +69,7 @@ fn read_choice(settings: &Settings) -> Option<Choice> {
     Some(Choice { grid: grid?, channel, axes: Axes::named(axes?)? })
 }
 
-/// What a file holds, for people: voxels along each axis and the box.
+/// Contents of the file as sentences: voxels along each axis and the box.
 pub(super) fn facts(settings: &Settings, samples: &Samples, bounds: Aabb) -> Vec<String> {
     let Some(Value::Text(name)) = settings.entry("file").map(|entry| &entry.node.value) else {
         return Vec::new();

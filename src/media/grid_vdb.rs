@@ -121,7 +121,7 @@ fn dense(grid: &Grid, low: [i64; 3], high: [i64; 3]) -> Result<Samples, Unreadab
 
 const TOO_FAR: &str = "move the grid nearer to 0, or scale it";
 
-/// The box of samples between two indices, whose axes are those of the world.
+/// The box of samples between two indices on a lattice along the axes of the world.
 fn along_axes(
     scale: [f64; 3],
     shift: [f64; 3],

@@ -6,7 +6,7 @@ use crate::catalogue::digits::short;
 use crate::catalogue::number;
 use crate::geometry::{Bounds, Point, Ray};
 
-/// What is doubtful about a body and its ray, a sentence each, every sentence once.
+/// Doubts about a body and its ray, a sentence each, every sentence once.
 pub fn notes(body: &Body) -> Vec<String> {
     let mut notes: Vec<String> = Vec::new();
     for channel in body.channels() {
@@ -56,7 +56,7 @@ fn is_nothing(medium: &Medium) -> bool {
     !support.is_empty() && medium.optical_depth(support).value == 0.0
 }
 
-/// Where the bounds are.
+/// The bounds in words.
 fn place(bounds: Bounds) -> String {
     let point = |point: Point| format!("[{}]", point.0.map(|x| short(x, 6)).join(", "));
     match bounds {
@@ -68,7 +68,7 @@ fn place(bounds: Bounds) -> String {
     }
 }
 
-/// What would make a ray meet its volume.
+/// Cause and cure of a ray that misses its volume.
 fn cure(bounds: Bounds, ray: &Ray) -> String {
     let [ahead, behind] = [1.0, -1.0].map(|sign| {
         let direction = ray.direction * sign;

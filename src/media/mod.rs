@@ -222,7 +222,7 @@ pub trait Field: Sized + Send + Sync + 'static {
         false
     }
 
-    /// What a file that the field was read from holds, a sentence each; nothing for other fields.
+    /// Contents of the file of the field, a sentence each; nothing for other fields.
     fn facts(&self) -> Vec<String> {
         Vec::new()
     }

@@ -1,10 +1,10 @@
-//! Lattices whose axes are not those of the world.
+//! Lattices with axes of their own, which are not those of the world.
 
 use super::grid_file::Turned;
 use super::voxels::Interpolation;
 use crate::numeric::Lane;
 
-/// From the world to a lattice whose axes are not those of the world: u = rows · (p − origin) + shift.
+/// Map from the world to a turned or sheared lattice: u = rows · (p − origin) + shift.
 pub(super) struct Turn {
     origin: [f64; 3],
     rows: [[f64; 3]; 3],
@@ -13,7 +13,7 @@ pub(super) struct Turn {
 }
 
 impl Turn {
-    /// The map to a lattice with so many samples along each axis.
+    /// The map to a lattice of a size.
     pub(super) fn new(turned: &Turned, size: [usize; 3], interpolation: Interpolation) -> Self {
         let Turned { origin, steps } = *turned;
         let column = |j: usize| [0, 1, 2].map(|i| steps[i][j]);

@@ -5,8 +5,7 @@
 //! trilinear: Σ over the 8 samples about u of Πⱼ (1 − |uⱼ − cⱼ|) · value(c)      nearest: value(i)
 //! ```
 //!
-//! Where the axes of the lattice are not those of the world, u is a matrix times p − origin, and the field is 0 outside the
-//! lattice, which the box about it does not show.
+//! On a turned lattice u is a matrix times p − origin. The field is 0 in its bounds outside the lattice.
 //!
 //! Border samples are stored, not decided upon at each lookup: cell-centred grids that are
 //! interpolated get a layer of them on every side.

@@ -7,9 +7,9 @@ use std::path::Path;
 use super::item::{Item, Spread};
 use crate::judge::files::{Column, Draws, Format};
 
-/// So many columns of a table are read through, one after the other.
+/// Maximum number of columns of a table.
 const MOST: usize = 64;
-/// So many draws at a time.
+/// Draws that are read at a time.
 const BLOCK: usize = 1 << 14;
 
 /// The columns of a file.

@@ -17,9 +17,9 @@ pub struct Item {
     pub kind: String,
     /// The class of a grid, such as `fog volume`.
     pub class: String,
-    /// How many numbers there are along each axis.
+    /// Lengths of its axes.
     pub size: Vec<u64>,
-    /// What the numbers of `size` count, such as `voxels (x, y, z)`.
+    /// Meaning of the numbers of `size`, such as `voxels (x, y, z)`.
     pub counts: &'static str,
     /// Values of a voxel or a pixel.
     pub channels: Option<u64>,
@@ -37,28 +37,28 @@ pub struct Item {
     pub mean: Option<f64>,
     /// The value outside the voxels that are stored.
     pub background: Option<f64>,
-    /// How many voxels are active.
+    /// Number of active voxels.
     pub active: Option<u64>,
-    /// What else the file says: compression, windows, channels, version.
+    /// Further facts of the file: compression, windows, channels, version.
     pub details: Vec<String>,
-    /// What keeps it from being what it may be taken for.
+    /// Doubts, such as why a grid is no medium.
     pub notes: Vec<String>,
 }
 
-/// The smallest, the largest and the mean of numbers, and how many are not finite.
+/// Minimum, maximum and mean of numbers, and the number of those that are not finite.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spread {
     ends: Option<[f64; 2]>,
     sum: f64,
     finite: f64,
-    /// How many are not finite.
+    /// Number of values that are not finite.
     pub wrong: f64,
-    /// How many are negative.
+    /// Number of negative values.
     pub negative: f64,
 }
 
 impl Spread {
-    /// Adds a value so many times.
+    /// Adds a value with its number of times.
     pub fn add(&mut self, value: f64, times: f64) {
         if !value.is_finite() {
             self.wrong += times;
@@ -73,7 +73,7 @@ impl Spread {
         }
     }
 
-    /// That of a list.
+    /// Spread of a list.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let mut spread = Self::default();
         values.into_iter().for_each(|value| spread.add(value, 1.0));

@@ -25,7 +25,7 @@ pub struct Arguments {
     /// Volumes (vol, npy, vdb, nvdb, pbrt), images (exr, pfm, npy) and draws (npy, csv, txt, f64, bin, raw)
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
-    /// How the grids, images and columns are printed
+    /// Format of the grids, images and columns that are printed
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

@@ -28,7 +28,7 @@ pub fn doubt(item: &mut Item, spread: &Spread) {
     }
 }
 
-/// Adds the box to an item, or that there is none.
+/// Adds the box to an item, or a note that its corners make no box.
 fn place(item: &mut Item, [low, high]: [[f64; 3]; 2]) {
     (item.low, item.high) = (Some(low), Some(high));
     let edges: [f64; 3] = std::array::from_fn(|j| (high[j] - low[j]) / item.size[j] as f64);

@@ -52,14 +52,14 @@ pub struct Channel {
     pub sampling: [i32; 2],
 }
 
-/// What a header says.
+/// Contents of a header.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
     /// Its name; empty in a file of one part that has none.
     pub name: String,
     /// `scan lines`, `tiles`, `deep scan lines` or `deep tiles`.
     pub kind: &'static str,
-    /// How pixels are compressed.
+    /// Compression of the pixels.
     pub compression: String,
     /// Whether the compression is read.
     pub is_read: bool,

@@ -50,7 +50,7 @@ const CLASSES: [&str; 9] = [
     "index",
 ];
 
-/// What a file says of one of its grids.
+/// Entry of a grid in a file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Listed {
     /// Its name: `density`, or `density[1]` where there are several of a name.
@@ -59,16 +59,16 @@ pub struct Listed {
     pub kind: String,
     /// Its class, such as `fog volume`; empty where none is said.
     pub class: String,
-    /// How many voxels are active.
+    /// Number of active voxels.
     pub active: u64,
     /// The version that wrote it, such as `32.4.2`.
     pub version: String,
-    /// How it is packed: `none`, `zip` or `Blosc`.
+    /// Codec: `none`, `zip` or `Blosc`.
     pub codec: &'static str,
     pub(super) number: u32,
     /// Bytes in memory.
     pub(super) size: u64,
-    /// Where it is in the file.
+    /// First byte in the file, and the byte after the last.
     pub(super) place: [usize; 2],
 }
 
@@ -78,7 +78,7 @@ impl Listed {
         nodes::Values::of(self.number).is_some()
     }
 
-    /// Its name as a list of grids shows it, with the type where that is none of floats.
+    /// Name in a list of grids, with the type if that is not read.
     pub(super) fn shown(&self) -> String {
         let name = shown(&self.name);
         if self.is_read() { name } else { format!("{name} ({})", self.kind) }

@@ -9,7 +9,7 @@
 //! codec       0 none; 1 length (u64) and zlib; 2 length (u64) and Blosc, for each 2³⁰ bytes
 //! ```
 //!
-//! All numbers are little-endian. Read are versions 32.x, whose layout is one, grids of the types Float, Fp4, Fp8, Fp16
+//! All numbers are little-endian. Versions 32.x are read, which have one layout, and grids of the types Float, Fp4, Fp8, Fp16
 //! and FpN. A file that begins with "NanoVDB1" is one grid as it lies in memory. Other types are named in the error.
 //!
 //! No crate reads these files. No place that the file names is trusted: each part is taken from the bytes that are

@@ -17,7 +17,7 @@
 use super::super::vdb::{EDGES, Growing, LEAF, Leaf, Tile, Tree, count_on, is_on};
 use super::{Fault, GRID, array, damaged, number, part, word};
 
-/// How the values of leaves are stored.
+/// Storage of the values of leaves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Values {
     /// float32.
@@ -27,7 +27,7 @@ pub(super) enum Values {
         /// The binary logarithm of the number of bits.
         log: u32,
     },
-    /// Codes whose number of bits each leaf says itself.
+    /// Codes with a number of bits that each leaf states.
     Varied,
 }
 
@@ -107,7 +107,7 @@ impl Reader<'_> {
         self.tree.tile(tile, active != 0)
     }
 
-    /// A node of a level, whose children are of the next.
+    /// A node of a level; its children are nodes of the next.
     fn node(&mut self, level: usize, at: usize, origin: [i32; 3]) -> Result<(), Fault> {
         let Level { log, table, edge } = LEVELS[level];
         let size = 1_usize << (3 * log);

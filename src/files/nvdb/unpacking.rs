@@ -5,13 +5,13 @@ use std::borrow::Cow;
 use super::super::vdb::unpack_blosc;
 use super::{Fault, damaged, part, word};
 
-/// A grid is packed by Blosc in pieces of so many bytes.
+/// Bytes of a piece that Blosc packs.
 const PIECE: usize = 1 << 30;
 
 /// The most that LZ4 makes of a byte.
 const MOST: usize = 256;
 
-/// As many bytes as the grid has in memory.
+/// Unpacks a grid to its size in memory.
 pub(super) fn unpacked<'a>(
     stored: &'a [u8],
     codec: &str,

@@ -1,4 +1,4 @@
-//! Where a medium stands after the directives before it.
+//! The transform that the directives before a medium make.
 
 /// A scale and a translation: p → scale·p + shift; or the directive that turns the axes.
 #[derive(Debug, Clone)]

@@ -49,7 +49,7 @@ impl<'a> Words<'a> {
         wrong(format!("line {}: {message}", self.line), help)
     }
 
-    /// So many bytes.
+    /// Takes a number of bytes.
     fn take(&mut self, count: usize) -> &'a str {
         let (taken, rest) = self.rest.split_at(count);
         self.line += taken.bytes().filter(|&byte| byte == b'\n').count();

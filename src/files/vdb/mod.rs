@@ -51,7 +51,7 @@ pub struct Grid {
     pub tree: Tree,
 }
 
-/// What a file says of one of its grids before the tree.
+/// Entry of a grid in a file, without its tree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Listed {
     /// Its name.
@@ -60,9 +60,9 @@ pub struct Listed {
     pub kind: String,
     /// Its class, such as `fog volume`; empty where none is said.
     pub class: String,
-    /// How many voxels are active, where the file says so.
+    /// Number of active voxels, if the file states it.
     pub active: Option<u64>,
-    /// Where its voxels stand.
+    /// Transform from indices to the world.
     pub transform: Transform,
     /// Whether [`read`] reads its type.
     pub is_read: bool,

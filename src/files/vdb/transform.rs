@@ -70,7 +70,7 @@ impl Transform {
         read.checked()
     }
 
-    /// The same, if it tells voxels apart.
+    /// Checks that the transform is finite and does not flatten voxels.
     pub(in crate::files) fn checked(self) -> Result<Self, Fault> {
         let mut numbers = self.matrix.iter().flatten().chain(&self.shift);
         let (columns, edges) = ([0, 1, 2].map(|j| self.column(j)), self.voxel());

@@ -89,9 +89,9 @@ impl Tree {
 
 /// A tree while it is read.
 pub(in crate::files) struct Growing {
-    /// What was read so far.
+    /// The part that is read.
     pub(in crate::files) tree: Tree,
-    /// How many voxels the tiles of other values than the background have.
+    /// Number of voxels in tiles of other values than the background.
     filled: u64,
 }
 
@@ -102,8 +102,8 @@ impl Growing {
         Self { tree: Tree { background, tiles, leaves, active: 0 }, filled: 0 }
     }
 
-    /// Tiles do not overlap: many of them with more voxels than any medium may have are not kept, for a small file may have
-    /// very many. Of few, whoever makes a medium of them says how large it would be.
+    /// Adds a tile. Tiles do not overlap. Many of them with more voxels than a medium may have are refused, for a small file
+    /// may have very many. A few are kept, so that the error of the medium can state its size.
     pub(in crate::files) fn tile(&mut self, tile: Tile, is_active: bool) -> Result<(), Fault> {
         let voxels = u64::from(tile.edge.unsigned_abs()).pow(3);
         if is_active {

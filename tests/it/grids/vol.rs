@@ -5,7 +5,7 @@ use trueflight::media::grid_file::{Choice, Samples};
 
 use super::{data, refused, run, text, written};
 
-/// A `.vol` file whose box is from (0, 0, 0) to (1, 2, 3).
+/// A `.vol` file with the box from (0, 0, 0) to (1, 2, 3).
 fn vol(size: [i32; 3], kind: i32, channels: i32, samples: &[u8]) -> Vec<u8> {
     let mut bytes = b"VOL\x03".to_vec();
     let integers = [kind, size[0], size[1], size[2], channels];
@@ -86,7 +86,7 @@ fn wrong_files_are_refused() {
     }
 }
 
-/// The files of the field: 2 × 3 × … samples whose values `t-*.toml` sends a ray through.
+/// The files of the field.
 #[test]
 fn the_files_of_the_field_are_planned() {
     let folder = data("field/02-vol-variants");

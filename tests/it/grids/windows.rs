@@ -1,4 +1,4 @@
-//! `OpenEXR` files whose data windows differ, and those that are not read.
+//! `OpenEXR` files with different data windows, and those that are not read.
 
 use trueflight::judge::images::ImageError;
 use trueflight::judge::images::files::{Frame, picture, picture_in, stack};

@@ -1,7 +1,7 @@
-//! Where the pixels of several files lie beside each other.
+//! Alignment of the pixels of several files.
 //!
-//! An `OpenEXR` file stores the pixels of its data window, and says where that lies in the picture, its display window.
-//! Files whose data windows are the same are compared as they are stored. Where data windows differ, as after cropping to
+//! An `OpenEXR` file stores the pixels of its data window, and states its place in the picture, the display window.
+//! Files with the same data window are compared as they are stored. Where data windows differ, as after cropping to
 //! what is not black, pixels are laid into the display window, which must then be the same: outside its data window a
 //! file is 0, and pixels beyond the display window are left out.
 
@@ -28,7 +28,7 @@ impl Frame {
     ///
     /// # Errors
     ///
-    /// Data windows differ, and so do display windows. What is wrong with a file itself is left to those who read it.
+    /// Data windows differ, and so do display windows. Faults of a file are found when its pixels are read.
     pub fn of(paths: &[impl AsRef<Path>]) -> Result<Self, ImageError> {
         let windows = paths.iter().filter_map(|path| {
             let path = path.as_ref();

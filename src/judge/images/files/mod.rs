@@ -7,8 +7,8 @@
 //! exr   the first layer of a picture: R, G, B, else Y, else its first channel; alpha is left out
 //! ```
 //!
-//! One file is a stack, several are one pass each. Files with the extension `exr` whose data windows differ are laid into their
-//! display window, see [`Frame`].
+//! One file is a stack, several are one pass each. `OpenEXR` files with different data windows are laid into their display
+//! window, see [`Frame`].
 
 mod frame;
 mod npy;
