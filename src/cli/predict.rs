@@ -18,7 +18,8 @@ pub struct Arguments {
     #[arg(long)]
     moments: bool,
     /// Search the constant σ̂ with the largest figure of merit, channel by channel: a hundred
-    /// predictions for each estimator
+    /// predictions for each estimator. Where the figure of merit rises with σ̂ to a limit there is no
+    /// optimum: the σ̂ that reaches 90 % of the limit is named so, with the limit
     #[arg(long)]
     optimum: bool,
     /// How the rows are printed

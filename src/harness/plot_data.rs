@@ -4,6 +4,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::files::null;
+use crate::theory::optimum::Kind;
 
 /// The axis of a sweep and the theory's curves along it.
 #[derive(Debug, Clone, Serialize, Deserialize)]
@@ -51,6 +52,13 @@ pub struct Best {
     pub kind: String,
     /// The limit of a figure of merit that rises with σ̂ to one.
     pub limit: Option<f64>,
+}
+
+impl Best {
+    /// Whether the figure of merit is largest there.
+    pub fn is_optimum(&self) -> bool {
+        self.kind == Kind::Maximum.words()
+    }
 }
 
 /// Theory at one value of the swept quantity.

@@ -5,6 +5,7 @@
 //! rows of a case share stands once, over the table.
 
 mod closing;
+mod costs;
 pub mod layout;
 pub mod views;
 
@@ -110,6 +111,7 @@ fn grid(
         for grid in layout::blocks(names, rest, pen.width) {
             text.push_str(&grid.render(pen));
         }
+        costs::notes(text, pen, case, &|_| true);
         footnotes(text, pen, case, labels, view, 0);
         return false;
     }
@@ -124,6 +126,7 @@ fn grid(
     }
     text.push_str(&grid.render(pen));
     let room = if beside { rest } else { 0 };
+    costs::notes(text, pen, case, &|head| grid.columns.iter().any(|column| column.head == head));
     footnotes(text, pen, case, labels, view, room);
     let scores = grid.columns.iter().filter(|column| views::SCORES.contains(&column.head));
     scores.flat_map(|column| &column.fields).any(|field| field.text.starts_with('('))
@@ -163,26 +166,6 @@ fn draws(number: u64) -> String {
     format!("{} {}", count(number), if number == 1 { "draw" } else { "draws" })
 }
 
-/// What the best σ̂ is where it is no optimum, each once.
-fn limits(text: &mut String, pen: layout::Pen, case: &CaseRecord) {
-    let mut notes: Vec<String> = Vec::new();
-    for row in case.rows.iter().filter(|row| row.best_limit.is_some()) {
-        let limit = row.best_limit.map_or_else(String::new, |limit| short(limit, 4));
-        let names = [row.estimator.as_str(), &row.control, &row.channel];
-        let names: Vec<&str> = names.into_iter().filter(|name| !name.is_empty()).collect();
-        let note = format!(
-            "note {}: the figure of merit rises with σ\u{302} to {limit}; best σ\u{302} is where it reaches 90 % of that",
-            names.join(", ")
-        );
-        if !notes.contains(&note) {
-            notes.push(note);
-        }
-    }
-    for note in notes {
-        pen.note(text, &note, ("note", Paint::Plain));
-    }
-}
-
 /// The reasons that have no place in the table, each once, with the rows it is about.
 fn footnotes(
     text: &mut String,
@@ -208,7 +191,6 @@ fn footnotes(
         let (this, other) = (&row.estimator, &row.same_as);
         let _ = writeln!(text, "  note {this}{at} is {other} by definition: drawn once for both");
     }
-    limits(text, pen, case);
     let mut commands: Vec<(&str, &str)> = Vec::new();
     for row in case.rows.iter().filter(|row| row.verdict == Some(Verdict::Inconclusive)) {
         let next = row.next_command().map(|(_, command)| (row.estimator.as_str(), command));

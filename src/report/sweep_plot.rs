@@ -8,7 +8,7 @@ mod optima;
 use crate::catalogue::digits::{count, short};
 use crate::harness::record::{CaseRecord, Record, Sweep};
 use crate::report::plots::figure::{Figure, Foot, LEFT};
-use crate::report::plots::series::{Series, collect};
+use crate::report::plots::series::{self, Series, collect};
 use crate::report::plots::{self, Axis, Panel, Sheet, z_panel};
 use crate::report::{Artifact, ReportError};
 use graph::{Graph, Quantity};
@@ -100,10 +100,10 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     notes.extend(z_panel::legend_of_hollow(&series));
     notes.extend(has_setup.then(|| setup_note(case)));
     if !of_medium {
-        notes.extend(optima::notes(&series));
+        notes.extend(optima::note(&series));
     }
     notes.extend(graph::notes(&graphs, &series));
-    notes.extend(series.iter().filter_map(Series::note));
+    notes.extend(series::notes(&series));
     notes.extend(left_out(case, &series));
     let foot = Foot { top: TOP + 2.0 * PITCH[1], entries: &entries, notes: &notes };
     let titles = [&*case.title, &subtitle(case, seed)];
@@ -124,7 +124,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
 fn setup_note(case: &CaseRecord) -> String {
     let draws = count(case.draws_per_ray.unwrap_or(1));
     format!(
-        "(c): S lookups of setup, made once for each ray, are shared by its n = {draws} draws (draws_per_ray of the case)"
+        "(c): S setup lookups, made once for each ray, are shared by its draws, n = {draws} (draws_per_ray of the case)"
     )
 }
 

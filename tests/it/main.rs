@@ -13,6 +13,7 @@ mod cli;
 mod closures;
 mod coloured_pictures;
 mod common;
+mod efficiency;
 mod equation14;
 mod equiangular;
 mod export;

@@ -77,6 +77,17 @@ def test_a_sweep_takes_the_place_of_the_cases_own():
 def test_the_best_sampling_extinction_is_searched():
     found = tf.predict(LONG, optimum=True, filter="ratio")
     assert np.isfinite(found["best_sampling"]).all() and (found["best_fom"] >= found["predicted_fom"]).all()
+    assert set(found["best_kind"]) == {"90 % of the limit"} and (found["best_limit"] > found["best_fom"]).all()
+
+
+def test_setup_lookups_are_charged_to_the_draws_of_a_ray():
+    for head, draws in (("", 1), ("draws_per_ray = 8", 8)):
+        case = CASE.replace("[problem", f"{head}\n[problem", 1).replace("{ ratio = {} }", "{ double.control.explorers.points = 20 }")
+        found = tf.predict(case, filter="double")
+        assert found["setup_lookups"].tolist() == [20] and found["draws_per_ray"].tolist() == [draws]
+        cost = found["predicted_lookups"] + 20 / draws
+        np.testing.assert_allclose(found["predicted_fom"] * found["predicted_variance"] * cost, 1, rtol=1e-12)
+    assert tf.predict("transmittance/eq21-overview", filter="residual-ratio")["needs"][0] == "τ"
 
 
 def test_data_frames_take_the_columns():

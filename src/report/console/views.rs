@@ -6,7 +6,8 @@ use crate::report::console::View;
 use crate::report::console::layout::{self, Column, Field, Grid, Paint};
 use crate::report::labels::Labels;
 
-type Spec = layout::Spec<Row>;
+/// A column of rows: heading, whether it stands at the right, rank, and its words.
+pub type Spec = layout::Spec<Row>;
 
 const DRAWS: Spec = ("draws", true, 10, |row| row.draws.map(count).unwrap_or_default());
 /// What the gate took; the columns beside it are of the fixed draws.
@@ -14,13 +15,11 @@ const DRAWN: Spec = ("drawn", true, 3, |row| row.drawn.map(count).unwrap_or_defa
 const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 
 /// Lookups before the first draw of a ray; empty where none of a case has any.
-const SETUP: Spec = ("setup", true, 3, |row| {
+pub const SETUP: Spec = ("setup", true, 3, |row| {
     row.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
 });
 /// What estimators need beside lookups, as in `τ`.
-const NEEDS: Spec = ("needs", false, 3, |row| row.needs.clone());
-/// What the best σ̂ is: it leaves with that.
-const BEST: &str = "best σ\u{302}";
+pub const NEEDS: Spec = ("needs", false, 5, |row| row.needs.clone());
 
 /// The headings of z.
 pub const SCORES: [&str; 3] = ["z", "z_V", "z_N"];
@@ -52,10 +51,8 @@ const PREDICT: &[Spec] = &[
     (LTUV, true, 10, |row| of_channel(row, row.predicted_log10_ltuv())),
     ("stable", true, 6, |row| row.stable_share.map(percent).unwrap_or_default()),
     ("n(2)", true, 8, |row| digits(row.rare_event_size, 3)),
-    (BEST, true, 4, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
-    ("best FoM", true, 7, best_fom),
-    ("best is", false, 4, |row| row.best_kind.clone()),
-    ("limit", true, 7, |row| digits(row.best_limit, 4)),
+    ("best σ\u{302}", true, 3, best_sampling),
+    ("best FoM", true, 4, best_fom),
     NEEDS,
 ];
 
@@ -72,7 +69,7 @@ const MOMENTS: &[Spec] = &[
     ("± σ", true, 0, |row| digits(row.lookups_variance.map(f64::sqrt), 4)),
     ("n(2)", true, 0, |row| digits(row.rare_event_size, 3)),
     ("setup", true, 0, SETUP.3),
-    (BEST, true, 0, |row| row.best_sampling.map(|s| short(s, 4)).unwrap_or_default()),
+    ("best σ\u{302}", true, 0, best_sampling),
     ("best FoM", true, 0, best_fom),
     ("best is", false, 0, |row| row.best_kind.clone()),
     ("limit", true, 0, |row| digits(row.best_limit, 4)),
@@ -212,6 +209,12 @@ fn loss(row: &Row, k: usize) -> String {
 
 fn digits(value: Option<f64>, digits: usize) -> String {
     value.map(|value| fixed(value, digits)).unwrap_or_default()
+}
+
+/// The best σ̂, marked where it is a share of a limit.
+fn best_sampling(row: &Row) -> String {
+    let mark = if row.best_limit.is_some() { " (90 %)" } else { "" };
+    row.best_sampling.map(|s| format!("{}{mark}", short(s, 4))).unwrap_or_default()
 }
 
 /// The figure of merit at the best σ̂, which is infinite where there is no variance.

@@ -11,6 +11,7 @@ pub const LINE: f64 = 22.0;
 const SAMPLE: f64 = 44.0;
 const SIZE: f64 = 13.5;
 const GAP: f64 = 26.0;
+const MOST_COLUMNS: usize = 8;
 
 /// What a legend says of one look.
 #[derive(Debug, Clone)]
@@ -37,26 +38,42 @@ impl Entry {
     }
 }
 
-/// How many columns and lines the entries take in this width, and how wide a column is.
-fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, usize, f64) {
-    let widest = entries.iter().map(|e| face.width(&e.label, SIZE)).fold(0.0, f64::max);
-    let column = (widest + SAMPLE + GAP).clamp(1.0, width);
-    let most = (1..=8_u8).take_while(|&n| f64::from(n) * column <= width).count().max(1);
-    let lines = entries.len().div_ceil(most).max(1);
-    (entries.len().div_ceil(lines), lines, column)
+/// How many lines the entries take in this width, and where columns begin and how wide each is: as many columns as fit,
+/// each as wide as its widest entry.
+fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2]>) {
+    let widths: Vec<f64> =
+        entries.iter().map(|e| face.width(&e.label, SIZE) + SAMPLE + GAP).collect();
+    let columns = |lines: usize| -> Vec<[f64; 2]> {
+        let mut begin = 0.0;
+        let column = |widths: &[f64]| {
+            let wide = widths.iter().copied().fold(1.0, f64::max);
+            begin += wide;
+            [begin - wide, wide.min(width)]
+        };
+        widths.chunks(lines).map(column).collect()
+    };
+    let is_enough = |lines: &usize| {
+        let columns = columns(*lines);
+        columns.len() <= MOST_COLUMNS
+            && columns.iter().map(|column| column[1]).sum::<f64>() <= width + GAP
+    };
+    let all = entries.len().max(1);
+    let lines = (1..all).find(is_enough).unwrap_or(all);
+    (lines, columns(lines))
 }
 
 /// The height of a legend of this width.
 pub fn height(face: &Typeface, entries: &[Entry], width: f64) -> f64 {
-    if entries.is_empty() { 0.0 } else { layout(face, entries, width).1 as f64 * LINE }
+    if entries.is_empty() { 0.0 } else { layout(face, entries, width).0 as f64 * LINE }
 }
 
 /// Draws the entries in columns, read downwards, with the first line's middle at the place.
 pub fn draw(face: &Typeface, sheet: &mut Sheet, [x, y]: Spot, entries: &[Entry], width: f64) {
-    let (_, lines, column) = layout(face, entries, width);
+    let (lines, columns) = layout(face, entries, width);
     for (i, entry) in entries.iter().enumerate() {
-        let at = [x + (i / lines) as f64 * column, y + (i % lines) as f64 * LINE];
-        entry.draw(sheet, at, &fit(face, &entry.label, SIZE, column - SAMPLE));
+        let Some([begin, wide]) = columns.get(i / lines) else { continue };
+        let at = [x + begin, y + (i % lines) as f64 * LINE];
+        entry.draw(sheet, at, &fit(face, &entry.label, SIZE, wide - SAMPLE));
     }
 }
 

@@ -33,9 +33,18 @@ pub fn svg(sheet: &Sheet) -> Result<String, String> {
     })?;
     drop(backend);
     let text = with_dashes(&text, sheet)?;
+    let text = with_defaults(&text);
     let drawn = format!("width=\"{}\" height=\"{}\"", size.0, size.1);
     let shown = format!("width=\"{}\" height=\"{}\"", size.0 / SVG_UNITS, size.1 / SVG_UNITS);
     Ok(text.replacen(&drawn, &shown, 1))
+}
+
+/// Takes what plotters writes into every element out of it: full opacity, which is the default, and the typeface, which
+/// the first element has for all.
+fn with_defaults(text: &str) -> String {
+    let face = format!(" font-family=\"{FAMILY}\"");
+    let text = text.replace(" opacity=\"1\"", "").replace(&face, "");
+    text.replacen("<svg", &format!("<svg{face}"), 1)
 }
 
 /// Adds dashes to an SVG document, for plotters writes none: each path is a `polyline`, in the order of the sheet.

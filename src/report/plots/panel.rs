@@ -157,20 +157,17 @@ impl Panel {
     ) {
         let middle = self.down(value).filter(|&y| self.holds([x, y]));
         let Some(middle) = middle.filter(|_| !(low.is_nan() || high.is_nan())) else { return };
-        for (end, sign) in [(high, -1.0), (low, 1.0)] {
-            match self.down(end).filter(|&y| self.holds([x, y])) {
-                Some(y) => {
-                    sheet.path(vec![[x, middle], [x, y]], width, colour);
-                    sheet.path(vec![[x - cap, y], [x + cap, y]], width, colour);
-                }
-                None => {
-                    let stub = if self.y.log { STUB } else { self.bottom - self.top };
-                    let tip = (middle + sign * stub).clamp(self.top, self.bottom);
-                    let back = tip - sign * cap;
-                    sheet.path(vec![[x, middle], [x, tip]], width, colour);
-                    sheet.path(vec![[x - cap, back], [x, tip], [x + cap, back]], width, colour);
-                }
+        let ends = [(high, -1.0), (low, 1.0)].map(|(end, sign)| {
+            if let Some(y) = self.down(end).filter(|&y| self.holds([x, y])) {
+                return (y, y);
             }
+            let stub = if self.y.log { STUB } else { self.bottom - self.top };
+            let tip = (middle + sign * stub).clamp(self.top, self.bottom);
+            (tip, tip - sign * cap)
+        });
+        sheet.path(ends.map(|(tip, _)| [x, tip]).to_vec(), width, colour);
+        for (tip, back) in ends {
+            sheet.path(vec![[x - cap, back], [x, tip], [x + cap, back]], width, colour);
         }
     }
 
@@ -249,11 +246,10 @@ mod tests {
             })
             .collect();
         // Up to its end with a cap, and down by a stub with a head.
-        assert_eq!(paths[0], [[45.0, 45.0], [45.0, 0.0]]);
-        assert_eq!(paths[1], [[42.0, 0.0], [48.0, 0.0]]);
-        assert_eq!(paths[2], [[45.0, 45.0], [45.0, 45.0 + STUB]]);
-        assert_eq!(paths[3], [[42.0, 42.0 + STUB], [45.0, 45.0 + STUB], [48.0, 42.0 + STUB]]);
-        assert_eq!(paths.len(), 4);
+        assert_eq!(paths[0], [[45.0, 0.0], [45.0, 45.0 + STUB]]);
+        assert_eq!(paths[1], [[42.0, 0.0], [45.0, 0.0], [48.0, 0.0]]);
+        assert_eq!(paths[2], [[42.0, 42.0 + STUB], [45.0, 45.0 + STUB], [48.0, 42.0 + STUB]]);
+        assert_eq!(paths.len(), 3);
     }
 
     #[test]

@@ -59,22 +59,24 @@ impl Series<'_> {
             colour,
         }
     }
+}
 
-    /// What the plots cannot show of it, in words.
-    pub fn note(&self) -> Option<String> {
-        let count = |test: fn(&Row) -> bool| self.rows.iter().filter(|row| test(row)).count();
-        let refused = count(|row| row.verdict == Some(Verdict::Refused));
-        let exact = count(|row| row.variance.or(row.predicted_variance) == Some(0.0));
-        let all = self.rows.len();
-        let mut notes = Vec::new();
-        if refused > 0 {
-            notes.push(format!("refused at {refused} of {all}"));
-        }
-        if exact > 0 {
-            notes.push("variance 0, which a logarithmic axis cannot show".to_owned());
-        }
-        (!notes.is_empty()).then(|| format!("{}: {}", self.label, notes.join("; ")))
-    }
+/// What the plots cannot show of the series, in words.
+pub fn notes(series: &[Series]) -> Vec<String> {
+    let list = |head: &str, of: &dyn Fn(&Series) -> Option<String>| {
+        let said: Vec<String> = series.iter().filter_map(of).collect();
+        (!said.is_empty()).then(|| format!("{head}: {}", said.join("; ")))
+    };
+    let refused = |one: &Series| {
+        let refused = one.rows.iter().filter(|row| row.verdict == Some(Verdict::Refused)).count();
+        (refused > 0).then(|| format!("{} at {refused} of {}", one.label, one.rows.len()))
+    };
+    let exact = |row: &&Row| row.variance.or(row.predicted_variance) == Some(0.0);
+    let exact = |one: &Series| one.rows.iter().any(exact).then(|| one.label.clone());
+    [list("Refused", &refused), list("Variance 0, which a logarithmic axis cannot show", &exact)]
+        .into_iter()
+        .flatten()
+        .collect()
 }
 
 /// What stands behind a label, in parentheses: what the estimator needs, how many lookups it makes before the first draw

@@ -7,6 +7,8 @@ use crate::report::plots::{Panel, Sheet};
 
 /// The width of the place that an estimator outside of the sweep has at the right edge.
 pub const PLACE: f64 = 13.0;
+/// A marker hides what is nearer to its middle than this.
+const HIDDEN: f64 = 3.5;
 /// Points closer than this hide each other.
 const APART: f64 = 8.0;
 
@@ -83,7 +85,15 @@ impl Graph {
         }
         for Point { series: of, spot, bar } in &self.points {
             let style = series[*of].style;
-            if let Some(bar) = bar {
+            // A bar within its marker cannot be seen.
+            let is_seen = |bar: &&[f64; 3]| {
+                panel.cuts(**bar)
+                    || bar
+                        .iter()
+                        .filter_map(|&y| panel.down(y))
+                        .any(|y| (y - spot[1]).abs() > HIDDEN)
+            };
+            if let Some(bar) = bar.as_ref().filter(is_seen) {
                 panel.bar(sheet, spot[0], *bar, (4.5, 1.4, style.colour));
             }
             panel.point(sheet, *spot, style.marker, 4.6, style.colour);

@@ -13,9 +13,11 @@ use crate::report::plots::{Panel, Sheet};
 
 const RIM: plotters::style::RGBAColor = ink(0x22, 0x22, 0x22);
 
-/// Whether a star is hollow: the figure of merit has no maximum there.
-fn is_hollow(best: Option<&Best>) -> bool {
-    best.is_some_and(|best| best.limit.is_some())
+/// Whether the star of a best σ̂ is hollow, for the figure of merit has no maximum there; `None` for no star.
+fn is_hollow(best: Option<&Best>) -> Option<bool> {
+    let is_drawn = |best: &Best| best.limit.is_some() || best.is_optimum();
+    // Records from before kinds were kept have optima.
+    best.map_or(Some(false), |best| is_drawn(best).then_some(best.limit.is_some()))
 }
 
 /// Marks the best σ̂ inside the sweep with a star and a thin line down to the axis, and says what the stars mean.
@@ -24,13 +26,14 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]
     for one in series {
         let Some(curve) = one.curve else { continue };
         let Some(best) = curve.optimum else { continue };
+        let Some(is_hollow) = is_hollow(curve.best.as_ref()) else { continue };
         let Some(spot) = panel.spot(best.x, best.fom).filter(|&spot| panel.holds(spot)) else {
             continue;
         };
         let drop = vec![spot, [spot[0], panel.bottom]];
         sheet.dashed(drop, &[1.5, 3.0], 1.2, one.style.colour.mix(0.8));
         Marker::Star.draw(sheet, spot, 9.0, RIM);
-        if is_hollow(curve.best.as_ref()) {
+        if is_hollow {
             Marker::Star.fill(sheet, spot, 7.5, one.style.colour);
             Marker::Star.fill(sheet, spot, 4.6, PAPER);
             hollow = true;
@@ -50,29 +53,23 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]
     legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
 }
 
-/// Where there is no maximum, and where the best σ̂ lies outside the sweep, in words.
-pub fn notes(series: &[Series]) -> Vec<String> {
-    let found =
-        || series.iter().filter_map(|one| Some((one, one.curve?, one.curve?.best.as_ref()?)));
-    let limits: Vec<String> = found()
-        .filter_map(|(one, _, best)| Some(format!("{}: {}", one.label, short(best.limit?, 4))))
-        .collect();
-    let mut notes = Vec::new();
-    if !limits.is_empty() {
-        notes.push(format!(
-            "(c): figures of merit that rise with σ\u{302} to a limit and have no optimum; a hollow star is where one reaches 90 % of \
-             it. The limits are {}",
-            limits.join("; ")
-        ));
-    }
-    let outside: Vec<String> = found()
-        .filter(|(_, curve, _)| curve.optimum.is_none())
-        .map(|(one, _, best)| {
-            format!("{}: σ\u{302} = {} ({})", one.label, short(best.sampling, 4), best.kind)
-        })
-        .collect();
-    if !outside.is_empty() {
-        notes.push(format!("(c), best σ\u{302} outside of the panel: {}", outside.join("; ")));
-    }
-    notes
+/// What the best σ̂ of each series is that is no optimum, or that has no star.
+pub fn note(series: &[Series]) -> Option<String> {
+    let said = series.iter().filter_map(|one| {
+        let curve = one.curve?;
+        let best = curve.best.as_ref()?;
+        let outside = if curve.optimum.is_none() { ", outside of the panel" } else { "" };
+        let (label, at) = (&one.label, short(best.sampling, 4));
+        match best.limit {
+            Some(limit) => {
+                let limit = short(limit, 4);
+                let kind = &best.kind;
+                Some(format!("{label} rises to {limit}, {kind} at σ\u{302} = {at}{outside}"))
+            }
+            None if outside.is_empty() && best.is_optimum() => None,
+            None => Some(format!("{label}: {} at σ\u{302} = {at}{outside}", best.kind)),
+        }
+    });
+    let said: Vec<String> = said.collect();
+    (!said.is_empty()).then(|| format!("(c), best σ\u{302}: {}", said.join("; ")))
 }
