@@ -102,7 +102,7 @@ pub struct BenchRow {
     pub predicted_lookups: Option<f64>,
     /// Lookups of σ_t for a ray before its first draw, as at explorer points and by pilot rays.
     pub setup_lookups: Option<u64>,
-    /// What σ̂, control and estimator need to know of the medium beside lookups, as in `τ`; empty for nothing.
+    /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
     pub needs: String,
     /// 1/(variance · (lookups per draw + setup lookups/draws per ray)), both those of theory where it has them.
     pub fom: Option<f64>,

@@ -116,7 +116,7 @@ pub trait Estimator<P: Problem>: Clone + Send + Sync + 'static {
         None
     }
 
-    /// What it needs to know of the medium beside lookups, whatever its σ̂ and its control, as in `τ`; `None` for nothing.
+    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control, as in `τ`; `None` for none.
     fn needs(&self) -> Option<&'static str> {
         None
     }

@@ -60,7 +60,7 @@ pub struct Case {
     pub sweep: Option<SweepAxis>,
     /// How many draws each experiment makes, if the case says.
     pub draws: Option<u64>,
-    /// How many draws of a ray share its setup lookups.
+    /// Number of draws that share the setup lookups of a ray.
     pub draws_per_ray: u64,
     /// The relative differences that matter.
     pub tolerance: Tolerance,

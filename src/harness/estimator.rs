@@ -59,7 +59,7 @@ pub struct Features {
     pub alias: Option<&'static str>,
     /// The control that it uses where the case gives none.
     pub default_control: Option<Box<dyn controls::Recipe>>,
-    /// What it needs to know of the medium beside lookups, σ̂ and control.
+    /// Knowledge of the medium that the estimator needs beside lookups, σ̂ and control.
     pub needs: Option<&'static str>,
     /// Its own settings in words, without the albedo and with it.
     pub label: [String; 2],

@@ -33,7 +33,7 @@ pub fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
     );
 }
 
-/// Mean lookups of the fixed draws, their z-score, and the figure of merit of a ray with so many draws.
+/// Mean lookups of the fixed draws, their z-score, and the figure of merit.
 pub fn measure_lookups(row: &mut Row, prediction: &Prediction, drawn: &Drawn, draws_per_ray: u64) {
     let n = drawn.lookups.draws as f64;
     let law = prediction.lookups.as_ref();

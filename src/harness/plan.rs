@@ -78,9 +78,9 @@ pub struct Planned {
     pub variation: Variation,
     /// What it is called.
     pub names: Names,
-    /// What it needs to know of the medium beside lookups; empty for nothing.
+    /// Knowledge of the medium that the experiment needs beside lookups; empty for none.
     pub needs: String,
-    /// How many draws of a ray share its setup lookups.
+    /// Number of draws that share the setup lookups of a ray.
     pub draws_per_ray: u64,
     /// Where its random numbers are.
     pub address: Address,

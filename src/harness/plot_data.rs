@@ -48,7 +48,7 @@ pub struct Best {
     pub sampling: f64,
     /// The figure of merit there; `None` where it is infinite.
     pub fom: Option<f64>,
-    /// What it is, in the words of a row's `best_kind`.
+    /// Kind of this σ̂, in the words of a row's `best_kind`.
     pub kind: String,
     /// The limit of a figure of merit that rises with σ̂ to one.
     pub limit: Option<f64>,

@@ -106,7 +106,7 @@ pub struct CaseRecord {
     pub problem: String,
     /// The field's name in the catalogue.
     pub medium: String,
-    /// How many draws of a ray share its setup lookups; `None` in records from before there were any.
+    /// Number of draws that share the setup lookups of a ray; `None` in records without it.
     pub draws_per_ray: Option<u64>,
     /// The smallest and the largest bias of a mean, relative to its unit, that its experiments were
     /// planned to see.
@@ -154,7 +154,7 @@ pub struct Row {
     pub sampling_kind: String,
     /// The control in words, as in `constant 0.3`; empty for none.
     pub control: String,
-    /// What σ̂, control and estimator need to know of the medium beside lookups, as in `τ`; empty for nothing.
+    /// Knowledge of the medium that σ̂, control and estimator need beside lookups, as in `τ`; empty for none.
     #[serde(default)]
     pub needs: String,
     /// The value of the swept quantity; `None` for experiments outside the sweep.
@@ -243,7 +243,7 @@ pub struct Row {
     pub best_sampling: Option<f64>,
     /// The figure of merit there; `None` where it is infinite.
     pub best_fom: Option<f64>,
-    /// What `best_sampling` is: `optimum`, `90 % of the limit` where the figure of merit rises with σ̂ to a limit, `no
+    /// Kind of `best_sampling`: `optimum`, `90 % of the limit` where the figure of merit rises with σ̂ to a limit, `no
     /// variance`, or `end of the search`. Empty where it is not asked for.
     #[serde(default)]
     pub best_kind: String,

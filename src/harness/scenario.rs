@@ -172,7 +172,7 @@ impl Scenario {
         Names { estimator, sampling, sampling_kind, control, alias }
     }
 
-    /// What an experiment needs to know of the medium beside lookups, as in `τ, max |σ_t − σ_c|`; empty for nothing.
+    /// Knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
     pub fn needs(&self, estimator: usize, variation: Variation) -> String {
         if let Some(Ok(needs)) = self.varied(variation, |other| other.needs(estimator, None)) {
             return needs;
@@ -180,17 +180,12 @@ impl Scenario {
         let parsed = &self.estimators.list[estimator];
         let control = self.with_control(estimator, variation, |recipe| recipe.needs());
         // A swept σ̂ stands in the recipe's place.
-        let is_swept = matches!(variation, Some((What::Sampling, _)))
-            && self.depends_on(estimator, What::Sampling);
-        let recipe = self.estimators.sampling_of(parsed).filter(|_| !is_swept);
-        let sampling = recipe.and_then(sampling::Recipe::needs);
-        let mut needs: Vec<&str> = Vec::new();
-        for need in [parsed.features.needs, control, sampling].into_iter().flatten() {
-            if !needs.contains(&need) {
-                needs.push(need);
-            }
-        }
-        needs.join(", ")
+        let is_swept = matches!(variation, Some((What::Sampling, _)));
+        let recipe = self.estimators.sampling_of(parsed);
+        let recipe = recipe.filter(|_| !(is_swept && self.depends_on(estimator, What::Sampling)));
+        let own = parsed.features.needs.filter(|own| control != Some(own));
+        let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
+        needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// Whether the case declares an estimator biased.
@@ -361,7 +356,7 @@ impl Scenario {
         self.counted_parts(estimator, variation, what_if, address).map(|(parts, _)| parts)
     }
 
-    /// The same, with the lookups of σ_t that control and σ̂ took.
+    /// Parts of an experiment, and the number of lookups of σ_t that control and σ̂ took.
     fn counted_parts(
         &self,
         estimator: usize,

@@ -68,7 +68,7 @@ pub fn shadow_label(shadow: Tracking) -> String {
     }
 }
 
-/// What exact shadow rays need.
+/// Knowledge that exact shadow rays need.
 pub fn shadow_needs(shadow: Tracking) -> Option<&'static str> {
     (shadow == Tracking::Exact).then_some("τ")
 }
@@ -120,7 +120,7 @@ impl Connection {
         format!("{camera}, {}", shadow_label(self.shadow))
     }
 
-    /// What exact transmittances need.
+    /// Knowledge that exact transmittances need.
     pub fn needs(&self) -> Option<&'static str> {
         let is_exact = self.camera == CameraTracking::Exact;
         is_exact.then_some("τ").or(shadow_needs(self.shadow))

@@ -45,7 +45,7 @@ impl Page {
         words.join(", ")
     }
 
-    /// What exact shadow rays need.
+    /// Knowledge that exact shadow rays need.
     pub fn needs(&self) -> Option<&'static str> {
         self.sharing.shadow.and_then(connection::shadow_needs)
     }

@@ -33,7 +33,7 @@ pub trait Recipe: Send + Sync {
         0
     }
 
-    /// What it needs to know of the medium beside lookups, as in `τ`; `None` for nothing.
+    /// Knowledge of the medium that the control needs beside lookups, as in `τ`; `None` for none.
     fn needs(&self) -> Option<&'static str> {
         None
     }

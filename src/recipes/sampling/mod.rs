@@ -46,7 +46,7 @@ pub trait Recipe: Send + Sync {
         self.prepare(site, control).map(|sampling| (sampling, 0))
     }
 
-    /// What it needs to know of the medium beside lookups, as in `max |σ_t − σ_c|`; `None` for nothing.
+    /// Knowledge of the medium that σ̂ needs beside lookups, as in `max |σ_t − σ_c|`; `None` for none.
     fn needs(&self) -> Option<&'static str> {
         None
     }

@@ -10,7 +10,7 @@ use crate::catalogue::digits::count;
 use crate::report::labels::Labels;
 use crate::report::plots::figure::{Figure, Foot, LEFT};
 use crate::report::plots::legend::Entry;
-use crate::report::plots::series::{marks, numbered};
+use crate::report::plots::names::{marks, numbered};
 use crate::report::plots::style::Style;
 use crate::report::plots::{self, Axis, Panel, Sheet};
 use crate::report::{Artifact, ReportError};

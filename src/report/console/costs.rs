@@ -33,7 +33,7 @@ pub fn notes(text: &mut String, pen: Pen, case: &CaseRecord, is_shown: &dyn Fn(&
     }
 }
 
-/// What the best σ̂ is; `None` where it was not searched.
+/// Words for the best σ̂ of a row; `None` where it was not searched.
 fn best(row: &Row) -> Option<String> {
     let sampling = short(row.best_sampling?, 4);
     let fom = row.best_fom.map_or("∞".to_owned(), |fom| short(fom, 4));

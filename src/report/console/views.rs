@@ -18,7 +18,7 @@ const TRUTH: Spec = ("truth", true, 11, |row| digits(row.truth, 6));
 pub const SETUP: Spec = ("setup", true, 3, |row| {
     row.setup_lookups.filter(|&lookups| lookups > 0).map(count).unwrap_or_default()
 });
-/// What estimators need beside lookups, as in `τ`.
+/// Knowledge that estimators need beside lookups, as in `τ`.
 pub const NEEDS: Spec = ("needs", false, 5, |row| row.needs.clone());
 
 /// The headings of z.

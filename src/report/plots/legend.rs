@@ -38,8 +38,8 @@ impl Entry {
     }
 }
 
-/// How many lines the entries take in this width, and where columns begin and how wide each is: as many columns as fit,
-/// each as wide as its widest entry.
+/// Number of lines of the legend, and beginning and width of each column: as many columns as fit, each as wide as its
+/// widest entry.
 fn layout(face: &Typeface, entries: &[Entry], width: f64) -> (usize, Vec<[f64; 2]>) {
     let widths: Vec<f64> =
         entries.iter().map(|e| face.width(&e.label, SIZE) + SAMPLE + GAP).collect();
@@ -84,7 +84,7 @@ pub struct Key {
     pub marker: Marker,
     /// Whether it is hollow.
     pub is_hollow: bool,
-    /// What it means.
+    /// Its meaning.
     pub words: &'static str,
 }
 

@@ -13,7 +13,7 @@ const SAME: f64 = 1e-9;
 pub enum Line {
     /// Through points, ascending in x.
     Points(Vec<(f64, f64)>),
-    /// The same value everywhere.
+    /// One value everywhere.
     Level(f64),
     /// Nothing is drawn.
     None,
@@ -33,7 +33,7 @@ impl Line {
         }
     }
 
-    /// How long it is: levels are longest.
+    /// Number of points; levels are longest.
     fn length(&self) -> usize {
         match self {
             Self::Points(points) => points.len(),

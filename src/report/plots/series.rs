@@ -2,10 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use crate::catalogue::digits::count;
 use crate::harness::record::{CaseRecord, Curve, CurvePoint, Row, Sweep, Verdict};
 use crate::report::labels::Labels;
 use crate::report::plots::legend::Entry;
+use crate::report::plots::names::{labels, marks};
 use crate::report::plots::style::Style;
 
 /// One estimator of the case along the sweep, one channel of its value.
@@ -79,34 +79,17 @@ pub fn notes(series: &[Series]) -> Vec<String> {
         .collect()
 }
 
-/// What stands behind a label, in parentheses: what the estimator needs, how many lookups it makes before the first draw
-/// of a ray, and whether it is outside of the sweep.
-pub fn marks(needs: &str, setup: Option<RangeInclusive<u64>>, is_fixed: bool) -> String {
-    let mut marks = Vec::new();
-    if !needs.is_empty() {
-        marks.push(format!("needs {}", needs.replace("_t", "ₜ")));
-    }
-    if let Some((least, most)) = setup.map(RangeInclusive::into_inner).filter(|ends| ends.1 > 0) {
-        let from = if least < most { format!("{} to ", count(least)) } else { String::new() };
-        marks.push(format!("{from}{} setup lookups", count(most)));
-    }
-    if is_fixed {
-        marks.push("not swept".to_owned());
-    }
-    if marks.is_empty() { String::new() } else { format!(" ({})", marks.join("; ")) }
-}
-
 fn is_fixed(rows: &[&Row], curve: Option<&Curve>) -> bool {
     curve.is_none() && rows.iter().all(|row| row.swept.is_none())
 }
 
 /// The rows of one estimator of the case, one channel of its value.
-struct Group<'a> {
+pub(super) struct Group<'a> {
     /// The number of the estimator.
     listed: usize,
-    channel: &'a str,
-    rows: Vec<&'a Row>,
-    curve: Option<&'a Curve>,
+    pub(super) channel: &'a str,
+    pub(super) rows: Vec<&'a Row>,
+    pub(super) curve: Option<&'a Curve>,
 }
 
 /// Of more series than these a plot shows the last channel of each estimator, as the luminance of chromatic media.
@@ -216,66 +199,6 @@ fn keep_last_channels(groups: &mut Vec<Group>) {
         let at = index.next().unwrap_or_default();
         !listed[at + 1..].contains(&group.listed)
     });
-}
-
-/// The labels of the series, no two alike: the estimator, its control, its σ̂ where others of its name have another, and
-/// the channel.
-fn labels(groups: &[Group], digits: Labels) -> Vec<String> {
-    let estimator = |group: &Group| match (group.rows.first(), group.curve) {
-        (Some(row), _) => row.estimator.clone(),
-        (None, Some(curve)) => curve.estimator.clone(),
-        (None, None) => String::new(),
-    };
-    let names: Vec<[String; 2]> =
-        groups.iter().map(|group| [estimator(group), sampling(group, digits)]).collect();
-    let mut labels: Vec<String> = Vec::new();
-    for (group, [estimator, sampling]) in groups.iter().zip(&names) {
-        let is_shared = names.iter().any(|other| other[0] == *estimator && other[1] != *sampling);
-        let sampling = if is_shared { sampling.clone() } else { String::new() };
-        let parts = [estimator.clone(), control(group), sampling, group.channel.to_owned()];
-        let label = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>();
-        labels.push(label.join(", "));
-    }
-    numbered(labels)
-}
-
-/// Texts with numbers behind those that have come before.
-pub fn numbered(texts: Vec<String>) -> Vec<String> {
-    let mut numbered: Vec<String> = Vec::with_capacity(texts.len());
-    for text in texts {
-        let mut names = std::iter::once(text.clone()).chain((2..).map(|n| format!("{text} #{n}")));
-        let name = names.find(|name| !numbered.contains(name));
-        numbered.push(name.unwrap_or(text));
-    }
-    numbered
-}
-
-/// The control, where all rows have the same.
-fn control(group: &Group) -> String {
-    let first = group.rows.first().map(|row| &row.control);
-    let first = first.or(group.curve.map(|curve| &curve.control));
-    let same = first.filter(|first| group.rows.iter().all(|row| row.control == **first));
-    same.cloned().unwrap_or_default()
-}
-
-/// σ̂ in words; empty where it is what is swept.
-fn sampling(group: &Group, digits: Labels) -> String {
-    let drawn = || group.rows.iter().filter(|row| !row.sampling_kind.is_empty());
-    if drawn().any(|row| row.swept.is_some() && row.swept == row.sampling) {
-        return String::new();
-    }
-    let Some(first) = drawn().next() else { return String::new() };
-    let ends = drawn().filter_map(|row| row.sampling).fold(None, |ends, value| {
-        let [low, high] = ends.unwrap_or([value; 2]);
-        Some([f64::min(low, value), f64::max(high, value)])
-    });
-    match ends {
-        Some([low, high]) if low < high => {
-            format!("σ\u{302} {} to {}", digits.text(low), digits.text(high))
-        }
-        Some([value, _]) => format!("σ\u{302} {}", digits.text(value)),
-        None => first.sampling_kind.clone(),
-    }
 }
 
 #[cfg(test)]
