@@ -120,7 +120,7 @@ pub fn figure(case: &CaseRecord, sweep: &Sweep, seed: u64) -> Result<Sheet, Repo
     Ok(figure.close(&foot))
 }
 
-/// What S and n are.
+/// Meaning of S and n.
 fn setup_note(case: &CaseRecord) -> String {
     let draws = count(case.draws_per_ray.unwrap_or(1));
     format!(

@@ -1,10 +1,10 @@
 //! Which constant σ̂ is best.
 //!
-//! The figure of merit is `1/(V · (E[M] + S/n))`: S lookups before the first draw of a ray, shared out among its n draws.
+//! The figure of merit is `1/(V · (E[M] + S/n))`: the n draws of a ray share its S setup lookups.
 //! An estimator that may end early has a finite optimum, found by a one-dimensional search on log σ̂. The double
-//! particle has none: its figure of merit rises with σ̂ towards the limit `1/(T² S ∫residual²)`, S here the length of the
-//! support, and what is reported is where it reaches 90 % of the limit, and the limit. Each channel has a variance of
-//! its own, and so a σ̂ of its own that is best for it.
+//! particle has none: its figure of merit rises with σ̂ towards the limit `1/(T² ℓ ∫residual²)`, ℓ the length of the
+//! support. The answer is then where it reaches 90 % of the limit, with the limit. Each channel has a variance of its
+//! own, and so a best σ̂ of its own.
 //!
 //! Source: Szirmay-Kalos et al. 2017, section 3.4, with the cost of the walk added.
 
@@ -15,7 +15,7 @@ use crate::numeric::roots;
 /// Share of the limit at which a rising figure of merit is reported.
 pub const SHARE: f64 = 0.9;
 
-/// What a reported σ̂ is to the figure of merit.
+/// Kind of a reported σ̂.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// The figure of merit is largest there.
@@ -58,7 +58,7 @@ pub struct Optimum {
     pub sampling: f64,
     /// `1/(V · (E[M] + S/n))` there; infinite where the variance is 0.
     pub figure_of_merit: f64,
-    /// What it is.
+    /// Kind of this σ̂.
     pub kind: Kind,
 }
 
@@ -76,9 +76,9 @@ const DECADES: usize = 8;
 /// Searches, for each channel, the constant σ̂ with the largest figure of merit around `scale`, the largest
 /// residual. Empty where the estimator is refused everywhere.
 ///
-/// `predict` answers `None` where the estimator is refused; a ray has `draws_per_ray` draws. Where the figure of merit
-/// still rises at the upper end, it is followed by factors of ten until it gains less than 0.1 %, extrapolated
-/// to its limit, and the answer is the σ̂ that reaches 90 % of that.
+/// `predict` answers `None` where the estimator is refused; a ray has `draws_per_ray` draws. A figure of merit that still
+/// rises at the upper end is followed by factors of ten until it gains less than 0.1 %, and extrapolated to its limit. The
+/// answer is then the σ̂ that reaches 90 % of the limit.
 pub fn best_constants(
     scale: f64,
     draws_per_ray: u64,
@@ -124,7 +124,7 @@ struct Found {
     kind: Kind,
 }
 
-/// Where a figure of merit is largest, or reaches 90 % of its limit.
+/// Searches the maximum of a figure of merit, or 90 % of its limit.
 fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Found> {
     let (best, &largest) = coarse.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1))?;
     if largest <= 0.0 {
@@ -155,8 +155,8 @@ fn best_log(coarse: &[f64], merit: impl Fn(f64) -> f64) -> Option<Found> {
     Some(Found { log, merit: -least, kind: Kind::Maximum })
 }
 
-/// Where a rising figure of merit that is nearly its limit at `far` reaches 90 % of it, below the search too, as in thin
-/// media.
+/// Searches 90 % of the limit of a rising figure of merit, which is nearly reached at `far`. In thin media the answer lies
+/// below the range of the coarse search.
 fn share_of_limit(
     coarse: &[f64],
     far: f64,

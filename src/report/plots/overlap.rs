@@ -75,7 +75,7 @@ pub fn classes(lines: &[Line]) -> Vec<Class> {
 }
 
 impl Class {
-    /// The dashes of a member, whose own are given: stripes where it is not alone.
+    /// Dashes of a member: stripes where it is not alone, else its own.
     pub fn dash(&self, member: usize, own: &[f64]) -> Vec<f64> {
         let slots = self.members.len() + usize::from(!self.hosts.is_empty());
         let is_gap_enough = self.members.len() == 1 && !own.is_empty();
@@ -89,7 +89,7 @@ impl Class {
     }
 }
 
-/// What lies on what in the panels, in words: the classes of each panel with its letter, the names of the lines.
+/// Notes on lines that lie on each other, from the classes of each panel with its letter and the names of the lines.
 pub fn notes(panels: &[(char, Vec<Class>)], names: &[&str]) -> Vec<String> {
     let mut equal: Vec<(String, Vec<char>)> = Vec::new();
     let mut upon: Vec<(String, Vec<char>)> = Vec::new();

@@ -10,7 +10,7 @@ use crate::report::plots::style::Style;
 
 /// One estimator of the case along the sweep, one channel of its value.
 pub struct Series<'a> {
-    /// The estimator, and what tells it from its neighbours: no two series of a plot have the same label.
+    /// The estimator, with control, σ̂ and channel where needed: no two series of a plot have the same label.
     pub label: String,
     /// How it looks.
     pub style: Style,
@@ -39,7 +39,7 @@ impl Series<'_> {
         }
     }
 
-    /// The least and the largest number of setup lookups of its rows; `None` where there are none.
+    /// Range of the setup lookups of its rows; `None` if all are 0 or unknown.
     pub fn setup_lookups(&self) -> Option<RangeInclusive<u64>> {
         let counts = || self.rows.iter().filter_map(|row| row.setup_lookups);
         let most = counts().max().filter(|&most| most > 0)?;
@@ -61,7 +61,7 @@ impl Series<'_> {
     }
 }
 
-/// What the plots cannot show of the series, in words.
+/// Notes on refusals and on variances of 0, which plots cannot show.
 pub fn notes(series: &[Series]) -> Vec<String> {
     let list = |head: &str, of: &dyn Fn(&Series) -> Option<String>| {
         let said: Vec<String> = series.iter().filter_map(of).collect();

@@ -12,7 +12,7 @@ const HIDDEN: f64 = 3.5;
 /// Points closer than this hide each other.
 const APART: f64 = 8.0;
 
-/// What one panel shows: as measured, with its deviation, and in theory for rows and curves.
+/// Quantity of a panel: as measured, with its deviation, and in theory for rows and curves.
 #[derive(Clone, Copy)]
 pub struct Quantity {
     /// The heading; its second character is the letter of the panel.
@@ -49,7 +49,7 @@ pub struct Graph {
 }
 
 impl Graph {
-    /// What a quantity of the series looks like in a panel.
+    /// Lays a quantity of the series out in a panel.
     pub fn new(panel: Panel, quantity: Quantity, series: &[Series]) -> Self {
         let lines: Vec<Line> = series.iter().map(|one| line(one, &quantity, &panel)).collect();
         let mut points = points(&panel, &quantity, series);
@@ -107,7 +107,7 @@ impl Graph {
     }
 }
 
-/// What the panels do not say by themselves: which lines are equal, what moved points and arrows mean.
+/// Notes on equal lines, moved points and cut error bars.
 pub fn notes(graphs: &[Graph], series: &[Series]) -> Vec<String> {
     let names: Vec<&str> = series.iter().map(|one| &*one.label).collect();
     let classes: Vec<(char, Vec<Class>)> =

@@ -53,7 +53,7 @@ pub fn draw(face: &Typeface, sheet: &mut Sheet, panel: &Panel, series: &[Series]
     legend::keys(face, sheet, [panel.right, panel.top - 15.0], &keys);
 }
 
-/// What the best σ̂ of each series is that is no optimum, or that has no star.
+/// Note on the best σ̂ that are shares of limits, or have no star.
 pub fn note(series: &[Series]) -> Option<String> {
     let said = series.iter().filter_map(|one| {
         let curve = one.curve?;

@@ -80,7 +80,7 @@ const QUANTITIES: [fn(&Row) -> Option<f64>; 3] = [
     |row| row.predicted_fom,
 ];
 
-/// Series whose rows have the same values in theory, in one of the panels, wherever both have any.
+/// Pairs of series with equal rows in theory, in one of the panels.
 fn equal_pairs(series: &[Series]) -> Vec<(String, String)> {
     let mut pairs = Vec::new();
     for quantity in QUANTITIES {

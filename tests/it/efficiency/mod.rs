@@ -1,4 +1,4 @@
-//! What makes estimators comparable: all their lookups, what their best σ̂ is, and plots that show each of them.
+//! Comparable estimators: all lookups counted, best σ̂ named for what they are, plots that show each estimator.
 
 mod costs;
 mod legends;

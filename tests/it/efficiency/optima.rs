@@ -1,4 +1,4 @@
-//! What the best constant σ̂ is: an optimum, or a share of a limit that a rising figure of merit never reaches.
+//! The best constant σ̂: an optimum, or a share of a limit that a rising figure of merit never reaches.
 
 use std::f64::consts::PI;
 
