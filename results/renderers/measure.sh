@@ -3,21 +3,22 @@
 #
 #   TRUEFLIGHT=target/release/trueflight PYTHON=python3 results/renderers/measure.sh
 #
-# PYTHON has the packages mitsuba and numpy. About ten minutes of one core. PARTS chooses what is measured.
+# PYTHON has the packages mitsuba and numpy. About ten minutes of one core. PARTS chooses what is measured: the part `colours`
+# has a table of its own, colours.csv, to which KEEP=1 appends the rows of another version of Mitsuba.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 : "${TRUEFLIGHT:=trueflight}" "${PYTHON:=python3}" "${DRAWS:=1000000}" "${TABLE:=$root/results/renderers/mitsuba.csv}"
 export TRUEFLIGHT
 scenes=$(mktemp -d)
 trap 'rm -r "$scenes"' EXIT
-rm -f "$TABLE"
+[ "${PARTS-}" = colours ] || rm -f "$TABLE"
 
 # Exports a case file and measures it with the given ways of finding lights.
 measure() {
     case=$1
     shift
-    out=$scenes/$(basename "$(dirname "$case")")-$(basename "$case" .toml)
-    "$TRUEFLIGHT" export "$case" --to mitsuba --out "$out" --quiet || exit 2
+    out=$scenes/$(basename "$(dirname "$case")")-$(basename "$case" .toml)${FORM-}
+    "$TRUEFLIGHT" export "$case" --to mitsuba --out "$out" --quiet ${FORM-} || exit 2
     for integrator in volpath volpathmis; do
         for way in "$@"; do
             "$PYTHON" -m trueflight.clients.mitsuba "$out" --integrator "$integrator" $way --draws "$DRAWS" \
@@ -49,6 +50,20 @@ for part in $parts; do
         measure "$root/results/renderers/small.toml" $lights --pixels
         DRAWS=4000000
         measure "$root/results/renderers/lamp.toml" $lights
+        ;;
+    # Channels, in a table of their own.
+    colours)
+        TABLE=$(dirname "$TABLE")/colours.csv OURS=
+        [ -n "${KEEP-}" ] || rm -f "$TABLE"
+        measure "$root/results/renderers/cube.toml" $lights
+        FORM=--heterogeneous
+        measure "$root/results/renderers/cube.toml" $lights
+        FORM=
+        measure "$cases/spectral-transmittance/layers.toml" $lights
+        for case in like-colours known-bugs; do measure "$cases/spectral-furnace/$case.toml" $hits $lights; done
+        measure "$cases/spectral-slab/three-albedos.toml" $hits $lights
+        measure "$cases/chromatic-slab/like-colours.toml" $hits $lights
+        measure "$root/results/renderers/coloured-lamp.toml" $lights
         ;;
     # Bugs of the client, in a table of their own.
     bugs)

@@ -62,7 +62,7 @@ pub fn read(
             "sphere" => reader.sphere(&settings("sphere")?),
             _ => Err((
                 format!("renderers do not answer what `{}` asks", case.problem),
-                "take a case of transmittance, furnace, slab, single-scattering or sphere",
+                "take a case of transmittance, furnace, slab, single-scattering (of one channel or several) or sphere",
             )),
         })
     })?;
@@ -183,10 +183,18 @@ impl Reader<'_> {
         let body = media::Body::read_for(settings, SpectralFurnace::RAY).ok_or_else(unread)?;
         let furnace = SpectralFurnace::read(Some(&body), settings).ok_or_else(unread)?;
         let own = self.own_grids(settings, furnace.channels.len())?;
-        let (volumes, albedos, phase) = self.scatterers(furnace.channels)?;
+        let channels = self.chosen(furnace.channels)?;
+        let volumes: Vec<Arc<Volume>> = channels.iter().map(|one| one.volume.clone()).collect();
         let fields = self.in_space(&volumes, own)?;
-        let is_white = albedos.iter().all(|&albedo| albedo == 1.0);
-        Ok(self.white(fields, [furnace.entry, furnace.direction], phase, is_white))
+        let is_white = channels.iter().all(|channel| channel.albedo == 1.0);
+        let phase = channels[0].phase;
+        let ray = [furnace.entry, furnace.direction];
+        let mut scene = self.white(fields, ray, lobe(phase), is_white);
+        if channels.iter().any(|channel| channel.phase != phase) {
+            let note = "all channels have the phase function of the first: that of a renderer is grey, and the radiance is 1 with any";
+            scene.notes.push(note.into());
+        }
+        Ok(scene)
     }
 
     /// A white medium in light from all sides, seen from outside.

@@ -26,6 +26,10 @@
 //! | `control.NAME = { … }` | σ_c, for every estimator that takes one |
 //! | `sweep.NAME = { … }` | what is varied, see `trueflight explain sweep` |
 //! | `estimators = [{ NAME = { … } }, …]` | each with its own settings, and its own `sampling`, `control`, `expect`, `kernel` |
+//!
+//! Short forms: a number for `medium`, `volume`, `sampling` or `control` is the page `constant`, as in `sampling = 2`. A name
+//! that needs no settings stands alone or with an empty table, wherever a name is chosen: `control = "mean"`,
+//! `phase = "isotropic"`, `estimators = ["ratio", "woodcock"]`.
 
 use std::cell::RefCell;
 use std::ops::Range;

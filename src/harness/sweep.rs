@@ -19,7 +19,7 @@
 //! the mean of the case's `sampling` list, and the largest of the list stays the largest. The last three sweeps change
 //! the answer: every estimator is drawn at every value.
 //!
-//! Each is `{ values = [ … ] }`, or `{ from, to, points, scale }` with `scale = "linear"` or `"log"`,
+//! Each is a list, as in `sweep.sampling = [1, 2, 4]`, or `{ values = [ … ] }`, or `{ from, to, points, scale }` with `scale = "linear"` or `"log"`,
 //! `points` values from end to end. Estimators that do not depend on it are drawn once.
 
 use super::rewrite::{self, Rewrite};

@@ -40,6 +40,7 @@ mod properties;
 mod render;
 mod render_files;
 mod rod;
+mod shorthands;
 mod single_precision;
 mod single_scattering;
 mod skips;

@@ -65,6 +65,15 @@ def test_cases_as_text_path_dict_and_name(tmp_path):
     assert set(tf.predict(LONG)["case"]) == {LONG}
 
 
+def test_short_forms_in_a_dict():
+    problem = {"medium": 0.5, "span": [0, 4], "sampling": np.float64(1.0), "estimators": ["ratio", "woodcock"]}
+    same(tf.predict({"title": "Homogeneous", "draws": 1e5, "problem": {"transmittance": problem}}), tf.predict(CASE))
+    swept = {"medium": 0.5, "span": [0, 4], "sweep": {"sampling": [1, 2]}, "estimators": "ratio"}
+    assert tf.predict({"title": "x", "problem": {"transmittance": swept}})["swept"].tolist() == [1.0, 2.0]
+    with pytest.raises(tf.Error, match="write `sampling = 2` or `sampling.constant.value = 2`"):
+        tf.predict({"title": "x", "problem": {"transmittance": problem | {"sampling": {"value": 2}}}})
+
+
 def test_a_sweep_takes_the_place_of_the_cases_own():
     found = tf.sweep(LONG, sampling=np.array([1.5, 2.5]), filter="ratio")
     assert found["swept"].tolist() == [1.5, 2.5] and np.isnan(found["mean"]).all()

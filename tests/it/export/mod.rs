@@ -1,5 +1,6 @@
 //! Cases as scenes of other renderers: their files, their truth, and what cannot be exported.
 
+mod colours;
 mod field;
 mod pbrt;
 mod refusals;

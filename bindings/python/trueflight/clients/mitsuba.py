@@ -3,7 +3,8 @@
     trueflight export transmittance/eq21-overview --to mitsuba --out scene
     python -m trueflight.clients.mitsuba scene --integrator volpath
 
-Every sample of the camera's only ray has one law, whose mean `truth.json` tells, and often its variance. Draws are
+Every sample of the camera's only ray has one law, whose mean `truth.json` tells, and often its variance. Where a scene
+has several channels, red, green and blue are judged each by its own truth. Draws are
 the samples of the integrator with the numbers of one generator. With `--pixels` they are those of pictures: scalar
 variants seed each pixel by a consecutive number, and neighbours depend on each other, which the gate may find.
 The gate says pass, fail or inconclusive, and so does the exit code: 0, 1 or 3, and 2 where something is wrong
@@ -26,13 +27,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 import trueflight
 
-# The version of `truth.json` that is read, and exit codes, the worst last.
-VERSION = 1
+# The versions of `truth.json` that are read, without and with channels, and exit codes, the worst last.
+VERSIONS = (1, 2)
 CODES = {"pass": 0, "inconclusive": 3, "fail": 1}
 INTERRUPTED = 130
 
@@ -67,6 +68,7 @@ class Row:
     seconds_to_1e_2: float
     ours_seconds_to_1e_2: float | None
     reason: str
+    mitsuba: str
 
 
 def judge(draws, truth, rounding, law, alpha):
@@ -107,8 +109,9 @@ def read(folder):
         raise Wrong(f"{path}: {error.strerror}; write it by `trueflight export --to mitsuba`") from None
     except ValueError as error:
         raise Wrong(f"{path}: {error}; write it anew by `trueflight export`") from None
-    if truth.get("version") != VERSION or truth.get("target") != "mitsuba":
-        raise Wrong(f"{path} is not for Mitsuba, or not of version {VERSION}; export it anew")
+    if truth.get("version") not in VERSIONS or truth.get("target") != "mitsuba":
+        versions = " or ".join(map(str, VERSIONS))
+        raise Wrong(f"{path} is not for Mitsuba, or not of version {versions}; export it anew")
     return truth
 
 
@@ -142,7 +145,9 @@ def scene(mitsuba, folder, truth, question, options):
         "width": side,
         "height": side,
     }
-    mitsuba.file_resolver().prepend(str(Path(folder).resolve()))
+    # Up to 3.5 the resolver belongs to a thread.
+    resolver = getattr(mitsuba, "file_resolver", None) or mitsuba.Thread.thread().file_resolver
+    resolver().prepend(str(Path(folder).resolve()))
     try:
         return mitsuba.load_string(text, **parameters)
     except RuntimeError as error:
@@ -150,7 +155,7 @@ def scene(mitsuba, folder, truth, question, options):
 
 
 def pixels(mitsuba, loaded, count, seed):
-    """The pixels of square pictures, and the seconds that they took."""
+    """The pixels of square pictures, a row with red, green and blue each, and the seconds that they took."""
     import numpy
 
     side = loaded.sensors()[0].film().size()[0]
@@ -163,12 +168,13 @@ def pixels(mitsuba, loaded, count, seed):
         # Pixel i of a picture has the seed `seed + i`: pictures take seeds that are so far apart.
         image = mitsuba.render(loaded, seed=(seed + index) * side**2, spp=1)
         seconds += time.process_time() - begin
-        pictures.append(numpy.array(image)[:, :, 0].astype(float).ravel())
+        pictures.append(numpy.array(image)[:, :, :3].astype(float).reshape(-1, 3))
     return numpy.concatenate(pictures), seconds
 
 
 def samples(mitsuba, loaded, count, seed, is_inside):
-    """Samples of the integrator along the camera's ray, with the numbers of one generator, one after the other."""
+    """Samples of the integrator along the camera's ray, with the numbers of one generator, one after the other: a row with
+    red, green and blue each."""
     import numpy
 
     sampler = mitsuba.load_dict({"type": "independent"})
@@ -177,27 +183,45 @@ def samples(mitsuba, loaded, count, seed, is_inside):
     ray, _ = loaded.sensors()[0].sample_ray_differential(0, 0.5, middle, middle)
     media = [shape.interior_medium() for shape in loaded.shapes()]
     medium = next(filter(None, media)) if is_inside else None
-    draws = numpy.empty(count)
+    draws = numpy.empty((count, 3))
     for index in range(count):
-        draws[index] = integrator.sample(loaded, sampler, ray, medium)[0][0]
+        colour = integrator.sample(loaded, sampler, ray, medium)[0]
+        draws[index] = colour[0], colour[1], colour[2]
     return draws
 
 
-def measure(mitsuba, folder, truth, question, options):
-    """Renders and judges one picture."""
-    with_sampling = not options.no_emitter_sampling
-    law = question["with_emitter_sampling" if with_sampling else "without_emitter_sampling"]
+def laws(question, options):
+    """What is known of the samples of the way in which lights are found."""
+    law = question["without_emitter_sampling" if options.no_emitter_sampling else "with_emitter_sampling"]
     if law is None:
         raise Wrong("scattering alone does not find this light; leave --no-emitter-sampling out")
-    loaded = scene(mitsuba, folder, truth, question, options)
+    return law
+
+
+def measure(mitsuba, folder, truth, questions, options):
+    """Renders one picture and judges it, channel by channel where it has several: a row for each question."""
+    known = [laws(question, options) for question in questions]
+    loaded = scene(mitsuba, folder, truth, questions[0], options)
     # Not the calls from Python are timed, but a picture.
     draws, seconds = pixels(mitsuba, loaded, options.draws if options.pixels else 1, options.seed if options.pixels else 0)
     rate = len(draws) / seconds
     if not options.pixels:
         draws = samples(mitsuba, loaded, options.draws, options.seed, truth["camera_in_medium"])
+    alpha = options.alpha / len(truth["questions"])
+    rows = []
+    for question, law in zip(questions, known, strict=True):
+        # Of a scene without channels all colours are alike.
+        of_channel = draws[:, question.get("channel", 1) - 1].copy()
+        row = found(of_channel, truth, (question, law), (rate, alpha), folder, options)
+        rows.append(replace(row, mitsuba=mitsuba.__version__))
+    return rows
+
+
+def found(draws, truth, question_and_law, rate_and_alpha, folder, options):
+    """The row of one question."""
+    (question, law), (rate, alpha) = question_and_law, rate_and_alpha
     mean, error = question["mean"], question["error"]
     rounding = question["rounding"] + error / mean
-    alpha = options.alpha / len(truth["questions"])
     verdict, reason = judge(draws, mean, rounding, law, alpha)
     deviation = float(draws.std())
     standard_error = deviation / len(draws) ** 0.5
@@ -206,7 +230,7 @@ def measure(mitsuba, folder, truth, question, options):
         case=truth["case"],
         question=question["name"],
         integrator=options.integrator,
-        emitter_sampling=with_sampling,
+        emitter_sampling=not options.no_emitter_sampling,
         draws_are="pixels" if options.pixels else "samples",
         bug=options.bug or "",
         verdict=verdict,
@@ -222,7 +246,16 @@ def measure(mitsuba, folder, truth, question, options):
         seconds_to_1e_2=(deviation / mean / 0.01) ** 2 / rate,
         ours_seconds_to_1e_2=ours(folder, question["name"]) if options.ours else None,
         reason=reason,
+        mitsuba="",
     )
+
+
+def by_scene(questions):
+    """The questions of each scene, in the order of the scenes."""
+    scenes = {}
+    for question in questions:
+        scenes.setdefault(question["scene"], []).append(question)
+    return list(scenes.values())
 
 
 def arguments(words):
@@ -270,15 +303,18 @@ def arguments(words):
 
 
 def writable(path):
-    """Whether a table can be written, found out before anything is rendered; leaves no file behind."""
+    """Whether rows can be appended to a table, found out before anything is rendered; leaves no file behind."""
     is_new = not os.path.lexists(path)
     try:
-        with open(path, "a", encoding="utf-8"):
-            pass
+        with open(path, "a+", encoding="utf-8") as file:
+            file.seek(0)
+            header = file.readline().strip()
         if is_new:
             os.remove(path)
     except OSError as error:
         raise Wrong(f"--csv {path}: {error.strerror}; give a file that can be written") from None
+    if header and header != ",".join(field.name for field in fields(Row)):
+        raise Wrong(f"--csv {path} has other columns, as of another version of this program; give another file")
 
 
 def lines(row):
@@ -320,7 +356,8 @@ def main(words=None):
             drjit.set_thread_count(1)
         except (ImportError, AttributeError) as error:
             raise Wrong(f"--variant {options.variant}: {error}") from None
-        rows = [measure(mitsuba, options.folder, truth, q, options) for q in truth["questions"]]
+        asked = by_scene(truth["questions"])
+        rows = [row for questions in asked for row in measure(mitsuba, options.folder, truth, questions, options)]
         if options.csv:
             append(options.csv, rows)
     except (Wrong, OSError) as error:

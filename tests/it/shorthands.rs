@@ -1,0 +1,208 @@
+//! Names and numbers in the place of tables: the same case by either spelling, and what is said of near misses.
+
+use super::common::{case, judged, mistakes, options, predicted};
+
+/// What is drawn and judged of a case, without its name: bit for bit.
+fn results(text: &str) -> String {
+    let record = judged(&[case("test", text)], &options(1, 4000));
+    let rows: Vec<_> = record.results.cases.into_iter().flat_map(|case| case.rows).collect();
+    assert!(!rows.is_empty(), "{text}");
+    format!("{rows:?}")
+}
+
+/// A transmittance case with some more lines.
+fn transmittance(lines: &str) -> String {
+    format!("title = \"x\"\n[problem.transmittance]\nspan = [0, 2]\n{lines}\n")
+}
+
+#[test]
+fn numbers_stand_for_the_page_constant() {
+    let long = "medium.constant.extinction = 0.5\nsampling.constant.value = 2\n\
+                estimators = [{ ratio = {} }, { residual-ratio = { control.constant.value = 0.25 } }]";
+    let expected = results(&transmittance(long));
+    for (key, written) in [
+        ("medium", "medium = 0.5\nsampling = 2"),
+        ("constant", "medium.constant = 0.5\nsampling.constant = 2"),
+        ("tables", "medium = { constant = 0.5 }\nsampling = { constant = { value = 2 } }"),
+    ] {
+        for control in ["control = 0.25", "control.constant = 0.25"] {
+            let estimators =
+                format!("estimators = [\"ratio\", {{ residual-ratio = {{ {control} }} }}]");
+            let short = transmittance(&format!("{written}\n{estimators}"));
+            assert_eq!(results(&short), expected, "{key}, {control}");
+        }
+    }
+}
+
+#[test]
+fn names_stand_for_tables_without_keys_and_the_other_way_round() {
+    let frame = |control: &str, rule: &str| {
+        transmittance(&format!(
+            "medium = 0.5\nsampling = 2\ncontrol{control}\n\
+             estimators = [{{ double = {{}} }}, {{ single = {{ rule{rule}, albedo = 0.7 }} }}]"
+        ))
+    };
+    let expected = results(&frame(".mean = {}", " = \"terminating\""));
+    for (control, rule) in [
+        (" = \"mean\"", " = \"terminating\""),
+        (" = { mean = {} }", ".terminating = {}"),
+        (".mean = {}", " = { terminating = {} }"),
+    ] {
+        assert_eq!(results(&frame(control, rule)), expected, "{control}, {rule}");
+    }
+    let one = transmittance("medium = 0.5\nsampling = 2\nestimators = [{ ratio = {} }]");
+    for list in ["\"ratio\"", "[\"ratio\"]"] {
+        let short = transmittance(&format!("medium = 0.5\nsampling = 2\nestimators = {list}"));
+        assert_eq!(results(&short), results(&one), "{list}");
+    }
+}
+
+#[test]
+fn shadows_are_spelled_alike_everywhere() {
+    // The file of a user, who knew the word from lit rods.
+    let field = include_str!("../data/field/19-shadow-keys/cube.toml");
+    assert!(field.contains("shadow = \"exact\""));
+    let table = field.replace("shadow = \"exact\"", "shadow.exact = {}");
+    assert_eq!(results(field), results(&table));
+    let lit = |shadow: &str| {
+        format!(
+            "title = \"x\"\n[problem.lit-rod]\nmedium = 1\nspan = [0, 1]\nalbedo = 0.5\nforward = 0.6\nsampling = 2\n\
+             estimators = [{{ next-event.shadow{shadow} }}]\n"
+        )
+    };
+    for word in ["exact", "ratio", "delta"] {
+        let [one, other] = [format!(" = \"{word}\""), format!(".{word} = {{}}")].map(|w| lit(&w));
+        assert_eq!(results(&one), results(&other), "{word}");
+    }
+    let told = |text: &str, message: &str, help: &str| {
+        let told = mistakes(text).unwrap_or_else(|| panic!("{text} was read")).render(false);
+        assert!(told.contains(message) && told.contains(help), "{text}\n{told}");
+        assert_eq!(told.matches("error: ").count(), 1, "{told}");
+    };
+    // What is right beside one estimator is named beside another.
+    told(
+        &lit(".ratio = { sampling = 1.5 }"),
+        "`ratio` takes no settings here",
+        "write `shadow = \"ratio\"`",
+    );
+    let needy = field.replace("shadow = \"exact\"", "shadow = \"ratio\"");
+    told(&needy, "`sampling` is missing", "write `shadow.ratio = { sampling = … }`");
+    let number = field.replace("shadow.ratio = { sampling = 1.5 }", "shadow.ratio = 1.5");
+    told(&number, "`ratio` is 1.5", "write `shadow.ratio = { sampling = … }`");
+    let near = field.replace("shadow = \"exact\"", "shadow = \"exakt\"");
+    told(&near, "`exakt` is not known here", "did you mean `exact`?");
+    told(&lit(" = \"exakt\""), "`shadow` is \"exakt\"", "did you mean `exact`?");
+    told(&lit(" = 1"), "`shadow` is 1", "one of `exact`, `delta`, `ratio`");
+    told(&lit(".exact = true"), "`exact` takes no settings here", "shadow = \"exact\"");
+}
+
+#[test]
+fn phases_lights_and_bounds_may_be_names_too() {
+    let slab = |phase: &str, light: &str| {
+        format!(
+            "title = \"x\"\n[problem.slab]\nmedium = 1\nspan = [0, 1]\nalbedo = 0.5\nsampling = 1\nphase{phase}\n\
+             incidence{light}\nestimators = [\"analog\"]\n"
+        )
+    };
+    let [long, short] =
+        [slab(".isotropic = {}", ".diffuse = {}"), slab(" = \"isotropic\"", " = \"diffuse\"")];
+    assert_eq!(results(&long), results(&short));
+    let told = |text: &str, words: &[&str]| {
+        let told = mistakes(text).unwrap_or_else(|| panic!("{text} was read")).render(false);
+        words.iter().for_each(|words| assert!(told.contains(words), "{text}\n{told}"));
+    };
+    told(
+        &slab(" = \"henyey-greenstein\"", " = \"diffuse\""),
+        &["`g` is missing", "phase.henyey-greenstein = { g = … }"],
+    );
+    told(
+        &slab(".henyey-greenstein = 0.5", " = \"collimated\""),
+        &["write `phase.henyey-greenstein = { g = … }`", "incidence.collimated = { cosine = … }"],
+    );
+    told(&slab(" = 0.5", " = \"diffuse\""), &["`phase` is 0.5", "one of `isotropic`"]);
+}
+
+#[test]
+fn a_sweep_takes_the_list_alone_and_scales_short_forms() {
+    let rest = "estimators = [\"ratio\", { double = { control = 0.25 } }]";
+    let [long, short] = ["sweep.sampling.values = [1, 2, 3]", "sweep.sampling = [1, 2, 3]"]
+        .map(|sweep| results(&transmittance(&format!("medium = 0.5\n{sweep}\n{rest}"))));
+    assert_eq!(long, short);
+    // T = exp(−s σ_t ℓ) where all of the medium is multiplied by s: a short form must be, too.
+    let text =
+        transmittance(&format!("medium = 0.5\nsampling = 2\nsweep.density = [1, 2]\n{rest}"));
+    let rows = predicted(&text);
+    let told: Vec<_> = rows.iter().map(|row| (row.truth, row.sampling)).collect();
+    assert_eq!(told.len(), 4);
+    for (row, factor) in rows.iter().zip([1.0, 2.0, 1.0, 2.0]) {
+        let truth = row.truth.expect("a truth");
+        assert!((truth / (-factor * 0.5 * 2.0_f64).exp() - 1.0).abs() < 1e-12, "{told:?}");
+        assert_eq!(row.sampling, Some(2.0 * factor), "{told:?}");
+    }
+}
+
+#[test]
+fn channels_may_be_listed_by_numbers() {
+    let frame = |medium: &str, sampling: &str| {
+        format!(
+            "title = \"x\"\n[problem.spectral-transmittance]\nmedium = {medium}\nspan = [0, 2]\nsampling = {sampling}\n\
+             estimators = [{{ hero = {{ collisions = \"delta\" }} }}, \"independent\"]\n"
+        )
+    };
+    let page = |key: &str, numbers: [f64; 2]| {
+        numbers.map(|x| format!("{{ constant.{key} = {x} }}")).join(", ")
+    };
+    let long = frame(
+        &format!("[{}]", page("extinction", [0.5, 1.0])),
+        &format!("[{}]", page("value", [0.75, 1.25])),
+    );
+    assert_eq!(results(&frame("[0.5, 1]", "[0.75, 1.25]")), results(&long));
+    // At c = 0 both channels are grey: their mean.
+    let rows = predicted(&(frame("[0.5, 1]", "[0.75, 1.25]") + "sweep.contrast = [0, 1]\n"));
+    let grey =
+        rows.iter().filter(|row| row.swept == Some(0.0) && row.channel.starts_with("channel"));
+    let truths: Vec<f64> = grey.filter_map(|row| row.truth).collect();
+    assert!(!truths.is_empty());
+    assert!(truths.iter().all(|truth| (truth / (-0.75 * 2.0_f64).exp() - 1.0).abs() < 1e-12));
+}
+
+#[test]
+fn near_misses_are_told_the_key_to_write() {
+    let good = "medium = 0.5\nsampling = 2\nestimators = [\"ratio\"]";
+    assert!(mistakes(&transmittance(good)).is_none());
+    for (from, to, message, help) in [
+        ("sampling = 2", "sigma = 2", "`sigma` is not known here", "did you mean `sampling`?"),
+        (
+            "sampling = 2",
+            "majorant = 2",
+            "`majorant` is not known here",
+            "did you mean `sampling`?",
+        ),
+        ("sampling = 2", "sampling.value = 2", "without the page", "`sampling.constant.value = 2`"),
+        ("sampling = 2", "sampling = { sigma = 2 }", "without the page", "write `sampling = 2`"),
+        (
+            "sampling = 2",
+            "sweep.sampling = 3",
+            "`sampling` is a number, 3",
+            "`sweep.sampling = [3]`",
+        ),
+        ("sampling = 2", "sweep = [1, 2]", "`sweep` is no table", "sweep.sampling = [1, 2, 4]"),
+        ("sampling = 2", "sampling = true", "is true or false", "a number, a name in quotes"),
+        ("sampling = 2", "sampling = -1", "`value` is -1", "above 0"),
+        ("sampling = 2", "sampling = 0", "`value` is 0", "above 0"),
+        ("sampling = 2", "sampling = nan", "`value` is NaN", "above 0"),
+        ("sampling = 2", "sampling = \"pilott\"", "`pilott` is not known", "did you mean `pilot`?"),
+        ("medium = 0.5", "medium.extinction = 0.5", "without the page", "write `medium = 0.5`"),
+        ("medium = 0.5", "sigma_t = 0.5", "`sigma_t` is not known here", "did you mean `medium`?"),
+        ("[\"ratio\"]", "[\"rato\"]", "`rato` is not known here", "did you mean `ratio`?"),
+        ("[\"ratio\"]", "[\"single\"]", "`rule` is missing", "{ single = { rule = … } }"),
+        ("[\"ratio\"]", "[3]", "a number stands in `estimators`", "a name in quotes"),
+    ] {
+        let text = transmittance(&good.replace(from, to));
+        let told = mistakes(&text).unwrap_or_else(|| panic!("{to} was read")).render(false);
+        assert!(told.contains(message) && told.contains(help), "{to}\n{told}");
+    }
+    let tolerance = format!("tolerance = 0.01\n{}", transmittance(good));
+    let told = mistakes(&tolerance).expect("a mistake").render(false);
+    assert!(told.contains("write `tolerance.mean = 0.01`"), "{told}");
+}
