@@ -79,7 +79,8 @@ pub enum Domain {
 }
 
 impl Domain {
-    pub(super) fn contains(self, x: f64) -> bool {
+    /// Whether the number is in it.
+    pub fn contains(self, x: f64) -> bool {
         x.is_finite()
             && match self {
                 Self::Finite => true,
@@ -89,7 +90,8 @@ impl Domain {
             }
     }
 
-    pub(super) fn words(self) -> &'static str {
+    /// The domain in words.
+    pub fn words(self) -> &'static str {
         match self {
             Self::Finite => "a finite number",
             Self::NonNegative => "a finite number that is not negative",

@@ -5,6 +5,7 @@ use super::made::{Closure, Factory};
 use super::sample::Sample;
 use crate::judge::claim::{Claim, ClaimError, Given, Lookups, ROUNDING};
 use crate::judge::reading::Reading;
+use crate::judge::theory::{Background, Theory, Whole};
 use crate::judge::trial::{Trial, Wanted};
 use crate::rng::Stream;
 
@@ -53,8 +54,10 @@ pub(super) struct Said {
     range: Option<[f64; 2]>,
     lookups: Option<Lookups>,
     pub(super) rounding: f64,
-    /// What theory claims of each value, or why it claims nothing.
-    pub(super) theory: Option<Result<Vec<Claim>, String>>,
+    /// What theory says of the draw, or why it says nothing.
+    pub(super) theory: Option<Result<Theory, String>>,
+    /// How many values a draw has, where that is said.
+    values: Option<usize>,
     mean_only: bool,
     tolerance: Option<f64>,
     variance_tolerance: Option<f64>,
@@ -74,6 +77,7 @@ impl Default for Said {
             lookups: None,
             rounding: ROUNDING,
             theory: None,
+            values: None,
             mean_only: false,
             tolerance: None,
             variance_tolerance: None,
@@ -183,6 +187,13 @@ impl<S> Check<S> {
         self
     }
 
+    /// The number of values of a draw that is pushed, where not every channel of the case is one: the luminance of a
+    /// chromatic medium, which follows from the other channels, may be left out.
+    pub fn values(mut self, values: usize) -> Self {
+        self.said.values = Some(values);
+        self
+    }
+
     /// ε: the bias that a pass excludes, relative to the truth (absolute for a truth of 0). Without it 1 %, or
     /// with [`Check::draws`] what so many draws can see, at most 5 %.
     pub fn tolerance(mut self, tolerance: f64) -> Self {
@@ -246,7 +257,12 @@ impl<S> Check<S> {
             stop_early: false,
             most: self.said.draws,
         };
-        let reading = |claim| Ok(Reading::new(Trial::new(claim, wanted, length)?));
+        let mut background = self.said.background(&claims, &wanted, has_lookups, length);
+        let reading = |claim| {
+            let trial = Trial::new(claim, wanted, length)?;
+            // What belongs to the draw as a whole, the first reading tells.
+            Ok(Reading::with(trial, std::mem::take(&mut background)))
+        };
         let readings: Result<Vec<Reading>, _> = claims.into_iter().map(reading).collect();
         readings.map_err(|source| CheckError::Claim { name: self.name.clone(), source })
     }
@@ -255,9 +271,54 @@ impl<S> Check<S> {
 impl Said {
     /// How many values a pushed draw has.
     pub(super) fn values(&self) -> usize {
-        let theory = self.theory.as_ref().and_then(|claims| claims.as_ref().ok());
         let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
-        theory.map_or(truths, Vec::len).max(1)
+        let known = self.known().map_or(truths, |theory| theory.channels.len());
+        self.values.unwrap_or(known).max(1)
+    }
+
+    /// What theory says, where it says something.
+    fn known(&self) -> Option<&Theory> {
+        self.theory.as_ref().and_then(|theory| theory.as_ref().ok())
+    }
+
+    /// What theory knows of a draw is not so of averages, but for the mean.
+    fn is_mean_only(&self) -> bool {
+        self.mean_only || self.batch > 1
+    }
+
+    /// Whether theory says what lookups should be.
+    pub(super) fn knows_lookups(&self) -> bool {
+        let first = self.known().and_then(|theory| theory.channels.first());
+        !self.is_mean_only() && first.is_some_and(|(_, claim)| claim.lookups.is_some())
+    }
+
+    /// The names of the values, where theory has any.
+    pub(super) fn names(&self, values: usize) -> Vec<String> {
+        let channels = self.known().and_then(|theory| theory.channels_of(values));
+        let names = channels.unwrap_or_default().iter().map(|(name, _)| name.clone());
+        if values > 1 { names.collect() } else { Vec::new() }
+    }
+
+    /// What belongs to the draw as a whole.
+    fn background(
+        &self,
+        claims: &[Claim],
+        wanted: &Wanted,
+        has_lookups: bool,
+        length: Option<u64>,
+    ) -> Background {
+        let (Some(theory), [first, ..]) = (self.known(), claims) else {
+            return Background::default();
+        };
+        let whole = Whole {
+            length,
+            // Numbers of the caller's are not those that theory has the distribution of.
+            has_lookups: has_lookups && self.lookups.is_none() && self.knows_lookups(),
+            rounding: first.rounding,
+            values: claims.len(),
+            is_mean_only: self.mean_only,
+        };
+        theory.background(wanted, whole)
     }
 
     /// Whether a pushed draw tells its lookups.
@@ -284,17 +345,20 @@ impl Said {
             Some(Err(message)) => {
                 return Err(CheckError::Case { name: name(), message: message.clone() });
             }
-            Some(Ok(claims)) if claims.len() == values => Some(claims),
-            Some(Ok(claims)) => {
-                let (what, found) = ("channels of the case", claims.len());
-                return Err(CheckError::Values { name: name(), what, found, wanted: values });
+            Some(Ok(known)) => {
+                let channels = known.channels_of(values).ok_or_else(|| CheckError::Channels {
+                    name: name(),
+                    found: values,
+                    channels: known.names(),
+                    wanted: known.widths(),
+                })?;
+                Some(channels)
             }
         };
         if self.truth.is_none() && theory.is_none() {
             return Err(CheckError::NoTruth { name: name() });
         }
-        // What theory knows of a draw is not so of averages, but for the mean.
-        let mean_only = self.mean_only || self.batch > 1;
+        let mean_only = self.is_mean_only();
         let twice = [
             ("truth", self.truth.is_some()),
             ("variance", self.variance.is_some() && !mean_only),
@@ -305,7 +369,7 @@ impl Said {
         }
         let claim = |index: usize| {
             let truth = match theory {
-                Some(claims) => claims[index].truth,
+                Some(channels) => channels[index].1.truth,
                 None => number("truth", &self.truth, index)?.unwrap_or(f64::NAN),
             };
             let (variance, kurtosis) = (
@@ -319,9 +383,9 @@ impl Said {
                 Given { truth, variance, kurtosis, range: None, lookups: own_lookups, rounding };
             let by_numbers =
                 Claim::new(&given).map_err(|source| CheckError::Claim { name: name(), source })?;
-            let known = theory.map(|claims| Claim {
-                rounding: claims[index].rounding.max(rounding),
-                ..claims[index]
+            let known = theory.map(|channels| {
+                let claim = channels[index].1;
+                Claim { rounding: claim.rounding.max(rounding), ..claim }
             });
             let claim = match known {
                 None => by_numbers,

@@ -8,6 +8,14 @@ fn counted(count: usize, thing: &str) -> String {
     format!("{count} {thing}{plural}")
 }
 
+/// Names in a list; of one channel without a name what it is.
+fn named(channels: &[String]) -> String {
+    match channels {
+        [one] if one.is_empty() => "its only one".to_owned(),
+        _ => channels.join(", "),
+    }
+}
+
 /// Why a check has no verdict.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -49,6 +57,23 @@ pub enum CheckError {
         found: usize,
         /// How many values a draw has.
         wanted: usize,
+    },
+    /// Another number of values than the case has channels.
+    #[error(
+        "check `{name}`: a draw has {}, but the case has {} ({}); give draws of {wanted}",
+        counted(*found, "value"),
+        counted(channels.len(), "channel"),
+        named(channels)
+    )]
+    Channels {
+        /// The check.
+        name: String,
+        /// How many values a draw has.
+        found: usize,
+        /// The names of the case's channels.
+        channels: Vec<String>,
+        /// How many values a draw may have, in words.
+        wanted: String,
     },
     /// What theory says was given beside numbers.
     #[error(

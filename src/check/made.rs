@@ -106,11 +106,9 @@ impl Check<()> {
             let block = next(plan, number).map_err(|Panic { draw, message }| {
                 CheckError::Panicked { name: self.name.clone(), draw, seed, message }
             })?;
-            let mut is_open = false;
-            for (index, (reading, column)) in readings.iter_mut().zip(&block.columns).enumerate() {
-                reading.absorb(column, if index == 0 { &block.lookups } else { &[] });
-                is_open |= reading.is_open();
-            }
+            let columns: Vec<&[f64]> = block.columns.iter().map(Vec::as_slice).collect();
+            Reading::absorb_values(&mut readings, &columns, &block.lookups);
+            let is_open = readings.iter().any(Reading::is_open);
             if self.said.draws.is_none() && !is_open {
                 stopped = Some(Stop::Decided);
                 break;
@@ -124,8 +122,9 @@ impl Check<()> {
 
     /// What is said in the end.
     pub(super) fn outcome(&self, readings: Vec<Reading>, stopped: Option<Stop>) -> Outcome {
+        let channels = self.said.names(readings.len());
         let values = readings.into_iter().map(|reading| reading.close(stopped)).collect();
-        Outcome { name: self.name.clone(), alpha: self.said.alpha, values }
+        Outcome { name: self.name.clone(), alpha: self.said.alpha, channels, values }
     }
 }
 

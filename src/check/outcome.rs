@@ -23,6 +23,8 @@ pub struct Outcome {
     pub name: String,
     /// The chance that a correct estimator fails, all values together.
     pub alpha: f64,
+    /// The names of the values, where they are channels of a case; empty otherwise.
+    pub channels: Vec<String>,
     /// What was found of each value of a draw.
     pub values: Vec<Judgement>,
 }
@@ -40,6 +42,11 @@ impl Outcome {
         self.verdict() == Verdict::Pass
     }
 
+    /// The name of a value.
+    fn value(&self, index: usize) -> String {
+        self.channels.get(index).cloned().unwrap_or_else(|| format!("value {index}"))
+    }
+
     /// Why it does not pass, in words; empty for a plain pass.
     pub fn reason(&self) -> String {
         let verdict = self.verdict();
@@ -47,7 +54,11 @@ impl Outcome {
         let reasons = alike.filter(|(_, value)| !value.reason.is_empty());
         let many = self.values.len() > 1;
         let said = reasons.map(|(index, value)| {
-            if many { format!("value {index}: {}", value.reason) } else { value.reason.clone() }
+            if many {
+                format!("{}: {}", self.value(index), value.reason)
+            } else {
+                value.reason.clone()
+            }
         });
         let mut said: Vec<String> = said.collect();
         let count = said.len();
@@ -84,8 +95,7 @@ impl fmt::Display for Outcome {
             told.sort_by_key(|(_, value)| value.verdict != verdict);
         }
         for (index, value) in told.iter().take(TOLD) {
-            let name =
-                if self.values.len() > 1 { format!("value {index}") } else { self.name.clone() };
+            let name = if self.values.len() > 1 { self.value(*index) } else { self.name.clone() };
             for (word, text) in value.lines(&name) {
                 write!(f, "\n  {word:10}{text}")?;
             }

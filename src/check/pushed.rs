@@ -49,15 +49,20 @@ impl Check<()> {
     fn opened(self, numbers: Option<usize>) -> Result<Pushed, CheckError> {
         let values = self.said.values();
         let length = numbers.map(|numbers| (numbers / values) as u64).or(self.said.draws);
-        let readings = self.readings(values, self.said.has_lookups(), length)?;
+        let has_lookups = self.said.has_lookups();
+        let readings = self.readings(values, has_lookups, length)?;
         let columns = vec![Vec::with_capacity(BUFFER); values];
-        Ok(Pushed { check: self, readings, columns, lookups: Vec::new() })
+        Ok(Pushed { check: self, length, has_lookups, readings, columns, lookups: Vec::new() })
     }
 }
 
 /// A check that waits for draws.
 pub struct Pushed {
     check: Check<()>,
+    /// How many draws there will be, where that is known.
+    length: Option<u64>,
+    /// Whether each draw comes with its lookups.
+    has_lookups: bool,
     readings: Vec<Reading>,
     /// What does not fill a block yet.
     columns: Vec<Vec<f64>>,
@@ -72,25 +77,31 @@ impl Pushed {
     ///
     /// The last draw is not whole, or the check wants lookups.
     pub fn absorb(&mut self, draws: &[f64]) -> Result<(), CheckError> {
-        if self.check.said.has_lookups() {
+        if self.has_lookups {
             return Err(CheckError::NoLookups { name: self.check.name.clone() });
         }
         self.push(draws, &[])
     }
 
-    /// The same with the number of lookups of each draw.
+    /// The same with the number of lookups of each draw, which a case has the distribution of; without a case
+    /// [`Check::lookups`] says what they should be. All draws come with them, or none.
     ///
     /// # Errors
     ///
-    /// The last draw is not whole, or there are more or fewer lookups than draws.
+    /// The last draw is not whole, there are more or fewer lookups than draws, or draws without lookups came before.
     pub fn absorb_with_lookups(
         &mut self,
         draws: &[f64],
         lookups: &[f64],
     ) -> Result<(), CheckError> {
         let name = self.check.name.clone();
-        if !self.check.said.has_lookups() {
-            return Err(CheckError::NoLookupsWanted { name });
+        if !self.has_lookups {
+            if self.draws() > 0 || !self.check.said.knows_lookups() {
+                return Err(CheckError::NoLookupsWanted { name });
+            }
+            // Theory knows them: the first draw tells whether they come.
+            self.readings = self.check.readings(self.columns.len(), true, self.length)?;
+            self.has_lookups = true;
         }
         let (found, wanted) = (lookups.len(), draws.len() / self.columns.len());
         if found != wanted {
@@ -154,7 +165,7 @@ impl Pushed {
                 // A whole block needs no copy.
                 [column] if count == BUFFER => {
                     debug_assert!(column.is_empty());
-                    self.readings[0].absorb(now, counts);
+                    Reading::absorb_values(&mut self.readings, &[now], counts);
                 }
                 [column] => column.extend_from_slice(now),
                 columns => {
@@ -175,13 +186,11 @@ impl Pushed {
     }
 
     fn judge_block(&mut self) {
-        let readings = self.readings.iter_mut().zip(&mut self.columns);
-        for (index, (reading, column)) in readings.enumerate() {
-            if !column.is_empty() {
-                reading.absorb(column, if index == 0 { &self.lookups } else { &[] });
-                column.clear();
-            }
+        let columns: Vec<&[f64]> = self.columns.iter().map(Vec::as_slice).collect();
+        if columns.iter().any(|column| !column.is_empty()) {
+            Reading::absorb_values(&mut self.readings, &columns, &self.lookups);
         }
+        self.columns.iter_mut().for_each(Vec::clear);
         self.lookups.clear();
     }
 }

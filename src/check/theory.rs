@@ -5,13 +5,15 @@ use crate::harness::case::Case;
 use crate::harness::catalogue::Catalogue;
 use crate::harness::source::CaseError;
 use crate::judge::Choice;
-use crate::judge::claim::Claim;
+use crate::judge::theory::Theory;
 
 impl<S> Check<S> {
-    /// Takes mean, variance, kurtosis and lookups from theory: for an estimator of a case, by its name in tables or
-    /// in the catalogue, at a value of what the case sweeps, or a constant σ̂ where it sweeps nothing (`None` takes the
-    /// case's own). The case is a built-in one or a
-    /// file. Every channel of the case is a value of the draw.
+    /// Takes mean, variance, kurtosis, lookups and, where it is known, the whole distribution from theory: for an
+    /// estimator of a case, by its name in tables or in the catalogue, at any value of what the case sweeps, or a
+    /// constant σ̂ where it sweeps nothing (`None` takes the case's own). The case is a built-in one or a file. Every
+    /// channel of the case is a value of the draw; a luminance may be left out.
+    ///
+    /// A free flight that leaves the ray is written as the ray's length, as any larger number, as infinity or as −1.
     ///
     /// ```
     /// # use trueflight::rng::Stream;
@@ -31,7 +33,7 @@ impl<S> Check<S> {
     ///     .assert_pass();
     /// ```
     pub fn of(self, case: &str, estimator: &str, swept: impl Into<Option<f64>>) -> Self {
-        let choice = Choice { estimator, swept: swept.into(), is_exact: true, ..Choice::default() };
+        let choice = Choice { estimator, swept: swept.into(), ..Choice::default() };
         match Catalogue::builtin().named(case) {
             Ok(read) => match &read[..] {
                 [case] => self.of_case(case, &choice),
@@ -50,9 +52,8 @@ impl<S> Check<S> {
 
     /// The same of a case that was read before.
     pub fn of_case(mut self, case: &Case, choice: &Choice) -> Self {
-        let claims = Claim::of_channels(case, choice, 0.0);
-        let claims = claims.map(|claims| claims.into_iter().map(|(_, claim)| claim).collect());
-        self.said.theory = Some(claims.map_err(|error| error.to_string()));
+        let theory = Theory::of(case, choice, 0.0);
+        self.said.theory = Some(theory.map_err(|error| error.to_string()));
         self
     }
 

@@ -1,23 +1,24 @@
 //! `trueflight judge`: the gate over the draws of another renderer, or over its images.
 
+mod claimed;
 mod images;
+mod shown;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::Context;
 use clap::{Args, ValueEnum};
 
+use self::claimed::Claimed;
 use super::verdict::Inconclusive;
 use super::{Console, USAGE, numbers, output};
 use crate::files;
 use crate::harness::Catalogue;
-use crate::harness::case::Case;
 use crate::harness::record::Verdict;
-use crate::harness::source::CaseError;
-use crate::judge::claim::{Claim, Given, Lookups, ROUNDING};
+use crate::judge::claim::ROUNDING;
 use crate::judge::judgement::Judgement;
-use crate::judge::trial::{Trial, Wanted};
-use crate::judge::{self, Choice, Column, Draws, Format};
+use crate::judge::trial::Wanted;
+use crate::judge::{self, Column, Draws, Format};
 use crate::report::judge as report;
 use crate::report::judge::junit::Told;
 
@@ -44,16 +45,19 @@ pub struct Arguments {
     /// Where all correct draws lie, as in 0,1 or 0,inf: a ground for a verdict without a variance
     #[arg(long, value_name = "LOW,HIGH", allow_hyphen_values = true, value_parser = range)]
     range: Option<[f64; 2]>,
-    /// Take truth, variance, kurtosis and lookups from theory: a case file or a built-in case
+    /// Take truth, variance, kurtosis, lookups and the distribution from theory: a case file or a built-in case
     #[arg(long, value_name = "CASE", requires = "estimator")]
     case: Option<String>,
     /// The estimator of the case: its label in tables, or its name in the catalogue
     #[arg(long, value_name = "NAME", requires = "case")]
     estimator: Option<String>,
-    /// The swept value, where the estimator is swept
+    /// The swept value, where the estimator is swept: any that it can have
     #[arg(long, value_name = "VALUE", requires = "case", allow_hyphen_values = true, value_parser = numbers::number)]
     swept: Option<f64>,
-    /// The channel of a draw, where it has several
+    /// Take the nearest value of the case's sweep in place of --swept
+    #[arg(long, requires = "swept")]
+    nearest: bool,
+    /// The one channel to judge, where a draw has several [default: all, from a file that has them as columns]
     #[arg(long, value_name = "NAME", requires = "case")]
     channel: Option<String>,
     /// Take the case's truth alone, for an estimator of your own
@@ -81,7 +85,7 @@ pub struct Arguments {
     /// What rounding may add to a draw, relative to the truth (absolute for a truth of 0)
     #[arg(long, default_value_t = ROUNDING, value_name = "R", allow_hyphen_values = true, value_parser = numbers::number)]
     rounding: f64,
-    /// Column of a table, by name or by place from 0 on
+    /// Column of a table or of an array of shape (draws, values), by name or by place from 0 on
     #[arg(long, value_name = "COLUMN")]
     column: Option<String>,
     /// Column of a table with the number of lookups of each draw
@@ -151,7 +155,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     if arguments.images.images {
         return images::main(arguments, console);
     }
-    let claim = arguments.claim(catalogue)?;
+    let claimed = arguments.claimed(catalogue)?;
     let wanted = Wanted {
         tolerance: arguments.tolerance,
         variance_tolerance: arguments.variance_tolerance,
@@ -161,20 +165,21 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
         most: arguments.draws,
     };
     // What is wrong with the question is said before anything is read.
-    Trial::new(claim, wanted, None)?;
+    claimed.check(wanted)?;
     if arguments.files.iter().filter(|file| is_pipe(file)).count() > 1 {
         anyhow::bail!("there is one pipe; give `-` once");
     }
     arguments.check_junit("draws")?;
     let (mut judged, mut errors) = (Vec::new(), Vec::new());
     for file in &arguments.files {
-        match arguments.judge(file, claim, wanted) {
-            Ok(judgement) => judged.push((name(file), judgement)),
+        match arguments.judge(file, &claimed, wanted) {
+            Ok(found) => judged.extend(found),
             Err(error) => errors.push((name(file), error)),
         }
     }
-    show(&judged, arguments, console)?;
-    let told: Vec<Told> = judged.iter().map(|(name, found)| Told::of_draws(name, found)).collect();
+    arguments.show(&judged, console)?;
+    let told: Vec<Told> =
+        judged.iter().map(|found| Told::of_draws(&found.name(), &found.judgement)).collect();
     let unread: Vec<(String, String)> =
         errors.iter().map(|(name, error)| (name.clone(), format!("{error:#}"))).collect();
     arguments.write_junit(&told, &unread)?;
@@ -184,7 +189,23 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     if !errors.is_empty() {
         return Ok(USAGE);
     }
-    Ok(arguments.code(worst(&judged)))
+    Ok(arguments.code(worst(judged.iter().map(|found| &found.judgement))))
+}
+
+/// The verdict on the draws of a file, or on one channel of them.
+struct Judged {
+    file: String,
+    /// Empty where a draw has one channel only, or one was chosen.
+    channel: String,
+    judgement: Judgement,
+}
+
+impl Judged {
+    /// What it is called in a report.
+    fn name(&self) -> String {
+        let Self { file, channel, .. } = self;
+        if channel.is_empty() { file.clone() } else { format!("{channel} of {file}") }
+    }
 }
 
 fn is_pipe(file: &Path) -> bool {
@@ -196,8 +217,8 @@ fn name(file: &Path) -> String {
 }
 
 /// Fail before inconclusive before pass.
-fn worst(judged: &[(String, Judgement)]) -> Verdict {
-    let any = |verdict| judged.iter().any(|(_, judgement)| judgement.verdict == verdict);
+fn worst<'a>(judged: impl Iterator<Item = &'a Judgement> + Clone) -> Verdict {
+    let any = |verdict| judged.clone().any(|judgement| judgement.verdict == verdict);
     let order = [Verdict::Fail, Verdict::Inconclusive];
     order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)
 }
@@ -235,29 +256,32 @@ impl Arguments {
         }
     }
 
-    /// Reads a file and judges it.
-    fn judge(&self, file: &Path, claim: Claim, wanted: Wanted) -> anyhow::Result<Judgement> {
+    /// Reads a file and judges it, channel by channel.
+    fn judge(&self, file: &Path, claimed: &Claimed, wanted: Wanted) -> anyhow::Result<Vec<Judged>> {
         let format = self.input_format(file)?;
+        let layout = claimed.layout(self.column.as_deref());
         if !file.is_file() && (is_pipe(file) || file.exists()) {
             // A pipe is opened once, and need not end.
             let mut draws = if is_pipe(file) {
-                Draws::from_reader(std::io::stdin(), "stdin", format)?
+                Draws::from_reader_as(std::io::stdin(), "stdin", format, &layout)?
             } else {
-                Draws::open(file, format)?
+                Draws::open_as(file, format, &layout)?
             };
             let length = draws.known_length();
             let most = wanted.most.or_else(|| length.is_none().then_some(OF_A_PIPE));
             let wanted = Wanted { most, ..wanted };
-            return Ok(Trial::new(claim, wanted, length)?.judge(&mut draws)?);
+            return claimed.judge(&name(file), &mut draws, wanted, length);
         }
-        let length = match (Draws::open(file, format.clone())?.known_length(), &format) {
-            (None, Format::Csv { .. }) if self.tolerance.is_none() => {
-                Some(judge::count(file, format.clone())?)
+        let length = match (Draws::open_as(file, format.clone(), &layout)?.known_length(), &format)
+        {
+            // The tests of a distribution are of a number of draws that is known before the first.
+            (None, Format::Csv { .. }) if self.tolerance.is_none() || claimed.has_theory() => {
+                Some(judge::count(file, format.clone(), &layout)?)
             }
             (length, _) => length,
         };
-        let mut draws = Draws::open(file, format)?;
-        Ok(Trial::new(claim, wanted, length)?.judge(&mut draws)?)
+        let mut draws = Draws::open_as(file, format, &layout)?;
+        claimed.judge(&name(file), &mut draws, wanted, length)
     }
 
     fn input_format(&self, file: &Path) -> anyhow::Result<Format> {
@@ -274,110 +298,11 @@ impl Arguments {
         let format = format.with_context(|| {
             format!("the name of {place} does not tell its format; add --input csv, npy or f64")
         })?;
-        let column = |text: &Option<String>| text.as_deref()?.parse::<Column>().ok();
-        match (format, column(&self.column), column(&self.lookups)) {
-            (Format::Csv { .. }, column, lookups) => Ok(Format::Csv { column, lookups }),
-            (format, None, None) => Ok(format),
-            _ => anyhow::bail!("only csv has columns; leave --column and --lookups out"),
-        }
-    }
-
-    fn claim(&self, catalogue: &Catalogue) -> anyhow::Result<Claim> {
-        let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
-            let lookups = match (&self.lookups, self.expected_lookups) {
-                (Some(_), None) => anyhow::bail!(
-                    "what the lookups should be is not known; give --expected-lookups or --case"
-                ),
-                (_, mean) => mean,
-            };
-            let variance = self.lookups_variance;
-            return Ok(Claim::new(&Given {
-                truth: self.truth.unwrap_or(f64::NAN),
-                variance: self.variance,
-                kurtosis: self.kurtosis,
-                range: self.range,
-                lookups: lookups.map(|mean| Lookups { mean, variance, error: 0.0 }),
-                rounding: self.rounding,
-            })?);
-        };
-        let cases = catalogue.named(name).map_err(|errors| {
-            let shown: Vec<String> = errors.iter().map(CaseError::in_full).collect();
-            anyhow::anyhow!("--case: {}", shown.join("\n\n"))
-        })?;
-        let [case] = &cases[..] else {
-            let names: Vec<&str> = cases.iter().map(|case: &Case| case.name.as_str()).collect();
-            anyhow::bail!("--case {name} is several cases; choose one of: {}", names.join(", "));
-        };
-        let channel = self.channel.as_deref();
-        let choice =
-            Choice { estimator, swept: self.swept, is_exact: false, channel, seed: self.seed };
-        let theory = Claim::of_case(case, &choice, self.rounding)?;
-        let takes_all = !self.mean_only && self.batch == 1;
-        if takes_all && (self.variance.is_some() || self.kurtosis.is_some()) {
-            anyhow::bail!(
-                "--case has a variance and a kurtosis; leave out --variance and --kurtosis, or add \
-                 --mean-only"
-            );
-        }
-        if self.lookups.is_some() && (theory.lookups.is_none() || !takes_all) {
-            let why = match (takes_all, self.batch) {
-                (true, _) => "theory has no number of lookups for this estimator",
-                (false, 1) => "--mean-only takes the truth alone",
-                (false, _) => "--batch takes the truth alone",
-            };
-            anyhow::bail!("{why}; leave --lookups out");
-        }
-        let lookups = theory.lookups.filter(|_| self.lookups.is_some());
-        let (variance, kurtosis) = (self.variance, self.kurtosis);
-        let claim = if takes_all {
-            Claim { lookups, ..theory }
-        } else {
-            // Checked as numbers of the caller's are.
-            Claim::new(&Given { truth: theory.truth, variance, kurtosis, ..Given::default() })?;
-            Claim { variance, kurtosis, variance_error: 0.0, ..theory.of_mean_alone() }
-        };
-        Ok(claim.within(self.range)?)
-    }
-}
-
-/// Prints one verdict by itself, several with what they come to.
-fn show(
-    judged: &[(String, Judgement)],
-    arguments: &Arguments,
-    console: &Console,
-) -> anyhow::Result<()> {
-    let is_one = arguments.files.len() == 1;
-    match arguments.format {
-        Shown::Table if console.quiet || judged.is_empty() => Ok(()),
-        Shown::Table => {
-            let width = output::pen(console).width;
-            let blocks: Vec<String> = judged
-                .iter()
-                .map(|(name, judgement)| report::console::block(judgement, name, width))
-                .collect();
-            let all = if is_one {
-                String::new()
-            } else {
-                report::console::together(judged, worst(judged), arguments.alpha)
-            };
-            output::print(&(blocks.join("\n") + &all))
-        }
-        Shown::Json => {
-            let text = match judged {
-                [] => return Ok(()),
-                [(_, judgement)] if is_one => serde_json::to_string_pretty(judgement)?,
-                _ => {
-                    let files: Vec<serde_json::Value> = judged
-                        .iter()
-                        .map(|(file, judgement)| serde_json::json!({ "file": file, "judgement": judgement }))
-                        .collect();
-                    let (verdict, alpha) = (worst(judged), arguments.alpha);
-                    let all =
-                        serde_json::json!({ "verdict": verdict, "alpha": alpha, "files": files });
-                    serde_json::to_string_pretty(&all)?
-                }
-            };
-            output::print(&(text + "\n"))
+        let lookups = self.lookups.as_deref().and_then(|text| text.parse::<Column>().ok());
+        match (format, lookups) {
+            (Format::Csv { .. }, lookups) => Ok(Format::Csv { column: None, lookups }),
+            (format, None) => Ok(format),
+            _ => anyhow::bail!("only csv has a column of lookups; leave --lookups out"),
         }
     }
 }

@@ -98,6 +98,17 @@ impl What {
         self.kind().4
     }
 
+    /// Whether it can have that value.
+    pub fn allows(self, value: f64) -> bool {
+        let is_whole = self != Self::Points || (value >= 2.0 && value.fract() == 0.0);
+        self.kind().3.contains(value) && is_whole
+    }
+
+    /// The values that it can have, in words.
+    pub fn domain(self) -> &'static str {
+        if self == Self::Points { "a whole number from 2" } else { self.kind().3.words() }
+    }
+
     fn kind(self) -> &'static (What, &'static str, &'static str, Domain, Option<Rewrite>) {
         KINDS.iter().find(|kind| kind.0 == self).unwrap_or(&KINDS[0])
     }
@@ -120,7 +131,7 @@ impl SweepAxis {
             Self::read_range(what, domain, &sweep)
         };
         let read = read?;
-        if what == What::Points && read.values.iter().any(|n| *n < 2.0 || n.fract() != 0.0) {
+        if what == What::Points && !read.values.iter().all(|&n| what.allows(n)) {
             let help = "explorer points are whole numbers from 2";
             sweep.fault_at(sweep.span.clone(), "", "these are no numbers of points", help);
             return None;

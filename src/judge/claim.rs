@@ -1,5 +1,7 @@
 //! What is claimed of another program's draws: by numbers, or by theory for an experiment of a case.
 
+use super::flights::Flights;
+use crate::catalogue::digits::short;
 use crate::catalogue::number;
 
 /// What rounding may add to each draw, relative to the truth, where the caller does not say: a
@@ -28,6 +30,8 @@ pub struct Claim {
     pub lookups: Option<Lookups>,
     /// What rounding may add to each draw, relative to the truth; absolute for a truth of 0.
     pub rounding: f64,
+    /// The ray of free flights, where draws are their lengths.
+    pub flights: Option<Flights>,
 }
 
 /// What is claimed of the number of lookups of a draw.
@@ -151,7 +155,8 @@ pub enum ClaimError {
     },
     /// A value of the sweep is missing, or is none.
     #[error(
-        "{case}: `{estimator}` is swept over {what}; choose one of its values: {}",
+        "{case}: `{estimator}` is swept over {what}: {}; say at which value your draws were made, by --swept (in Python \
+         sampling=, elsewhere the last argument of `of`); any value will do that is {wanted}",
         list(values)
     )]
     Swept {
@@ -163,9 +168,31 @@ pub enum ClaimError {
         what: &'static str,
         /// The values.
         values: Vec<f64>,
+        /// The values that it could have, in words.
+        wanted: &'static str,
+    },
+    /// A value that the swept thing cannot have.
+    #[error(
+        "{case}: {what} = {} of `{estimator}` is not {wanted}{}",
+        number(*value),
+        near(*nearest)
+    )]
+    NoSuchValue {
+        /// The case.
+        case: String,
+        /// The estimator.
+        estimator: String,
+        /// What is swept.
+        what: &'static str,
+        /// The value.
+        value: f64,
+        /// The values that it could have, in words.
+        wanted: &'static str,
+        /// The nearest value of the sweep.
+        nearest: Option<f64>,
     },
     /// A value of a sweep where nothing is swept.
-    #[error("{case}: `{estimator}` is not swept; leave the swept value out")]
+    #[error("{case}: `{estimator}` is not swept; leave the swept value and --nearest out")]
     NotSwept {
         /// The case.
         case: String,
@@ -194,7 +221,10 @@ pub enum ClaimError {
         depth: f64,
     },
     /// The experiment is refused.
-    #[error("{case}: `{estimator}` is refused: {why}; choose an estimator that is unbiased there")]
+    #[error(
+        "{case}: `{estimator}` is refused: {why}{}",
+        if nearest.is_some() { near(*nearest) } else { "; choose an estimator that is unbiased there".to_owned() }
+    )]
     Refused {
         /// The case.
         case: String,
@@ -202,11 +232,34 @@ pub enum ClaimError {
         estimator: String,
         /// The refusal.
         why: String,
+        /// The nearest value of the sweep at which it is not refused.
+        nearest: Option<f64>,
     },
 }
 
+/// So many values of a sweep are listed; of more the ends.
+const LISTED: usize = 8;
+
+/// Values as tables print them; of many the first and the last.
 fn list(values: &[f64]) -> String {
-    values.iter().map(f64::to_string).collect::<Vec<_>>().join(", ")
+    let words = |values: &[f64]| {
+        let words: Vec<String> = values.iter().map(|&value| short(value, 4)).collect();
+        words.join(", ")
+    };
+    match values {
+        [first @ .., last] if values.len() > LISTED => {
+            format!("{}, …, {} ({} values)", words(&first[..3]), short(*last, 4), values.len())
+        }
+        _ => words(values),
+    }
+}
+
+/// The value of a sweep that could be meant.
+fn near(nearest: Option<f64>) -> String {
+    let named = |value: f64| {
+        format!("; the nearest value of the sweep is {}: give it, or add --nearest", number(value))
+    };
+    nearest.map_or(String::new(), named)
 }
 
 impl Claim {
@@ -248,6 +301,7 @@ impl Claim {
             range: None,
             lookups,
             rounding,
+            flights: None,
         };
         claim.within(range)
     }

@@ -65,6 +65,28 @@ pub struct Judgement {
     pub drift: Option<DriftFinding>,
     /// Whether the draws depend on each other.
     pub independence: IndependenceFinding,
+    /// The experiment whose theory the claim is, in words.
+    pub theory: Option<String>,
+    /// What was found of the distribution of the draws and of their lookups, where theory knows it.
+    pub distribution: Vec<DistributionFinding>,
+}
+
+/// Result of a test of a whole distribution.
+#[derive(Debug, Clone)]
+#[cfg_attr(feature = "library", derive(serde::Serialize))]
+pub struct DistributionFinding {
+    /// `distances`, `depth`, `resolution`, `atoms`, `counts` or `curve`.
+    pub check: String,
+    /// The distribution in words.
+    pub what: String,
+    /// What is said of it.
+    pub verdict: Verdict,
+    /// Why.
+    pub reason: String,
+    /// The p-value of the last look, or of the one that refuted it.
+    pub p: f64,
+    /// How many of the first draws that look had.
+    pub draws: u64,
 }
 
 /// Why reading stopped before the end.

@@ -29,6 +29,7 @@ mod dependence;
 #[cfg(feature = "library")]
 pub mod files;
 mod finding;
+mod flights;
 mod grounds;
 #[cfg(feature = "library")]
 pub mod images;
@@ -38,11 +39,15 @@ mod likely;
 mod of_case;
 pub mod reading;
 mod scalar;
+pub mod theory;
 pub mod trial;
+mod values;
 mod verdict;
+#[cfg(feature = "library")]
+mod whole;
 mod words;
 
 #[cfg(feature = "library")]
-pub use files::{Column, Draws, ForeignError, Format, count};
+pub use files::{Column, Draws, ForeignError, Format, Layout, count};
 #[cfg(feature = "library")]
 pub use of_case::Choice;

@@ -1,13 +1,22 @@
 //! What theory claims of one experiment of a case.
 
+use std::sync::Arc;
+
 use super::claim::{Claim, ClaimError, Lookups};
+use super::flights::Flights;
+use super::theory::Theory;
+use super::whole::Known;
+use crate::catalogue::number;
 use crate::harness::case::Case;
 use crate::harness::checks;
 use crate::harness::ready::Ready;
-use crate::harness::sweep::{Variation, What};
+use crate::harness::sweep::{SweepAxis, Variation, What};
+use crate::theory::{Law, Prediction};
 
-/// Two values of a sweep this near to each other are the same: tables print few digits.
-const SAME: f64 = 1e-3;
+/// The problem whose draws are distances.
+const FLIGHTS: &str = "free-flight";
+/// So many values of a sweep are tried where a value beside them is refused.
+const TRIED: usize = 8;
 
 /// Which experiment of a case.
 #[derive(Debug, Clone, Copy, Default)]
@@ -16,9 +25,9 @@ pub struct Choice<'a> {
     pub estimator: &'a str,
     /// The swept value, where it is swept.
     pub swept: Option<f64>,
-    /// Whether the swept value is taken as it is, be it in the case's sweep or not; without a sweep it is then a
-    /// constant σ̂. Otherwise it must be one of the values of the sweep, as tables print them.
-    pub is_exact: bool,
+    /// Whether the nearest value of the case's sweep is taken in place of the swept value. Otherwise the value is taken
+    /// as it is, be it in the sweep or not; without a sweep it is a constant σ̂.
+    pub nearest: bool,
     /// The channel, where a draw has several.
     pub channel: Option<&'a str>,
     /// The seed of pilot rays, where σ̂ is learned from them.
@@ -54,39 +63,76 @@ impl Claim {
         choice: &Choice,
         rounding: f64,
     ) -> Result<Vec<(String, Self)>, ClaimError> {
+        Ok(Theory::of(case, choice, rounding)?.channels)
+    }
+}
+
+impl Theory {
+    /// What theory says of one experiment of a case; the choice of a channel does not matter.
+    ///
+    /// # Errors
+    ///
+    /// The choice fits none or several, or the experiment is refused.
+    pub fn of(case: &Case, choice: &Choice, rounding: f64) -> Result<Self, ClaimError> {
         let (index, label) = find(case, choice.estimator)?;
-        let variation = variation(case, index, &label, choice)?;
-        let pilots = case.pilots(choice.seed, index);
-        let prepared = case.scenario.prepare(index, variation, pilots);
-        let Ready { prediction, .. } = prepared.map_err(|refusal| {
-            let why = refusal.to_string();
-            ClaimError::Refused { case: case.name.clone(), estimator: label.clone(), why }
-        })?;
+        let axis = case.sweep.as_ref();
+        let axis = axis.filter(|axis| case.scenario.depends_on(index, axis.what));
+        let at = Point { case, index, label: &label, axis, seed: choice.seed };
+        let variation = at.variation(choice)?;
+        let prediction = at.prediction(variation)?;
         if let Some(deep) = prediction.channels.iter().find(|channel| channel.log_unit != 0.0) {
             let (case, depth) = (case.name.clone(), deep.log_unit);
             return Err(ClaimError::Deep { case, estimator: label, depth });
         }
-        let lookups = prediction.lookups.as_ref();
-        let claims = prediction.channels.iter().map(|channel| {
-            let claim = Self {
-                truth: channel.truth.value,
-                truth_error: channel.truth.error,
-                unit: channel.unit,
-                variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
-                variance_error: channel.moments.map_or(0.0, |moments| moments.error),
-                kurtosis: channel.moments.and_then(|m| m.kurtosis()).filter(|k| k.is_finite()),
-                range: None,
-                lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
-                    mean: law.mean,
-                    variance: Some(law.variance),
-                    error: checks::lookups::ERROR.max(law.error),
-                }),
-                rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
-            };
-            (channel.name.clone(), claim)
-        });
-        Ok(claims.collect())
+        let mut about = format!("`{label}` of {}", case.name);
+        if let Some((what, value)) = variation {
+            about += &format!(", {} = {}", what.key(), number(value));
+            if let Some(asked) = choice.swept.filter(|_| choice.nearest) {
+                about += &format!(", the value of the sweep nearest to {}", number(asked));
+            }
+        }
+        let channels = claims(case, &prediction, rounding);
+        let distribution = Arc::new(Known(Arc::new(prediction)));
+        Ok(Self { channels, about, distribution })
     }
+}
+
+/// A claim for each channel.
+fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, Claim)> {
+    let lookups = prediction.lookups.as_ref();
+    let flights = match prediction.law {
+        Some(Law::Distances { end, from, escape, .. }) => {
+            Some(Flights { length: end, from, escape })
+        }
+        // Without a medium all flights leave.
+        None if case.problem == FLIGHTS => {
+            let channel = prediction.channels.first();
+            let sure =
+                channel.filter(|channel| channel.moments.is_some_and(|m| m.variance() == 0.0));
+            sure.map(|channel| Flights { length: channel.truth.value, from: 0.0, escape: 1.0 })
+        }
+        _ => None,
+    };
+    let claims = prediction.channels.iter().map(|channel| {
+        let claim = Claim {
+            truth: channel.truth.value,
+            truth_error: channel.truth.error,
+            unit: channel.unit,
+            variance: channel.moments.map(|m| m.variance()).filter(|v| v.is_finite()),
+            variance_error: channel.moments.map_or(0.0, |moments| moments.error),
+            kurtosis: channel.moments.and_then(|m| m.kurtosis()).filter(|k| k.is_finite()),
+            range: None,
+            lookups: lookups.filter(|law| law.mean > 0.0).map(|law| Lookups {
+                mean: law.mean,
+                variance: Some(law.variance),
+                error: checks::lookups::ERROR.max(law.error),
+            }),
+            rounding: checks::rounding(lookups.map_or(0.0, |law| law.mean)).max(rounding),
+            flights,
+        };
+        (channel.name.clone(), claim)
+    });
+    claims.collect()
 }
 
 /// The estimator of a name, with its label.
@@ -129,37 +175,82 @@ fn find(case: &Case, name: &str) -> Result<(usize, String), ClaimError> {
     }
 }
 
-fn variation(
-    case: &Case,
+/// An estimator of a case, with what is swept of it.
+struct Point<'a> {
+    case: &'a Case,
     index: usize,
-    label: &str,
-    choice: &Choice,
-) -> Result<Variation, ClaimError> {
-    let swept = choice.swept;
-    let (name, estimator) = (case.name.clone(), label.to_owned());
-    let axis = case.sweep.as_ref().filter(|axis| case.scenario.depends_on(index, axis.what));
-    if let (true, Some(value)) = (choice.is_exact, swept) {
-        let what = axis.map_or(What::Sampling, |axis| axis.what);
-        if !(value > 0.0 && value.is_finite()) {
-            let (what, wanted) = ("swept value", "a finite number above 0");
-            return Err(ClaimError::Number { what, value, wanted });
-        }
-        if axis.is_some() || case.scenario.depends_on(index, What::SamplingScale) {
-            return Ok(Some((what, value)));
+    label: &'a str,
+    axis: Option<&'a SweepAxis>,
+    seed: u64,
+}
+
+impl Point<'_> {
+    /// The swept value that is taken.
+    fn variation(&self, choice: &Choice) -> Result<Variation, ClaimError> {
+        let scenario = &self.case.scenario;
+        let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
+        match (self.axis, choice.swept) {
+            (None, None) => Ok(None),
+            (None, Some(value)) => {
+                let takes_any =
+                    !choice.nearest && scenario.depends_on(self.index, What::SamplingScale);
+                if !takes_any {
+                    return Err(ClaimError::NotSwept { case, estimator });
+                }
+                self.allowed(What::Sampling, value)?;
+                Ok(Some((What::Sampling, value)))
+            }
+            (Some(axis), None) => {
+                let (what, values) = (axis.what.key(), axis.values.clone());
+                let wanted = axis.what.domain();
+                Err(ClaimError::Swept { case, estimator, what, values, wanted })
+            }
+            (Some(axis), Some(value)) if choice.nearest => {
+                let nearest = self.by_distance(value).first().copied();
+                Ok(nearest.map(|value| (axis.what, value)))
+            }
+            (Some(axis), Some(value)) => {
+                self.allowed(axis.what, value)?;
+                Ok(Some((axis.what, value)))
+            }
         }
     }
-    let Some(axis) = axis else {
-        return match swept {
-            None => Ok(None),
-            Some(_) => Err(ClaimError::NotSwept { case: name, estimator }),
-        };
-    };
-    let near = |x: &&f64| swept.is_some_and(|s| (s - **x).abs() <= SAME * x.abs());
-    let distance = |x: &f64| swept.map_or(0.0, |s| (s - x).abs());
-    let nearest = axis.values.iter().filter(near);
-    if let Some(&value) = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
-        return Ok(Some((axis.what, value)));
+
+    /// Whether what is swept can have that value.
+    fn allowed(&self, what: What, value: f64) -> Result<(), ClaimError> {
+        if what.allows(value) {
+            return Ok(());
+        }
+        let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
+        let nearest = self.by_distance(value).first().copied();
+        let (what, wanted) = (what.key(), what.domain());
+        Err(ClaimError::NoSuchValue { case, estimator, what, value, wanted, nearest })
     }
-    let (what, values) = (axis.what.key(), axis.values.clone());
-    Err(ClaimError::Swept { case: name, estimator, what, values })
+
+    /// The values of the sweep, the nearest first.
+    fn by_distance(&self, value: f64) -> Vec<f64> {
+        let mut values = self.axis.map_or(Vec::new(), |axis| axis.values.clone());
+        values.sort_by(|a, b| (a - value).abs().total_cmp(&(b - value).abs()));
+        values
+    }
+
+    fn prepared(&self, variation: Variation) -> Result<Prediction, String> {
+        let pilots = self.case.pilots(self.seed, self.index);
+        let prepared = self.case.scenario.prepare(self.index, variation, pilots);
+        prepared.map(|Ready { prediction, .. }| prediction).map_err(|refusal| refusal.to_string())
+    }
+
+    fn prediction(&self, variation: Variation) -> Result<Prediction, ClaimError> {
+        self.prepared(variation).map_err(|why| {
+            let (case, estimator) = (self.case.name.clone(), self.label.to_owned());
+            // A value beside the sweep may be refused where those of the sweep are not.
+            let beside = variation
+                .filter(|(_, value)| self.axis.is_some_and(|axis| !axis.values.contains(value)));
+            let nearest = beside.and_then(|(what, value)| {
+                let mut values = self.by_distance(value).into_iter().take(TRIED);
+                values.find(|&value| self.prepared(Some((what, value))).is_ok())
+            });
+            ClaimError::Refused { case, estimator, why, nearest }
+        })
+    }
 }

@@ -1,8 +1,10 @@
 //! Draws on their way through all questions, block by block.
 
 use super::asks::{asks, planned};
+use super::flights::Ends;
 use super::judgement::{Judgement, Stop};
 use super::scalar::{Levels, Scalar};
+use super::theory::{Background, DISTRIBUTION, Tested};
 use super::trial::{BUFFER, Trial};
 use super::{dependence, verdict};
 use crate::numeric::sum::Sum;
@@ -30,6 +32,8 @@ pub(super) enum Fault {
     Spread,
     /// Another number of lookups than the one that all draws take.
     Lookups,
+    /// A negative number in place of a distance.
+    Distance,
 }
 
 /// The first draw that refutes the claim by itself.
@@ -86,6 +90,8 @@ pub struct Reading {
     is_single: bool,
     is_varied: bool,
     resolution: Option<f64>,
+    pub(super) background: Background,
+    pub(super) ends: Option<Ends>,
     y: Vec<f64>,
     other: Vec<f64>,
 }
@@ -93,9 +99,15 @@ pub struct Reading {
 impl Reading {
     /// Before the first draw.
     pub fn new(trial: Trial) -> Self {
+        Self::with(trial, Background::default())
+    }
+
+    /// Before the first draw of an experiment of a case.
+    pub(crate) fn with(trial: Trial, background: Background) -> Self {
         let asks = asks(&trial);
         let count = asks.len().max(1) as f64;
         let share = if trial.is_certain() { 1.0 } else { 1.0 - DRIFT };
+        let share = if background.tests.is_some() { share - DISTRIBUTION } else { share };
         let ln_fail = (count / (share * trial.wanted.alpha)).ln();
         let levels = Levels { ln_fail, ln_pass: -MISS.ln() };
         let most = trial.wanted.most.unwrap_or(u64::MAX);
@@ -130,6 +142,8 @@ impl Reading {
             is_single: true,
             is_varied: false,
             resolution: None,
+            background,
+            ends: trial.claim.flights.map(|flights| Ends::new(flights, trial.claim.rounding)),
             y: Vec::with_capacity(BUFFER),
             other: Vec::with_capacity(BUFFER),
         }
@@ -151,6 +165,9 @@ impl Reading {
         if zero_or_nan(y) != 0.0 {
             return Some(Fault::Number);
         }
+        if claim.flights.is_some() && x < 0.0 {
+            return Some(Fault::Distance);
+        }
         let [low, high] = self.range?;
         (!(low <= x && x <= high)).then_some(Fault::Range)
     }
@@ -158,6 +175,10 @@ impl Reading {
     /// Adds draws with their lookups, if there are any. What is said depends on where one call ends and the next
     /// begins; blocks of [`BUFFER`] draws suit the gate best.
     pub fn absorb(&mut self, block: &[f64], lookups: &[f64]) {
+        Self::absorb_values(std::slice::from_mut(self), &[block], lookups);
+    }
+
+    pub(super) fn absorb_one(&mut self, block: &[f64], lookups: &[f64]) {
         self.look_at_each(block, lookups);
         self.read += block.len() as u64;
         self.lookup_sum.add(lookups.iter().sum());
@@ -289,6 +310,10 @@ impl Reading {
             self.judge_averages(rest);
         }
         self.scalars().for_each(Scalar::decide);
+        let tested = self.background.tests.take().map_or(Tested::default(), |tests| tests.close());
+        let mut notes = std::mem::take(&mut self.background.notes);
+        notes.extend(tested.untested);
+        let is_single = self.ends.as_ref().map_or(self.is_single, |ends| ends.is_single);
         let Trial { claim, wanted, length } = &self.trial;
         let unit = claim.unit;
         let n = self.powers.draws() as f64;
@@ -326,13 +351,16 @@ impl Reading {
             predicted_lookups: claim.lookups.map(|claimed| claimed.mean),
             refuted_by: self.refuted.as_ref().map(|refuted| refuted.index),
             refuting: self.refuting,
-            single_precision: self.is_single && self.is_varied,
+            single_precision: is_single && self.is_varied,
             resolution: self.resolution,
             findings: findings.map(Scalar::finding).collect(),
             drift: dependence::drift(&self),
             independence: dependence::independence(&self),
+            theory: self.background.theory.take(),
+            distribution: tested.findings,
         };
         verdict::decide(&self, &mut judgement);
+        judgement.guarantees.extend(notes);
         judgement
     }
 }

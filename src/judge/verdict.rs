@@ -9,9 +9,11 @@
 //! A variance that is refuted as too small is named before the mean, and a mean that is off only in
 //! units of that variance is not accused: its evidence rests on what is refuted.
 
+use super::flights::Ends;
 use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
 use super::reading::{Fault, Reading, Refuted};
 use super::scalar::Scalar;
+use crate::catalogue::digits::short;
 use crate::stats::verdict::Verdict;
 
 /// The verdict of the whole, and what it promises.
@@ -24,7 +26,8 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     let said = [Verdict::Fail, Verdict::Inconclusive].into_iter().find_map(|verdict| {
         let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
         let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
-        let alike = scalars.chain(drift).filter(|(found, _)| *found == verdict);
+        let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
+        let alike = scalars.chain(drift).chain(tests).filter(|(found, _)| *found == verdict);
         let reasons: Vec<&str> = alike.map(|(_, reason)| reason.as_str()).collect();
         (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
     });
@@ -32,6 +35,9 @@ pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
     if is_dependent {
         judgement.verdict = Verdict::Inconclusive;
         judgement.reason = dependent(&judgement.independence);
+    }
+    if let Some(wrong) = reading.ends.as_ref().and_then(Ends::wrong) {
+        (judgement.verdict, judgement.reason) = (Verdict::Fail, wrong);
     }
     if let Some(refuted) = &reading.refuted {
         judgement.verdict = Verdict::Fail;
@@ -80,6 +86,10 @@ fn withhold(judgement: &mut Judgement) {
         drift.verdict = Verdict::Inconclusive;
         drift.reason = not_judged("drift");
     }
+    for found in &mut judgement.distribution {
+        found.verdict = Verdict::Inconclusive;
+        found.reason = not_judged("distribution");
+    }
 }
 
 fn dependent(found: &IndependenceFinding) -> String {
@@ -118,7 +128,11 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
             let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
             format!("lookups: draw {index} takes {value} lookups, not {wanted}")
         }
+        Fault::Distance => format!("distance: draw {index} is {value}, which is no distance"),
     };
+    let is_distance = matches!(fault, Fault::Number | Fault::Distance);
+    let cure = reading.ends.as_ref().filter(|_| is_distance).map(Ends::cure);
+    let said = cure.map_or(said.clone(), |cure| format!("{said}; {cure}"));
     if count > 1 { format!("{said}; {count} draws are like that") } else { said }
 }
 
@@ -205,7 +219,7 @@ fn failing(reading: &Reading, judgement: &Judgement, mean: &ScalarFinding) -> St
         }
         _ => correct,
     };
-    format!("independent {who} fail with chance {alpha} at most")
+    format!("independent {who} fail with chance {} at most", short(alpha, 3))
 }
 
 /// What a pass of the mean promises.

@@ -2,13 +2,15 @@
 
 use std::fmt::{self, Write};
 
-use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
+use super::judgement::{DistributionFinding, IndependenceFinding, Judgement, ScalarFinding, Stop};
 use crate::catalogue::digits::{count, fixed, short, signed};
 
 impl Judgement {
     /// The lines on draws of that name: what each is about, and what it says.
     pub fn lines(&self, name: &str) -> Vec<(&'static str, String)> {
-        let mut lines = vec![("draws", draws(self, name)), ("mean", mean(self))];
+        let mut lines = vec![("draws", draws(self, name))];
+        lines.extend(self.theory.iter().map(|about| ("theory", about.clone())));
+        lines.push(("mean", mean(self)));
         lines.extend(variance(self).map(|text| ("variance", text)));
         lines.extend(lookups(self).map(|text| ("lookups", text)));
         lines.extend(self.findings.iter().map(|finding| ("gate", gate(finding))));
@@ -17,6 +19,7 @@ impl Judgement {
             let text = format!("ln E = {found:.1} of {limit:.1} for a change of the mean: {word}");
             lines.push(("drift", text));
         }
+        lines.extend(self.distribution.iter().map(|found| ("p-value", p_value(found))));
         lines.push(("order", order(&self.independence)));
         lines.extend(self.guarantees.iter().map(|promise| ("promise", promise.clone())));
         lines.push(("verdict", self.to_string()));
@@ -88,6 +91,13 @@ fn variance(judgement: &Judgement) -> Option<String> {
         let _ = write!(text, ", sample kurtosis {}", short(kurtosis, 4));
     }
     Some(text)
+}
+
+/// The test of a distribution.
+fn p_value(found: &DistributionFinding) -> String {
+    let DistributionFinding { check, what, verdict, p, draws, .. } = found;
+    let (p, draws) = (short(*p, 3), count(*draws));
+    format!("{check}: p = {p} for {what} after {draws} draws: {}", verdict.word())
 }
 
 fn gate(finding: &ScalarFinding) -> String {

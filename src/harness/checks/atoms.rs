@@ -7,10 +7,10 @@
 use super::batch::{Batch, each_value};
 use super::question::{Law, Question, Subject};
 use crate::stats::chi_square;
-use crate::theory;
+use crate::theory::{self, Prediction};
 
 /// A draw this near to a value, relative to the value's size, is that value.
-const SAME: f64 = 1e-9;
+pub const SAME: f64 = 1e-9;
 /// So is one this near to it in units of the largest value: 1 − r is rounded, and 0 where r = 1 may be
 /// drawn as 1e-16.
 const ROUNDING: f64 = 1e-15;
@@ -19,13 +19,27 @@ const ROUNDING: f64 = 1e-15;
 struct Values {
     value: Vec<f64>,
     probability: Vec<f64>,
+    /// Largest relative distance at which a draw still counts as the value.
+    same: f64,
 }
 
 impl Values {
-    fn of(mut atoms: Vec<(f64, f64)>) -> Self {
+    fn of(mut atoms: Vec<(f64, f64)>, same: f64) -> Self {
         atoms.sort_by(|a, b| a.0.total_cmp(&b.0));
         let (value, probability) = atoms.into_iter().unzip();
-        Self { value, probability }
+        Self { value, probability, same }
+    }
+
+    /// Whether two neighbouring values are too close for draws that are rounded to be told apart.
+    fn is_blurred(&self) -> bool {
+        let gaps = self.value.windows(2).map(|pair| pair[1] - pair[0]);
+        let sizes = self.value.windows(2).map(|pair| pair[0].abs().max(pair[1].abs()));
+        gaps.zip(sizes).any(|(gap, size)| gap < 4.0 * self.same * size)
+    }
+
+    /// Expected number of draws that are none of the values.
+    fn left_out(&self, draws: f64) -> f64 {
+        (1.0 - self.probability.iter().sum::<f64>()).max(0.0) * draws
     }
 
     /// The nearest atom, if it is near enough.
@@ -35,7 +49,7 @@ impl Values {
         let largest = ends.into_iter().flatten().fold(0.0, |most: f64, x| most.max(x.abs()));
         let near = |i: &usize| {
             let value = self.value[*i];
-            (x - value).abs() <= SAME * value.abs() + ROUNDING * largest
+            (x - value).abs() <= self.same * value.abs() + ROUNDING * largest
         };
         let sides = [after, after.wrapping_sub(1)].into_iter().filter(|&i| i < self.value.len());
         let distance = |i: &usize| (x - self.value[*i]).abs();
@@ -58,20 +72,43 @@ impl Law for Values {
         let known = self.value.len();
         // A product of many factors may fall below the last listed power; such draws are as rare
         // as the probability that the list leaves out.
-        let left_out = (1.0 - self.probability.iter().sum::<f64>()).max(0.0);
-        let expected = left_out * draws;
+        let expected = self.left_out(draws);
         let strange = if expected < 1e-6 { 0.0 } else { 10.0 + 10.0 * expected };
         if sums[known] > strange {
             return Some(0.0);
         }
         chi_square::p_value(&sums[..known], &self.probability)
     }
+
+    fn details(&self, sums: &[f64], draws: f64) -> String {
+        let strange = sums[self.value.len()];
+        if strange <= 10.0 * self.left_out(draws).max(0.01) {
+            return String::new();
+        }
+        let draws_are = if strange > 1.0 { "draws are" } else { "draw is" };
+        format!("{strange} {draws_are} none of the {} values that can occur", self.value.len())
+    }
+}
+
+/// The test for draws that are rounded to `same`, relative to their size.
+///
+/// # Errors
+///
+/// Why there is no test, although theory knows the values: rounding hides which one a draw is. `Ok(None)` where theory
+/// knows no values.
+pub fn of(prediction: &Prediction, same: f64) -> Result<Option<impl Law + use<>>, String> {
+    let Some(theory::Law::Atoms(atoms)) = &prediction.law else { return Ok(None) };
+    let values = Values::of(atoms.clone(), same);
+    if values.is_blurred() {
+        return Err(format!("values of a draw are closer to each other than {same:.1e}, relative"));
+    }
+    Ok(Some(values))
 }
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let Some(theory::Law::Atoms(atoms)) = &subject.prediction.law else { return Vec::new() };
-    let values = Values::of(atoms.clone());
+    let values = Values::of(atoms.clone(), SAME);
     let bins = chi_square::testable_bins(&values.probability, subject.fixed as f64);
     Question::law("the shares of the values", (bins >= 2).then_some(values))
 }
@@ -82,14 +119,14 @@ mod tests {
 
     #[test]
     fn a_rounded_zero_is_zero_and_a_strange_value_is_none() {
-        let values = Values::of(vec![(1.0, 0.4), (0.0, 0.6)]);
+        let values = Values::of(vec![(1.0, 0.4), (0.0, 0.6)], SAME);
         assert_eq!(
             [values.find(0.0), values.find(-1.1e-16), values.find(1.0)],
             [Some(0), Some(0), Some(1)]
         );
         assert_eq!([values.find(1e-9), values.find(0.5), values.find(1.1)], [None; 3]);
         // Powers of a small ratio are apart from each other, however small.
-        let powers = Values::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect());
+        let powers = Values::of((0..20).map(|n| (0.01f64.powi(n), 0.05)).collect(), SAME);
         assert_eq!(powers.find(0.01f64.powi(3) * (1.0 + 1e-12)), Some(16));
         assert_eq!(powers.find(0.5 * 0.01f64.powi(3)), None);
     }

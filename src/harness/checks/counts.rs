@@ -10,6 +10,7 @@
 use super::batch::{Batch, each_value};
 use super::question::{Law, Question, Subject};
 use crate::stats::chi_square;
+use crate::theory::Prediction;
 
 struct Classes {
     probability: Vec<f64>,
@@ -31,10 +32,19 @@ impl Law for Classes {
     }
 }
 
+/// The test, where theory knows the distribution of the number of lookups.
+pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+    classes(prediction)
+}
+
+fn classes(prediction: &Prediction) -> Option<Classes> {
+    let law = prediction.lookups.as_ref().filter(|law| law.variance > 0.0)?;
+    (!law.pmf.is_empty()).then(|| Classes { probability: law.pmf.clone() })
+}
+
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let law = subject.prediction.lookups.as_ref().filter(|law| law.variance > 0.0);
-    let classes = law.map(|law| Classes { probability: law.pmf.clone() });
+    let classes = classes(subject.prediction);
     let bins = |law: &Classes| chi_square::testable_bins(&law.probability, subject.fixed as f64);
     Question::law("the law of the lookups", classes.filter(|law| bins(law) >= 2))
 }

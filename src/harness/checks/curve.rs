@@ -18,7 +18,7 @@ use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted, round
 use crate::estimators::DrawBuffer;
 use crate::numeric::sum::{sum_in_lanes, sum_of_pairs};
 use crate::stats::{chi_square, reflection};
-use crate::theory::Increment;
+use crate::theory::{Increment, Prediction};
 
 /// The largest bias of an increment, relative to T, that is still worth a promise.
 const CAP: f64 = 0.05;
@@ -38,11 +38,12 @@ struct Increments {
 impl Increments {
     /// Joins to the next what rounding in `draws` draws could spoil: a step counts if
     /// `Δg > n (10³ δ)²`. `None` if there is no such step.
-    fn of(subject: &Subject, scale: &[f64]) -> Option<Self> {
-        let least = subject.fixed as f64 * (1e3 * rounding_of(subject)).powi(2);
+    fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<Self> {
+        let least = draws as f64 * (1e3 * rounding).powi(2);
+        let scale = scale(prediction);
         let mut joined = Self { at: Vec::new(), scale: Vec::new(), clock: Vec::new() };
         let mut clock = 0.0;
-        for (j, increment) in subject.prediction.increments.iter().enumerate() {
+        for (j, increment) in prediction.increments.iter().enumerate() {
             clock += increment.variance;
             if clock > least {
                 joined.at.push(j);
@@ -88,20 +89,40 @@ impl Law for Increments {
     }
 }
 
+/// The fewest draws for which the limits hold; `None` where theory has no steps, or their variances are too
+/// uncertain.
+pub fn needed(prediction: &Prediction) -> Option<f64> {
+    let increments = &prediction.increments;
+    let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
+    let tails = prediction.channels.iter().map(|channel| channel.tails.rare_event_size);
+    let rare = tails.fold(0.0f64, f64::max);
+    let is_sharp = !increments.is_empty() && increments.iter().all(|step| step.error <= SHARP);
+    is_sharp.then(|| (100.0 * kurtosis).max(10.0 * rare))
+}
+
+/// The test for so many draws, or more, that rounding moves by `rounding`, relative to their size; `None` where theory
+/// has no steps that are larger.
+pub fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<impl Law + use<>> {
+    Increments::of(prediction, draws, rounding)
+}
+
+/// `1/T_j`.
+fn scale(prediction: &Prediction) -> Vec<f64> {
+    prediction.channels.iter().map(|channel| 1.0 / channel.truth.value).collect()
+}
+
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
     let increments = &subject.prediction.increments;
     if increments.is_empty() {
         return Vec::new();
     }
-    let channels = &subject.prediction.channels;
-    let kurtosis = increments.iter().fold(0.0f64, |most, step| most.max(step.kurtosis));
-    let rare = channels.iter().fold(0.0f64, |most, c| most.max(c.tails.rare_event_size));
-    let scale: Vec<f64> = channels.iter().map(|channel| 1.0 / channel.truth.value).collect();
-    let is_long = subject.fixed as f64 >= (100.0 * kurtosis).max(10.0 * rare);
-    if is_long && increments.iter().all(|step| step.error <= SHARP) {
-        return Question::law("the curve along one walk", Increments::of(subject, &scale));
+    let is_long = needed(subject.prediction).is_some_and(|least| subject.fixed as f64 >= least);
+    if is_long {
+        let law = of(subject.prediction, subject.fixed, rounding_of(subject));
+        return Question::law("the curve along one walk", law);
     }
+    let scale = scale(subject.prediction);
     let has_spread = |increment: &Increment| {
         increment.variance > 0.0 && (increment.variance * (1.0 + increment.error)).is_finite()
     };

@@ -15,6 +15,7 @@ use super::batch::Batch;
 use super::distances::Classes;
 use super::question::{Law, Question, Subject};
 use crate::stats::anderson_darling;
+use crate::theory::Prediction;
 
 struct Empirical(Classes);
 
@@ -32,7 +33,12 @@ impl Law for Empirical {
     }
 }
 
+/// The test, where theory knows the distribution of the distances.
+pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+    Classes::of(prediction).map(Empirical)
+}
+
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    Question::law("the tails of the distances", Classes::of(subject).map(Empirical))
+    Question::law("the tails of the distances", of(subject.prediction))
 }

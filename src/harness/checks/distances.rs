@@ -9,10 +9,11 @@
 
 use super::batch::Batch;
 use super::question::{Law, Question, Subject};
+use crate::catalogue::digits::short;
 use crate::estimators::DrawBuffer;
 use crate::numeric::pack::in_fused_code;
 use crate::stats::chi_square;
-use crate::theory;
+use crate::theory::{self, Prediction};
 
 /// The number of bins.
 const BINS: usize = 20;
@@ -52,8 +53,8 @@ pub struct Classes {
 
 impl Classes {
     /// As many as theory has.
-    pub fn of(subject: &Subject) -> Option<Self> {
-        let Some(theory::Law::Distances { bins, end, escape, .. }) = &subject.prediction.law else {
+    pub fn of(prediction: &Prediction) -> Option<Self> {
+        let Some(theory::Law::Distances { bins, end, escape, .. }) = &prediction.law else {
             return None;
         };
         Some(Self::new(bins.clone(), *end, *escape))
@@ -157,16 +158,29 @@ impl Law for Bins {
         probability.push(self.classes.escapes);
         chi_square::p_value(&counts, &probability)
     }
+
+    fn details(&self, sums: &[f64], draws: f64) -> String {
+        let escaped = sums.last().copied().unwrap_or_default();
+        let expected = self.classes.escapes * draws;
+        // Otherwise the share is right, or too little is known of it.
+        if (escaped - expected).abs() <= 5.0 * expected.max(1.0).sqrt() {
+            return String::new();
+        }
+        let percent = |count: f64| short(100.0 * count / draws, 3);
+        format!("{} % of the flights leave, {} % expected", percent(escaped), percent(expected))
+    }
+}
+
+/// The test of the bins, where theory knows the distribution of the distances.
+pub fn of(prediction: &Prediction) -> Option<impl Law + use<>> {
+    let classes = Classes::of(prediction)?;
+    let size = (classes.len() / BINS).max(1);
+    Some(Bins { classes, size })
 }
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let classes = Classes::of(subject);
-    let bins = classes.map(|classes| {
-        let size = (classes.len() / BINS).max(1);
-        Bins { classes, size }
-    });
-    Question::law("the law of the distances", bins)
+    Question::law("the law of the distances", of(subject.prediction))
 }
 
 #[cfg(test)]

@@ -187,6 +187,12 @@ pub trait Law: Send + Sync {
 
     /// The p-value of the sums over `draws` draws; `None` where they test nothing.
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
+
+    /// What the sums show beside the p-value, in words; empty where there is nothing to add.
+    fn details(&self, sums: &[f64], draws: f64) -> String {
+        let _ = (sums, draws);
+        String::new()
+    }
 }
 
 /// An experiment with its streams, for checks that look for themselves.

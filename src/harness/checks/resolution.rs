@@ -14,19 +14,44 @@
 use super::question::{Inspected, Kind, Question, Subject};
 use crate::harness::addresses::BLOCK;
 use crate::stats::ties;
-use crate::theory::Law;
+use crate::theory::{Law, Prediction};
 
 /// Fewer collisions than this say nothing about their resolution.
-const FEWEST: usize = 100;
+pub const FEWEST: usize = 100;
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {
-    let Some(Law::Distances { bins, end, from, .. }) = &subject.prediction.law else {
-        return Vec::new();
-    };
-    let (end, grain) = (*end, grain(bins, *end, *from));
-    let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, end, grain)));
+    let Some(resolution) = Resolution::of(subject.prediction) else { return Vec::new() };
+    let kind = Kind::Inspection(Box::new(move |inspected| p_value(inspected, &resolution)));
     vec![Question::whole("the resolution of the distances", kind)]
+}
+
+/// What theory says of ties among distances.
+#[derive(Debug, Clone, Copy)]
+pub struct Resolution {
+    /// The distance of the rays that escape.
+    end: f64,
+    /// See [`grain`].
+    grain: f64,
+}
+
+impl Resolution {
+    /// Ties among the distances of an experiment; `None` where it has none.
+    pub fn of(prediction: &Prediction) -> Option<Self> {
+        let Some(Law::Distances { bins, end, from, .. }) = &prediction.law else { return None };
+        Some(Self { end: *end, grain: grain(bins, *end, *from) })
+    }
+
+    /// Keeps the distances of the rays that collide.
+    pub fn collisions(&self, distances: &mut Vec<f64>) {
+        distances.retain(|&s| s < self.end);
+    }
+
+    /// Expected number of ties among n distances whose random numbers have so many bits and that are rounded to
+    /// `spacing`, relative to their positions.
+    pub fn expected(&self, n: f64, bits: i32, spacing: f64) -> f64 {
+        0.5 * n * n * (2f64.powi(-bits) + self.grain * (spacing / f64::EPSILON))
+    }
 }
 
 /// `Σ_k ulp(s_k)/(width_k K²)` over the K classes: twice the ties of a pair of distances as doubles.
@@ -43,14 +68,13 @@ fn grain(bins: &[f64], end: f64, from: f64) -> f64 {
     ends.zip(widths).map(|(s, width)| ulp(s) / width).sum::<f64>() / (classes * classes)
 }
 
-fn p_value(inspected: &Inspected, end: f64, grain: f64) -> f64 {
+fn p_value(inspected: &Inspected, resolution: &Resolution) -> f64 {
     let mut collisions = inspected.first_draws(BLOCK);
-    collisions.retain(|&s| s < end);
+    resolution.collisions(&mut collisions);
     if collisions.len() < FEWEST {
         return 1.0;
     }
-    let n = collisions.len() as f64;
-    let expected = 0.5 * n * n * (2f64.powi(-53) + grain);
+    let expected = resolution.expected(collisions.len() as f64, 53, f64::EPSILON);
     if expected < 1.0 && ties::all_single_precision(&collisions) {
         return 0.0;
     }

@@ -10,34 +10,34 @@
 use ::csv::{ByteRecord, ErrorKind, Reader, ReaderBuilder};
 
 use super::lines::{CHUNK, LONGEST, Lines};
-use super::{Bytes, Column, ForeignError};
+use super::{Bytes, Column, ForeignError, Layout};
 
 /// How many characters of what is wrong are shown.
 const SHOWN: usize = 40;
 /// How many names of columns are shown.
-const LISTED: usize = 20;
+pub(super) const LISTED: usize = 20;
 
 /// An open table.
 pub(super) struct Table {
     reader: Reader<Lines>,
     file: String,
-    /// The column that is read.
-    column: usize,
+    /// The columns that are read.
+    places: Vec<usize>,
     /// How many columns the first line has.
     columns: u64,
     record: ByteRecord,
     /// The column of lookups, if one is read.
     lookups: Option<usize>,
-    /// The draw in `record` with its lookups, read when the table was opened.
-    first: Option<(f64, f64)>,
+    /// Whether the draw in `record` was not given yet: the table was opened with it.
+    is_first: bool,
 }
 
 impl Table {
-    /// Opens a table, finds the column, and reads its first draw.
+    /// Opens a table, finds the columns, and reads its first draw.
     pub(super) fn open(
         bytes: Bytes,
         file: &str,
-        column: Option<&Column>,
+        layout: &Layout,
         lookups: Option<&Column>,
     ) -> Result<Self, ForeignError> {
         let reader = ReaderBuilder::new()
@@ -51,44 +51,51 @@ impl Table {
         let mut table = Self {
             reader,
             file: file_name,
-            column: 0,
+            places: Vec::new(),
             columns: 0,
             record,
             lookups: None,
-            first: None,
+            is_first: true,
         };
         let empty = || Err(ForeignError::Empty { file: file.to_owned() });
         if !table.advance()? {
             return empty();
         }
         table.columns = table.record.len() as u64;
-        let (place, mut named) = table.choose(column)?;
-        table.column = place;
+        let mut named = false;
         if let Some(lookups) = lookups {
             let (place, is_named) = table.choose(Some(lookups))?;
-            (table.lookups, named) = (Some(place), named || is_named);
+            (table.lookups, named) = (Some(place), is_named);
         }
+        let (places, is_named) = table.places(layout)?;
+        (table.places, named) = (places, named || is_named);
         if named && !table.advance()? {
             return empty();
         }
-        table.first = Some(table.draw()?);
+        let mut first = vec![0.0; table.places.len()];
+        table.draw(&mut first)?;
         Ok(table)
     }
 
-    /// Appends the next draws with their lookups, until the buffer holds `at_most`.
+    /// How many values a draw has.
+    pub(super) fn values(&self) -> usize {
+        self.places.len()
+    }
+
+    /// Appends the next draws with their lookups, until the columns hold `at_most`.
     pub(super) fn read(
         &mut self,
-        draws: &mut Vec<f64>,
+        columns: &mut [Vec<f64>],
         lookups: &mut Vec<f64>,
         at_most: usize,
     ) -> Result<(), ForeignError> {
-        while draws.len() < at_most {
-            let (draw, count) = match self.first.take() {
-                Some(first) => first,
-                None if self.advance()? => self.draw()?,
-                None => break,
-            };
-            draws.push(draw);
+        let mut draw = vec![0.0; self.places.len()];
+        for _ in 0..at_most {
+            if !std::mem::take(&mut self.is_first) && !self.advance()? {
+                break;
+            }
+            let count = self.draw(&mut draw)?;
+            columns.iter_mut().zip(&draw).for_each(|(column, x)| column.push(*x));
             if self.lookups.is_some() {
                 lookups.push(count);
             }
@@ -96,11 +103,28 @@ impl Table {
         Ok(())
     }
 
+    /// Finds the columns of a draw; answers whether the first line is one of names.
+    fn places(&self, layout: &Layout) -> Result<(Vec<usize>, bool), ForeignError> {
+        if layout.channels.len() < 2 || layout.column.is_some() {
+            return self.choose(layout.column.as_ref()).map(|(place, named)| (vec![place], named));
+        }
+        let names: Vec<String> = self.record.iter().map(text).collect();
+        if let Some(places) = layout.named(&names) {
+            return Ok((places, true));
+        }
+        // Names that are not the channels': by their order, but for the lookups.
+        let own: Vec<usize> = (0..names.len()).filter(|&k| Some(k) != self.lookups).collect();
+        let places =
+            layout.places(&self.file, own.len(), || layout.mismatch(&self.file, own.len()))?;
+        let places: Vec<usize> = places.into_iter().map(|place| own[place]).collect();
+        let named = places.iter().any(|&place| self.record.get(place).is_some_and(is_name));
+        Ok((places, named))
+    }
+
     /// Finds a column by the first line; answers whether that is a line of names.
     fn choose(&self, column: Option<&Column>) -> Result<(usize, bool), ForeignError> {
         let file = || self.file.clone();
         let names: Vec<String> = self.record.iter().map(text).collect();
-        let is_name = |field: &[u8]| number(field).is_none() && !like_a_number(field);
         let listed = || {
             let named = self.record.iter().all(|field| field.is_empty() || is_name(field));
             let word = |k: usize| if named { brief(&names[k]) } else { k.to_string() };
@@ -156,19 +180,18 @@ impl Table {
         })
     }
 
-    /// The draw in the line at hand, with its lookups.
+    /// Writes the values of the draw in the line at hand; answers its lookups.
     #[inline]
-    fn draw(&self) -> Result<(f64, f64), ForeignError> {
-        if self.record.len() as u64 == self.columns
-            && let Some(value) = self.record.get(self.column).and_then(number)
-        {
-            let Some(lookups) = self.lookups else { return Ok((value, 0.0)) };
-            if let Some(count) = self.record.get(lookups).and_then(number) {
-                return Ok((value, count));
-            }
-            return Err(self.fault(lookups));
+    fn draw(&self, values: &mut [f64]) -> Result<f64, ForeignError> {
+        if self.record.len() as u64 != self.columns {
+            return Err(self.fault(0));
         }
-        Err(self.fault(self.column))
+        let read =
+            |place: usize| self.record.get(place).and_then(number).ok_or_else(|| self.fault(place));
+        for (value, &place) in values.iter_mut().zip(&self.places) {
+            *value = read(place)?;
+        }
+        self.lookups.map_or(Ok(0.0), read)
     }
 
     /// What is wrong with the line at hand, in the column if its number of columns is right.
@@ -189,6 +212,11 @@ impl Table {
 #[inline]
 fn number(field: &[u8]) -> Option<f64> {
     std::str::from_utf8(field.trim_ascii()).ok()?.parse().ok()
+}
+
+/// Whether a field is a name.
+fn is_name(field: &[u8]) -> bool {
+    number(field).is_none() && !like_a_number(field)
 }
 
 /// Whether a field begins as numbers do: then it is a number gone wrong, not a name.

@@ -72,13 +72,70 @@ pub enum ForeignError {
     /// The array has several axes.
     #[error(
         "{file}: an array of shape {shape}, whose order of draws is not known; \
-         save one axis, by x.ravel() or x[:, k]"
+         save one axis, by x.ravel() or x[:, k], or choose a column k of an array of shape (draws, values) by --column"
     )]
     Shape {
         /// The file.
         file: String,
         /// The shape, as `NumPy` writes it.
         shape: String,
+    },
+    /// The array has a column for each draw.
+    #[error(
+        "{file}: an array of shape {shape}, fewer draws than values; a row is a draw: did you mean x.T?"
+    )]
+    Transposed {
+        /// The file.
+        file: String,
+        /// The shape, as `NumPy` writes it.
+        shape: String,
+    },
+    /// Another number of values than a draw of the case has.
+    #[error(
+        "{file}: a draw has {found} value{}, but the case has the channels {channels}; write draws of {wanted}, or choose one \
+         of the channels by --channel",
+        if *found == 1 { "" } else { "s" }
+    )]
+    Channels {
+        /// The file.
+        file: String,
+        /// How many values a draw has.
+        found: usize,
+        /// The names of the channels.
+        channels: String,
+        /// How many values a draw may have, in words.
+        wanted: String,
+    },
+    /// Numbers without a shape, of which nothing says how many a draw has.
+    #[error(
+        "{file}: numbers without a shape do not tell how many values a draw has, of the channels {channels} that the case \
+         has; write npy of shape (draws, values) or csv, or one channel and choose it by --channel"
+    )]
+    NoShape {
+        /// The file.
+        file: String,
+        /// The names of the channels.
+        channels: String,
+    },
+    /// A column of numbers that have none.
+    #[error(
+        "{file}: raw float64 has no columns; write npy of shape (draws, values) or csv, or leave --column out"
+    )]
+    NoColumns {
+        /// The file.
+        file: String,
+    },
+    /// The last draw lacks values.
+    #[error(
+        "{file}: {numbers} numbers are no whole number of draws of {values} values; write all values of each draw"
+    )]
+    PartialRow {
+        /// The file.
+        file: String,
+        /// How many numbers there are.
+        numbers: u64,
+        /// How many values a draw has.
+        values: usize,
     },
     /// A table of several columns, and none was chosen.
     #[error("{file}: {count} columns ({}); choose one by name or index", columns.join(", "))]

@@ -1,9 +1,9 @@
 //! Draws that another program wrote: numbers in a file or a pipe, read in constant memory.
 //!
 //! ```text
-//! csv, txt       one number a line, or one column of a table separated by commas
-//! npy            float32 or float64 of either byte order, with one axis that is longer than 1
-//! f64, bin, raw  little-endian float64, nothing else
+//! csv, txt       one number a line, or columns of a table separated by commas
+//! npy            float32 or float64 of either byte order, of shape (draws) or (draws, values)
+//! f64, bin, raw  little-endian float64, nothing else; several values of a draw follow each other
 //! ```
 //!
 //! NaN and ∞ are read as they are: the gate judges them. Whatever keeps a file from being a list of
@@ -11,9 +11,11 @@
 
 mod csv;
 mod error;
+mod layout;
 mod lines;
 mod npy;
 mod raw;
+mod rows;
 
 use std::convert::Infallible;
 use std::fs::File;
@@ -22,10 +24,11 @@ use std::path::Path;
 use std::str::FromStr;
 
 pub use error::ForeignError;
+pub use layout::Layout;
 
 use super::judgement::{Judgement, Stop};
 use super::reading::Reading;
-use super::trial::{BUFFER, Trial};
+use super::trial::{BUFFER, Trial, Wanted};
 
 /// How numbers are written.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -96,7 +99,7 @@ pub struct Draws {
 
 enum Source {
     Csv(Box<csv::Table>),
-    Words(raw::Words),
+    Rows(rows::Rows),
 }
 
 impl std::fmt::Debug for Draws {
@@ -113,12 +116,21 @@ impl Draws {
     /// The file cannot be read, holds no draws, is not of this format, or its length shows that it
     /// is cut off.
     pub fn open(path: &Path, format: Format) -> Result<Self, ForeignError> {
+        Self::open_as(path, format, &Layout::default())
+    }
+
+    /// Opens a file of draws that have several values, or of several columns.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Draws::open`], and where the file has other columns.
+    pub fn open_as(path: &Path, format: Format, layout: &Layout) -> Result<Self, ForeignError> {
         let name = path.display().to_string();
         let unreadable = |cause| ForeignError::unreadable(&name, cause);
         let file = File::open(path).map_err(unreadable)?;
         let data = file.metadata().map_err(unreadable)?;
         let bytes = data.is_file().then_some(data.len());
-        Self::new(Box::new(file), &name, format, bytes)
+        Self::new(Box::new(file), &name, format, bytes, layout)
     }
 
     /// Reads a pipe, or anything else that is no file; `name` is what errors call it.
@@ -131,7 +143,21 @@ impl Draws {
         name: &str,
         format: Format,
     ) -> Result<Self, ForeignError> {
-        Self::new(Box::new(reader), name, format, None)
+        Self::from_reader_as(reader, name, format, &Layout::default())
+    }
+
+    /// Reads a pipe of draws that have several values, or of several columns.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Draws::from_reader`], and where there are other columns.
+    pub fn from_reader_as(
+        reader: impl Read + Send + 'static,
+        name: &str,
+        format: Format,
+        layout: &Layout,
+    ) -> Result<Self, ForeignError> {
+        Self::new(Box::new(reader), name, format, None, layout)
     }
 
     fn new(
@@ -139,14 +165,17 @@ impl Draws {
         name: &str,
         format: Format,
         length: Option<u64>,
+        layout: &Layout,
     ) -> Result<Self, ForeignError> {
         let source = match format {
             Format::Csv { column, lookups } => {
-                let table = csv::Table::open(bytes, name, column.as_ref(), lookups.as_ref())?;
+                let column = column.or_else(|| layout.column.clone());
+                let layout = Layout { column, ..layout.clone() };
+                let table = csv::Table::open(bytes, name, &layout, lookups.as_ref())?;
                 Source::Csv(Box::new(table))
             }
-            Format::Npy => Source::Words(npy::open(bytes, name, length)?),
-            Format::Raw => Source::Words(raw::open(bytes, name, length)?),
+            Format::Npy => Source::Rows(npy::open(bytes, name, length, layout)?),
+            Format::Raw => Source::Rows(raw::open(bytes, name, length, layout)?),
         };
         Ok(Self { source, lookups: Vec::new() })
     }
@@ -155,11 +184,19 @@ impl Draws {
     pub fn known_length(&self) -> Option<u64> {
         match &self.source {
             Source::Csv(_) => None,
-            Source::Words(words) => words.known_length(),
+            Source::Rows(rows) => rows.known_length(),
         }
     }
 
-    /// Replaces the buffer's contents by the next draws, `at_most` of them; answers how many, 0 at
+    /// How many values a draw has.
+    pub fn values(&self) -> usize {
+        match &self.source {
+            Source::Csv(table) => table.values(),
+            Source::Rows(rows) => rows.values(),
+        }
+    }
+
+    /// Replaces the buffer's contents by the first values of the next draws, `at_most` of them; answers how many, 0 at
     /// the end. Fewer than asked for come only at the end.
     ///
     /// # Errors
@@ -167,13 +204,30 @@ impl Draws {
     /// The source cannot be read on, or what follows is not a draw. The buffer then holds the draws
     /// before.
     pub fn read(&mut self, buffer: &mut Vec<f64>, at_most: usize) -> Result<usize, ForeignError> {
-        buffer.clear();
+        let mut columns = vec![Vec::new(); self.values()];
+        columns[0] = std::mem::take(buffer);
+        let read = self.read_values(&mut columns, at_most);
+        *buffer = columns.swap_remove(0);
+        read
+    }
+
+    /// The same of all values of the draws: a column for each of them.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`Draws::read`].
+    pub fn read_values(
+        &mut self,
+        columns: &mut [Vec<f64>],
+        at_most: usize,
+    ) -> Result<usize, ForeignError> {
+        columns.iter_mut().for_each(Vec::clear);
         self.lookups.clear();
         match &mut self.source {
-            Source::Csv(table) => table.read(buffer, &mut self.lookups, at_most)?,
-            Source::Words(words) => words.read(buffer, at_most)?,
+            Source::Csv(table) => table.read(columns, &mut self.lookups, at_most)?,
+            Source::Rows(rows) => rows.read(columns, at_most)?,
         }
-        Ok(buffer.len())
+        Ok(columns.first().map_or(0, Vec::len))
     }
 
     /// The lookups of the draws that were read last; none where no column has them.
@@ -189,28 +243,46 @@ impl Trial {
     ///
     /// The draws cannot be read to their end, or to where they are decided.
     pub fn judge(&self, draws: &mut Draws) -> Result<Judgement, ForeignError> {
-        let mut reading = Reading::new(*self);
-        let mut block = Vec::with_capacity(BUFFER);
-        let mut stopped = None;
-        loop {
-            let left = self.wanted.most.map_or(u64::MAX, |most| most - reading.draws());
-            let wanted = BUFFER.min(usize::try_from(left).unwrap_or(BUFFER));
-            // One draw more tells whether there is any.
-            if draws.read(&mut block, wanted.max(1))? == 0 {
-                break;
-            }
-            if wanted == 0 {
-                stopped = Some(Stop::Limit);
-                break;
-            }
-            reading.absorb(&block, draws.lookups());
-            if self.wanted.stop_early && !reading.is_open() {
-                stopped = Some(Stop::Decided).filter(|_| self.length != Some(reading.draws()));
-                break;
-            }
-        }
-        Ok(reading.close(stopped))
+        let readings = vec![Reading::new(*self)];
+        let mut judged = judge(readings, draws, &self.wanted, self.length)?;
+        Ok(judged.swap_remove(0))
     }
+}
+
+/// Reads and judges draws, a reading for each of their values.
+///
+/// # Errors
+///
+/// The draws cannot be read to their end, or to where they are decided.
+pub(crate) fn judge(
+    mut readings: Vec<Reading>,
+    draws: &mut Draws,
+    wanted: &Wanted,
+    length: Option<u64>,
+) -> Result<Vec<Judgement>, ForeignError> {
+    let mut columns = vec![Vec::with_capacity(BUFFER); draws.values()];
+    let (mut read, mut stopped) = (0, None);
+    loop {
+        let left = wanted.most.map_or(u64::MAX, |most| most - read);
+        let count = BUFFER.min(usize::try_from(left).unwrap_or(BUFFER));
+        // One draw more tells whether there is any.
+        let found = draws.read_values(&mut columns, count.max(1))?;
+        if found == 0 {
+            break;
+        }
+        if count == 0 {
+            stopped = Some(Stop::Limit);
+            break;
+        }
+        let block: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
+        Reading::absorb_values(&mut readings, &block, draws.lookups());
+        read += found as u64;
+        if wanted.stop_early && !readings.iter().any(Reading::is_open) {
+            stopped = Some(Stop::Decided).filter(|_| length != Some(read));
+            break;
+        }
+    }
+    Ok(readings.into_iter().map(|reading| reading.close(stopped)).collect())
 }
 
 /// How many draws a file holds: by its length or its header, else by reading it through.
@@ -218,16 +290,18 @@ impl Trial {
 /// # Errors
 ///
 /// The file cannot be read, or something in it is not a draw.
-pub fn count(path: &Path, format: Format) -> Result<u64, ForeignError> {
-    let mut draws = Draws::open(path, format)?;
+pub fn count(path: &Path, format: Format, layout: &Layout) -> Result<u64, ForeignError> {
+    let mut draws = Draws::open_as(path, format, layout)?;
     if let Some(length) = draws.known_length() {
         return Ok(length);
     }
-    let (mut buffer, mut count) = (Vec::new(), 0);
-    while draws.read(&mut buffer, 1 << 14)? > 0 {
-        count += buffer.len() as u64;
+    let (mut columns, mut count) = (vec![Vec::new(); draws.values()], 0);
+    loop {
+        match draws.read_values(&mut columns, 1 << 14)? {
+            0 => return Ok(count),
+            read => count += read as u64,
+        }
     }
-    Ok(count)
 }
 
 /// Every draw, in small pieces.

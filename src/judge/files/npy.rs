@@ -1,7 +1,8 @@
-//! `NumPy`'s array file: a header, then words.
+//! `NumPy`'s array file: a header, then words, in rows if the array has two axes.
 
 use super::raw::Words;
-use super::{Bytes, ForeignError};
+use super::rows::Rows;
+use super::{Bytes, ForeignError, Layout};
 use crate::files::npy::{self, Word};
 
 /// Opens an array; `length` counts the bytes of the file.
@@ -9,7 +10,8 @@ pub(super) fn open(
     mut bytes: Bytes,
     file: &str,
     length: Option<u64>,
-) -> Result<Words, ForeignError> {
+    layout: &Layout,
+) -> Result<Rows, ForeignError> {
     let header = npy::bytes(&mut bytes).map_err(|cause| ForeignError::unreadable(file, cause))?;
     if header.is_empty() {
         return Err(ForeignError::Empty { file: file.to_owned() });
@@ -22,31 +24,45 @@ pub(super) fn open(
         file: file.to_owned(),
         found: array.kind.clone(),
     })?;
-    // With one axis the order of C and that of Fortran are the same.
-    if array.shape.iter().filter(|&&size| size != 1).count() > 1 {
-        return Err(shape());
+    let axes: Vec<u64> = array.shape.iter().copied().filter(|&size| size != 1).collect();
+    let [draws, width] = match axes[..] {
+        [] => [1, 1],
+        [draws] => [draws, 1],
+        [draws, width] => [draws, width],
+        _ => return Err(shape()),
+    };
+    let width = usize::try_from(width).map_err(|_| shape())?;
+    if layout.takes_all() && (draws as u128) < width as u128 {
+        let (file, shape) = (file.to_owned(), array.written_shape());
+        return Err(ForeignError::Transposed { file, shape });
     }
+    let places = layout.places(file, width, shape)?;
     if expected == 0 {
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
     let header = header.len() as u64;
     if let Some(length) = length {
         let found = length.saturating_sub(header) / word.width() as u64;
+        let (file, row) = (file.to_owned(), width.max(1) as u64);
         if found < expected {
-            return Err(ForeignError::Truncated { file: file.to_owned(), found, expected });
+            let (found, expected) = (found / row, expected / row);
+            return Err(ForeignError::Truncated { file, found, expected });
         }
         if Some(length - header) != expected.checked_mul(word.width() as u64) {
-            return Err(ForeignError::Overlong { file: file.to_owned(), expected });
+            return Err(ForeignError::Overlong { file, expected: expected / row });
         }
     }
-    Ok(Words::new(bytes, file, word, Some(expected)))
+    let words = Words::new(bytes, file, word, Some(expected));
+    // With one axis the order of C and that of Fortran are the same.
+    let by_column = array.fortran_order && width > 1;
+    Ok(Rows::new(words, width, places, by_column))
 }
 
 #[cfg(test)]
 mod tests {
     use std::io::{Cursor, Write};
 
-    use super::super::{Draws, Format, all};
+    use super::super::{Column, Draws, Format, all};
     use super::*;
     use crate::files::npy::tests::header as whole_header;
 
@@ -101,10 +117,74 @@ mod tests {
         assert_eq!(
             pipe(bytes).expect_err("a shape").to_string(),
             "x.npy: an array of shape (2, 1, 3), whose order of draws is not known; \
-             save one axis, by x.ravel() or x[:, k]"
+             save one axis, by x.ravel() or x[:, k], or choose a column k of an array of shape (draws, values) by --column"
         );
         let bytes = whole_header("'<f8'", "True", "(2, 3)");
         assert!(matches!(pipe(bytes), Err(ForeignError::Shape { .. })));
+        let bytes = doubles("(2, 1, 3, 2)", &[0.0; 12]);
+        let layout = Layout::column(Some(Column::Index(0)));
+        let draws = Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, &layout);
+        assert!(matches!(draws, Err(ForeignError::Shape { .. })));
+    }
+
+    #[test]
+    fn columns_come_back_in_both_orders() {
+        // Row i has i, i + 0.25 and i + 0.5.
+        let n = 20_000_u32;
+        let value = |i: u32, k: u32| f64::from(i) + 0.25 * f64::from(k);
+        let rows: Vec<f64> = (0..n).flat_map(|i| (0..3).map(move |k| value(i, k))).collect();
+        let columns: Vec<f64> = (0..3).flat_map(|k| (0..n).map(move |i| value(i, k))).collect();
+        let fortran = whole_header("'<f8'", "True", "(20000, 3)").into_iter();
+        let fortran = fortran.chain(columns.iter().flat_map(|x| x.to_le_bytes())).collect();
+        for bytes in [doubles("(20000, 3)", &rows), fortran] {
+            let layout = |column: &str| Layout::column(column.parse().ok());
+            let open = |layout: &Layout| {
+                Draws::from_reader_as(Cursor::new(bytes.clone()), "x.npy", Format::Npy, layout)
+            };
+            for k in 0..3 {
+                let draws = open(&layout(&k.to_string())).expect("a column");
+                assert_eq!(draws.known_length(), Some(20_000));
+                let expected: Vec<f64> = (0..n).map(|i| value(i, k)).collect();
+                assert_eq!(all(draws).expect("draws"), expected);
+            }
+            assert!(matches!(open(&layout("3")), Err(ForeignError::NoColumn { .. })));
+            assert!(matches!(open(&layout("red")), Err(ForeignError::NoColumn { .. })));
+            let channels = ["a", "b", "c", "luminance"].map(str::to_owned).to_vec();
+            let three = Layout { channels, derived: 1, ..Layout::default() };
+            let mut draws = open(&three).expect("three channels");
+            assert_eq!(draws.values(), 3);
+            let mut read = vec![Vec::new(); 3];
+            let (mut at, mut seen) = (0, 0);
+            while draws.read_values(&mut read, 997).expect("draws") > 0 {
+                for (k, column) in (0..).zip(&read) {
+                    let expected: Vec<f64> =
+                        (at..).take(column.len()).map(|i| value(i, k)).collect();
+                    assert_eq!(column, &expected);
+                }
+                at += u32::try_from(read[0].len()).expect("few");
+                seen += read[0].len();
+            }
+            assert_eq!(seen, 20_000);
+        }
+    }
+
+    #[test]
+    fn columns_that_are_not_the_channels_are_refused() {
+        let channels = ["a", "b", "c"].map(str::to_owned).to_vec();
+        let layout = Layout { channels, ..Layout::default() };
+        let open = |bytes| Draws::from_reader_as(Cursor::new(bytes), "x.npy", Format::Npy, &layout);
+        assert_eq!(
+            open(doubles("(4, 2)", &[0.0; 8])).expect_err("two").to_string(),
+            "x.npy: a draw has 2 values, but the case has the channels a, b, c; write draws of 3 values, or choose one of the \
+             channels by --channel"
+        );
+        assert_eq!(
+            open(doubles("(3, 8)", &[0.0; 24])).expect_err("turned").to_string(),
+            "x.npy: an array of shape (3, 8), fewer draws than values; a row is a draw: did you mean x.T?"
+        );
+        assert!(
+            open(doubles("(4,)", &[0.0; 4])).expect_err("one").to_string().contains("1 value,")
+        );
     }
 
     fn header(kind: &str, shape: &str) -> Vec<u8> {

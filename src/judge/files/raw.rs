@@ -1,6 +1,7 @@
 //! Numbers of a fixed width, one after the other.
 
-use super::{Bytes, ForeignError};
+use super::rows::Rows;
+use super::{Bytes, ForeignError, Layout};
 use crate::files::npy::Word;
 
 /// How many bytes are asked for at a time: they stay in the second-level cache until converted.
@@ -15,6 +16,8 @@ pub(super) struct Words {
     announced: Option<u64>,
     /// How many there are, where it is known.
     length: Option<u64>,
+    /// How many of them are a draw, for messages.
+    pub(super) width: u64,
     given: u64,
     chunk: Vec<u8>,
     /// What is read and not yet given, `chunk[start..end]`.
@@ -23,7 +26,21 @@ pub(super) struct Words {
 }
 
 /// Opens little-endian float64 without a header; `length` counts the bytes of the file.
-pub(super) fn open(bytes: Bytes, file: &str, length: Option<u64>) -> Result<Words, ForeignError> {
+pub(super) fn open(
+    bytes: Bytes,
+    file: &str,
+    length: Option<u64>,
+    layout: &Layout,
+) -> Result<Rows, ForeignError> {
+    if layout.column.is_some() {
+        return Err(ForeignError::NoColumns { file: file.to_owned() });
+    }
+    if layout.takes_all() && layout.derived > 0 {
+        let channels = layout.channels.join(", ");
+        return Err(ForeignError::NoShape { file: file.to_owned(), channels });
+    }
+    // Draws of several values lie one after the other.
+    let width = if layout.takes_all() { layout.channels.len() } else { 1 };
     if let Some(length) = length
         && length % 8 != 0
     {
@@ -36,7 +53,10 @@ pub(super) fn open(bytes: Bytes, file: &str, length: Option<u64>) -> Result<Word
         return Err(ForeignError::Empty { file: file.to_owned() });
     }
     words.length = length.map(|bytes| bytes / 8);
-    Ok(words)
+    if let Some(numbers) = words.length.filter(|numbers| numbers % width as u64 != 0) {
+        return Err(ForeignError::PartialRow { file: file.to_owned(), numbers, values: width });
+    }
+    Ok(Rows::new(words, width, (0..width).collect(), false))
 }
 
 impl Words {
@@ -47,6 +67,7 @@ impl Words {
             word,
             announced,
             length: announced,
+            width: 1,
             given: 0,
             chunk: vec![0; CHUNK],
             start: 0,
@@ -97,15 +118,30 @@ impl Words {
         Ok(self.end)
     }
 
+    /// That the numbers end within a draw.
+    pub(super) fn partial_row(&self, numbers: u64, values: usize) -> ForeignError {
+        match self.announced {
+            Some(announced) => {
+                let (found, expected) = (numbers / values as u64, announced / values as u64);
+                ForeignError::Truncated { file: self.file.clone(), found, expected }
+            }
+            None => ForeignError::PartialRow { file: self.file.clone(), numbers, values },
+        }
+    }
+
     /// What is wrong with the end, if anything.
     fn check_end(&mut self) -> Result<(), ForeignError> {
         let rest = if self.end > self.start { self.end - self.start } else { self.fill()? };
         let file = || self.file.clone();
         match self.announced {
-            Some(expected) if self.given < expected => {
-                Err(ForeignError::Truncated { file: file(), found: self.given, expected })
+            Some(announced) if self.given < announced => {
+                let (found, expected) = (self.given / self.width, announced / self.width);
+                Err(ForeignError::Truncated { file: file(), found, expected })
             }
-            Some(expected) if rest > 0 => Err(ForeignError::Overlong { file: file(), expected }),
+            Some(announced) if rest > 0 => {
+                let expected = announced / self.width;
+                Err(ForeignError::Overlong { file: file(), expected })
+            }
             None if rest > 0 => {
                 Err(ForeignError::PartialDraw { file: file(), whole: self.given, rest })
             }

@@ -22,19 +22,21 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     text
 }
 
-/// What several verdicts come to.
-pub fn together(judged: &[(String, Judgement)], worst: Verdict, alpha: f64) -> String {
-    let of = |verdict: Verdict| {
-        let count = judged.iter().filter(|(_, judgement)| judgement.verdict == verdict).count();
+/// What several verdicts come to; `of` says what they are of.
+pub fn together<'a>(
+    judged: impl Iterator<Item = &'a Judgement> + Clone,
+    of: &str,
+    worst: Verdict,
+    alpha: f64,
+) -> String {
+    let counted = |verdict: Verdict| {
+        let count = judged.clone().filter(|judgement| judgement.verdict == verdict).count();
         (count > 0).then(|| format!("{count} {}", verdict.word()))
     };
-    let counts: Vec<String> =
-        [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive].into_iter().filter_map(of).collect();
+    let counts: Vec<String> = [Verdict::Pass, Verdict::Fail, Verdict::Inconclusive]
+        .into_iter()
+        .filter_map(counted)
+        .collect();
     let alpha = short(alpha, 3);
-    format!(
-        "\n{}: {} of {} files, α = {alpha} shared\n",
-        worst.word(),
-        counts.join(", "),
-        judged.len()
-    )
+    format!("\n{}: {} {of}, α = {alpha} shared\n", worst.word(), counts.join(", "))
 }

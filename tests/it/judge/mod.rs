@@ -1,9 +1,12 @@
 //! `trueflight judge`: the gate over draws from a file or a pipe.
 
+mod channels;
+mod distributions;
 mod grounds;
 mod image_files;
 mod images;
 mod order;
+mod swept;
 
 use std::path::Path;
 use std::process::Output;

@@ -1,0 +1,192 @@
+//! What is claimed of draws by the arguments of `trueflight judge`, and the judging by it.
+
+use super::{Arguments, Judged};
+use crate::harness::Catalogue;
+use crate::harness::case::Case;
+use crate::harness::source::CaseError;
+use crate::judge::claim::{Claim, ClaimError, Given, Lookups};
+use crate::judge::files;
+use crate::judge::reading::Reading;
+use crate::judge::theory::{Background, Theory, Whole};
+use crate::judge::trial::{Trial, Wanted};
+use crate::judge::{Choice, Draws, Layout};
+
+/// What is claimed of the draws.
+pub(super) struct Claimed {
+    /// A claim for each channel, with its name; the name is empty where there is one only.
+    claims: Vec<(String, Claim)>,
+    theory: Option<Theory>,
+    /// The one channel that is judged, where it was chosen.
+    channel: Option<usize>,
+    is_mean_only: bool,
+}
+
+impl Claimed {
+    /// Whether theory says what is claimed.
+    pub(super) fn has_theory(&self) -> bool {
+        self.theory.is_some()
+    }
+
+    /// Whether what is wanted makes sense for the claims.
+    pub(super) fn check(&self, wanted: Wanted) -> Result<(), ClaimError> {
+        let judged = |(index, _): &(usize, _)| self.channel.is_none_or(|channel| channel == *index);
+        let claims = self.claims.iter().enumerate().filter(judged);
+        claims
+            .map(|(_, (_, claim))| *claim)
+            .try_for_each(|claim| Trial::new(claim, wanted, None).map(drop))
+    }
+
+    /// The columns of a file that are judged.
+    pub(super) fn layout(&self, column: Option<&str>) -> Layout {
+        let channels: Vec<String> = self.claims.iter().map(|(name, _)| name.clone()).collect();
+        let theory = self.theory.as_ref();
+        let may_lack = theory.is_some_and(|theory| {
+            channels.len() > 1 && theory.channels_of(channels.len() - 1).is_some()
+        });
+        let column = column.and_then(|text| text.parse().ok());
+        Layout { column, channels, derived: usize::from(may_lack), channel: self.channel }
+    }
+
+    /// Judges the draws of a file, channel by channel.
+    pub(super) fn judge(
+        &self,
+        file: &str,
+        draws: &mut Draws,
+        wanted: Wanted,
+        length: Option<u64>,
+    ) -> anyhow::Result<Vec<Judged>> {
+        let values = draws.values();
+        let of_channel = self.channel.map(|channel| &self.claims[channel..=channel]);
+        let claims = of_channel.unwrap_or(&self.claims[..values]);
+        let wanted = Wanted { alpha: wanted.alpha / values as f64, ..wanted };
+        let mut background = self.background(claims, &wanted, length);
+        let reading = |(index, &(_, claim)): (usize, &(String, Claim))| {
+            // Lookups belong to the draw, not to each of its channels.
+            let claim = if index == 0 { claim } else { Claim { lookups: None, ..claim } };
+            let trial = Trial::new(claim, wanted, length)?;
+            Ok(Reading::with(trial, std::mem::take(&mut background)))
+        };
+        let readings: Result<Vec<Reading>, ClaimError> =
+            claims.iter().enumerate().map(reading).collect();
+        let judgements = files::judge(readings?, draws, &wanted, length)?;
+        let named = judgements.into_iter().zip(claims).map(|(judgement, (channel, _))| Judged {
+            file: file.to_owned(),
+            channel: if values > 1 { channel.clone() } else { String::new() },
+            judgement,
+        });
+        Ok(named.collect())
+    }
+
+    fn background(
+        &self,
+        claims: &[(String, Claim)],
+        wanted: &Wanted,
+        length: Option<u64>,
+    ) -> Background {
+        let (Some(theory), [(_, first), ..]) = (&self.theory, claims) else {
+            return Background::default();
+        };
+        let most = wanted.most.unwrap_or(u64::MAX);
+        let whole = Whole {
+            // A decision may end the reading before.
+            length: length.map(|length| length.min(most)).filter(|_| !wanted.stop_early),
+            has_lookups: first.lookups.is_some(),
+            rounding: first.rounding,
+            values: claims.len(),
+            is_mean_only: self.is_mean_only,
+        };
+        theory.background(wanted, whole)
+    }
+}
+
+impl Arguments {
+    /// What is claimed, by numbers or by a case.
+    pub(super) fn claimed(&self, catalogue: &Catalogue) -> anyhow::Result<Claimed> {
+        let (Some(name), Some(estimator)) = (&self.case, &self.estimator) else {
+            let claims = vec![(String::new(), self.claim_by_numbers()?)];
+            return Ok(Claimed { claims, theory: None, channel: None, is_mean_only: false });
+        };
+        let cases = catalogue.named(name).map_err(|errors| {
+            let shown: Vec<String> = errors.iter().map(CaseError::in_full).collect();
+            anyhow::anyhow!("--case: {}", shown.join("\n\n"))
+        })?;
+        let [case] = &cases[..] else {
+            let names: Vec<&str> = cases.iter().map(|case: &Case| case.name.as_str()).collect();
+            anyhow::bail!("--case {name} is several cases; choose one of: {}", names.join(", "));
+        };
+        let (swept, nearest) = (self.swept, self.nearest);
+        let choice = Choice { estimator, swept, nearest, channel: None, seed: self.seed };
+        let theory = Theory::of(case, &choice, self.rounding)?;
+        let channel = self.channel_of(case, &theory)?;
+        let takes_all = !self.mean_only && self.batch == 1;
+        if takes_all && (self.variance.is_some() || self.kurtosis.is_some()) {
+            anyhow::bail!(
+                "--case has a variance and a kurtosis; leave out --variance and --kurtosis, or add \
+                 --mean-only"
+            );
+        }
+        let has_lookups = theory.channels.first().is_some_and(|(_, claim)| claim.lookups.is_some());
+        if self.lookups.is_some() && (!has_lookups || !takes_all) {
+            let why = match (takes_all, self.batch) {
+                (true, _) => "theory has no number of lookups for this estimator",
+                (false, 1) => "--mean-only takes the truth alone",
+                (false, _) => "--batch takes the truth alone",
+            };
+            anyhow::bail!("{why}; leave --lookups out");
+        }
+        let claims = theory
+            .channels
+            .iter()
+            .map(|(name, claim)| Ok((name.clone(), self.claim_by_theory(*claim, takes_all)?)));
+        let claims: Result<Vec<_>, ClaimError> = claims.collect();
+        Ok(Claimed { claims: claims?, theory: Some(theory), channel, is_mean_only: self.mean_only })
+    }
+
+    /// The channel that is chosen.
+    fn channel_of(&self, case: &Case, theory: &Theory) -> anyhow::Result<Option<usize>> {
+        let names = theory.names();
+        let place = |name: &String| names.iter().position(|other| other == name);
+        let wrong = || ClaimError::Channel { case: case.name.clone(), channels: names.clone() };
+        match &self.channel {
+            Some(name) => Ok(Some(place(name).ok_or_else(wrong)?)),
+            // A column is one channel; which, only the caller can say.
+            None if self.column.is_some() && names.len() > 1 => anyhow::bail!(
+                "--column is one channel of {}; say which, by --channel: {}",
+                case.name,
+                names.join(", ")
+            ),
+            None => Ok(None),
+        }
+    }
+
+    fn claim_by_theory(&self, theory: Claim, takes_all: bool) -> Result<Claim, ClaimError> {
+        let lookups = theory.lookups.filter(|_| self.lookups.is_some());
+        let (variance, kurtosis) = (self.variance, self.kurtosis);
+        let claim = if takes_all {
+            Claim { lookups, ..theory }
+        } else {
+            // Checked as numbers of the caller's are.
+            Claim::new(&Given { truth: theory.truth, variance, kurtosis, ..Given::default() })?;
+            Claim { variance, kurtosis, variance_error: 0.0, ..theory.of_mean_alone() }
+        };
+        claim.within(self.range)
+    }
+
+    fn claim_by_numbers(&self) -> anyhow::Result<Claim> {
+        let lookups = match (&self.lookups, self.expected_lookups) {
+            (Some(_), None) => anyhow::bail!(
+                "what the lookups should be is not known; give --expected-lookups or --case"
+            ),
+            (_, mean) => mean,
+        };
+        let variance = self.lookups_variance;
+        Ok(Claim::new(&Given {
+            truth: self.truth.unwrap_or(f64::NAN),
+            variance: self.variance,
+            kurtosis: self.kurtosis,
+            range: self.range,
+            lookups: lookups.map(|mean| Lookups { mean, variance, error: 0.0 }),
+            rounding: self.rounding,
+        })?)
+    }
+}

@@ -1,0 +1,93 @@
+//! Which numbers of a row are a draw.
+//!
+//! ```text
+//! no case, or a case of one channel   the only column, or the one that is chosen
+//! a case of k channels                k columns, or k − 1 without the luminance: by the names of a table's first line,
+//!                                     where these are the channels', else in the order of the channels
+//! one channel of such a case          its column, or the only one
+//! ```
+
+use super::{Column, ForeignError};
+
+/// What a draw is.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Layout {
+    /// The one column that is read.
+    pub column: Option<Column>,
+    /// The names of a draw's channels, where it has several.
+    pub channels: Vec<String>,
+    /// How many of the last channels may be missing.
+    pub derived: usize,
+    /// The one of these channels that is read.
+    pub channel: Option<usize>,
+}
+
+impl Layout {
+    /// One column, the only one if none is chosen.
+    pub fn column(column: Option<Column>) -> Self {
+        Self { column, ..Self::default() }
+    }
+
+    /// Whether all channels of a draw are read.
+    pub(super) fn takes_all(&self) -> bool {
+        self.channels.len() > 1 && self.channel.is_none() && self.column.is_none()
+    }
+
+    /// Whether so many columns are the channels of a draw.
+    fn fits(&self, width: usize) -> bool {
+        let all = self.channels.len();
+        all > 1 && (all - self.derived..=all).contains(&width)
+    }
+
+    /// The numbers of columns that a draw with all its channels may have, in words.
+    pub(super) fn widths(&self) -> String {
+        let all = self.channels.len();
+        match self.channels.last() {
+            Some(last) if self.derived == 1 => {
+                format!("{all} values, or {} without the {last}", all - 1)
+            }
+            _ => format!("{all} values"),
+        }
+    }
+
+    /// The places in a row of so many numbers, which have no names; `none` is the error where nothing says which to read.
+    pub(super) fn places(
+        &self,
+        file: &str,
+        width: usize,
+        none: impl FnOnce() -> ForeignError,
+    ) -> Result<Vec<usize>, ForeignError> {
+        match (&self.column, self.channel) {
+            (Some(Column::Index(index)), _) if *index < width => Ok(vec![*index]),
+            (Some(column), _) => {
+                let (file, column) = (file.to_owned(), column.clone());
+                let columns = (0..width.min(super::csv::LISTED)).map(|k| k.to_string()).collect();
+                Err(ForeignError::NoColumn { file, column, columns })
+            }
+            (None, Some(_)) if width == 1 => Ok(vec![0]),
+            (None, Some(channel)) if self.fits(width) && channel < width => Ok(vec![channel]),
+            (None, None) if self.fits(width) => Ok((0..width).collect()),
+            (None, None) if width == 1 && self.channels.len() < 2 => Ok(vec![0]),
+            (None, _) if self.channels.len() > 1 => Err(self.mismatch(file, width)),
+            (None, _) => Err(none()),
+        }
+    }
+
+    /// The places in a row that a first line names; `None` where it names no channels.
+    pub(super) fn named(&self, names: &[String]) -> Option<Vec<usize>> {
+        let of = |channel: &String| names.iter().position(|name| name == channel);
+        if let Some(channel) = self.channel {
+            return of(&self.channels[channel]).map(|place| vec![place]);
+        }
+        let all = self.channels.len();
+        let found =
+            |count: usize| self.channels[..count].iter().map(of).collect::<Option<Vec<_>>>();
+        (all - self.derived..=all).rev().find_map(found).filter(|places| !places.is_empty())
+    }
+
+    /// That rows have another number of columns than the case has channels.
+    pub(super) fn mismatch(&self, file: &str, found: usize) -> ForeignError {
+        let channels = self.channels.join(", ");
+        ForeignError::Channels { file: file.to_owned(), found, channels, wanted: self.widths() }
+    }
+}

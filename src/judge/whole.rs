@@ -1,0 +1,360 @@
+//! Tests of the whole distribution of foreign draws: those that a run makes of its own.
+//!
+//! ```text
+//! distances   twenty classes of free flights and the share that leaves    harness::checks::distances
+//! depth       Anderson–Darling on the flights that collide                harness::checks::depth
+//! resolution  ties among the first 2¹⁴ flights                            harness::checks::resolution
+//! atoms       the shares of the values of draws that take few             harness::checks::atoms
+//! counts      the number of lookups                                       harness::checks::counts
+//! curve       the steps of one walk, where a draw has all its channels    harness::checks::curve
+//! ```
+//!
+//! Foreign draws may be rounded. Values are matched as closely as rounding lets them be, distances are not tested where
+//! rounding moves as many across the ends of classes as would count, and resolutions of 22 bits or of single precision
+//! count as fine: finer ones than that the verdict only tells.
+
+use std::sync::Arc;
+
+use super::judgement::DistributionFinding;
+use super::theory::{Asked, Distribution, Tested, Tests};
+use crate::catalogue::digits::short;
+use crate::estimators::DrawBuffer;
+use crate::harness::checks::batch::Batch;
+use crate::harness::checks::resolution::{self, Resolution};
+use crate::harness::checks::{self, Law};
+use crate::stats::verdict::{BLOCK, Verdict};
+use crate::stats::{multiplicity, ties};
+use crate::theory::{self, Prediction};
+
+/// The first look, where the number of draws is not known.
+const FIRST: u64 = 1 << 11;
+/// What rounding to single precision does to a draw that is a product, relative to it.
+const SINGLE_PRODUCT: f64 = 1e-5;
+/// The same for a distance, relative to its position.
+const SINGLE_POSITION: f64 = 1.2e-7;
+/// Coarser rounding than this leaves the resolution untested.
+const COARSE: f64 = 1e-6;
+/// Random numbers of so many bits are fine enough.
+const BITS: i32 = 22;
+/// Largest shift of a class's share by rounding, in standard errors.
+const HARMLESS: f64 = 0.05;
+
+/// The distribution of an experiment's draw.
+#[derive(Debug)]
+pub(super) struct Known(pub Arc<Prediction>);
+
+impl Distribution for Known {
+    fn tests(&self, asked: Asked) -> Box<dyn Tests> {
+        let next = asked.length.unwrap_or(FIRST);
+        Box::new(Whole {
+            prediction: Arc::clone(&self.0),
+            asked,
+            laws: None,
+            fine: Fineness::of(&self.0),
+            untested: Vec::new(),
+            seen: 0,
+            next,
+            looks: 0,
+            buffer: DrawBuffer::new(asked.values),
+        })
+    }
+}
+
+/// A test by sums over draws.
+struct Test {
+    check: &'static str,
+    what: &'static str,
+    law: Box<dyn Law>,
+    sums: Vec<f64>,
+    /// The numbers of draws between which it holds.
+    between: [f64; 2],
+    found: Found,
+}
+
+/// What the last look found, or the one that refuted it.
+#[derive(Default)]
+struct Found {
+    p: Option<(f64, u64)>,
+    is_refuted: bool,
+    details: String,
+}
+
+/// The ties among the first flights.
+struct Fineness {
+    resolution: Resolution,
+    first: Vec<f64>,
+    is_single: bool,
+    found: Found,
+}
+
+impl Fineness {
+    fn of(prediction: &Prediction) -> Option<Self> {
+        let resolution = Resolution::of(prediction)?;
+        Some(Self { resolution, first: Vec::new(), is_single: true, found: Found::default() })
+    }
+
+    fn absorb(&mut self, flights: &[f64]) {
+        let room = usize::try_from(BLOCK).unwrap_or(usize::MAX).saturating_sub(self.first.len());
+        self.first.extend(flights.iter().take(room));
+    }
+
+    fn p_value(&mut self) -> Option<f64> {
+        let mut collisions = self.first.clone();
+        self.resolution.collisions(&mut collisions);
+        if collisions.len() < resolution::FEWEST {
+            return None;
+        }
+        let spacing = if self.is_single { 2.0 * SINGLE_POSITION } else { f64::EPSILON };
+        let expected = self.resolution.expected(collisions.len() as f64, BITS, spacing);
+        let all = collisions.len();
+        let found = ties::ties(&mut collisions);
+        self.found.details = format!(
+            "{found} of {all} flights have the length of an earlier one, {expected:.0} at most are \
+             expected of single precision"
+        );
+        Some(ties::p_value(found, expected))
+    }
+}
+
+/// All tests of a distribution.
+struct Whole {
+    prediction: Arc<Prediction>,
+    asked: Asked,
+    /// Made with the first draws, which show their precision.
+    laws: Option<Vec<Test>>,
+    fine: Option<Fineness>,
+    untested: Vec<String>,
+    seen: u64,
+    /// The number of draws of the next look, and how many there were.
+    next: u64,
+    looks: u32,
+    buffer: DrawBuffer,
+}
+
+impl Tests for Whole {
+    fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]) {
+        let Some(values) = columns.first() else { return };
+        if self.laws.is_none() && !values.is_empty() {
+            let is_single = columns.iter().all(|column| ties::all_single_precision(column));
+            self.laws = Some(self.prepared(is_single));
+        }
+        let mut at = 0;
+        while at < values.len() && self.seen < self.next {
+            let room = usize::try_from(self.next - self.seen).unwrap_or(usize::MAX);
+            let until = values.len().min(at.saturating_add(room));
+            self.add(columns, lookups, at..until);
+            self.seen += (until - at) as u64;
+            at = until;
+            if self.seen == self.next {
+                self.look();
+            }
+        }
+    }
+
+    fn close(mut self: Box<Self>) -> Tested {
+        let laws = self.laws.take().unwrap_or_default();
+        let fine = self.fine.take().map(|fine| ("resolution", RESOLUTION, fine.found));
+        let n = self.seen as f64;
+        let (rounded, laws): (Vec<_>, Vec<_>) =
+            laws.into_iter().partition(|law| law.found.p.is_none() && n > law.between[1]);
+        if !rounded.is_empty() {
+            let what: Vec<&str> = rounded.iter().map(|law| law.what).collect();
+            let why = "rounding of the draws moves as many of them as chance does";
+            self.untested.push(format!("{} not tested: {why}", listed(&what)));
+        }
+        let all = laws.into_iter().map(|law| (law.check, law.what, law.found)).chain(fine);
+        let (mut findings, mut few) = (Vec::new(), Vec::new());
+        for (check, what, Found { p, is_refuted, details }) in all {
+            let Some((p, draws)) = p else {
+                few.push(what);
+                continue;
+            };
+            let verdict = if is_refuted { Verdict::Fail } else { Verdict::Pass };
+            let details = if details.is_empty() { details } else { format!(" ({details})") };
+            let reason = format!("{what} differs from theory: p = {}{details}", short(p, 2));
+            let reason = if is_refuted { reason } else { String::new() };
+            let (check, what) = (check.to_owned(), what.to_owned());
+            findings.push(DistributionFinding { check, what, verdict, reason, p, draws });
+        }
+        if !few.is_empty() {
+            let why = match self.asked.length {
+                Some(length) if self.seen < length => {
+                    format!("{} of {length} announced draws came", self.seen)
+                }
+                _ => format!("{} draws are too few", self.seen),
+            };
+            self.untested.push(format!("{} not tested: {why}", listed(&few)));
+        }
+        if let Some(why) = self.unknown() {
+            self.untested.push(why);
+        }
+        Tested { findings, untested: self.untested }
+    }
+}
+
+/// What the ties are about.
+const RESOLUTION: &str = "the resolution of the distances";
+
+/// Things in a sentence.
+fn listed(things: &[&str]) -> String {
+    match things {
+        [one] => format!("{one} is"),
+        [rest @ .., last] => format!("{} and {last} are", rest.join(", ")),
+        [] => String::new(),
+    }
+}
+
+impl Whole {
+    /// The tests of draws of that precision.
+    fn prepared(&mut self, is_single: bool) -> Vec<Test> {
+        let prediction = Arc::clone(&self.prediction);
+        let Asked { rounding, has_lookups, length, values, .. } = self.asked;
+        let mut tests = Vec::new();
+        let mut test = |check, what, law: Option<Box<dyn Law>>, between: [f64; 2]| {
+            let made = law.map(|law| Test {
+                check,
+                what,
+                sums: vec![0.0; law.size()],
+                law,
+                between,
+                found: Found::default(),
+            });
+            tests.extend(made);
+        };
+        let always = [0.0, f64::INFINITY];
+        if has_lookups {
+            let law = checks::counts::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
+            test("counts", "the distribution of the lookups", law, always);
+        }
+        if values != prediction.channels.len() {
+            return tests;
+        }
+        let product = if is_single { SINGLE_PRODUCT } else { 0.0 }.max(rounding);
+        match checks::atoms::of(&prediction, product.max(checks::atoms::SAME)) {
+            Ok(law) => {
+                let law = law.map(|law| Box::new(law) as Box<dyn Law>);
+                test("atoms", "the distribution of the values", law, always);
+            }
+            Err(why) => {
+                self.untested.push(format!("the distribution of the values is not tested: {why}"))
+            }
+        }
+        let position = if is_single { SINGLE_POSITION } else { 0.0 }.max(rounding);
+        if let Some(most) = most_draws(&prediction, position) {
+            let law = checks::distances::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
+            test("distances", "the distribution of the distances", law, [0.0, most]);
+            let law = checks::depth::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
+            test("depth", "the distribution of the distances near both ends", law, [0.0, most]);
+        }
+        if let Some(least) = checks::curve::needed(&prediction) {
+            let most = length.unwrap_or(1 << 24);
+            let law = checks::curve::of(&prediction, most, product.max(16.0 * f64::EPSILON));
+            let law = law.map(|law| Box::new(law) as Box<dyn Law>);
+            test("curve", "the distribution along the curve", law, [least, f64::INFINITY]);
+        }
+        match &mut self.fine {
+            Some(fine) if rounding <= COARSE => fine.is_single = is_single,
+            _ => self.fine = None,
+        }
+        tests
+    }
+
+    /// Adds some of the draws.
+    fn add(&mut self, columns: &[&[f64]], lookups: &[f64], range: std::ops::Range<usize>) {
+        let Self { buffer, laws, fine, .. } = self;
+        for (to, column) in buffer.values.iter_mut().zip(columns) {
+            to.clear();
+            to.extend_from_slice(&column[range.clone()]);
+        }
+        buffer.lookups.clear();
+        if let Some(lookups) = lookups.get(range.clone()) {
+            buffer.lookups.extend(lookups.iter().map(|&count| whole(count)));
+        }
+        if let (Some(fine), Some(column)) = (fine.as_mut(), columns.first()) {
+            fine.absorb(&column[range]);
+        }
+        let draws = Batch::new(buffer);
+        for test in laws.iter_mut().flatten() {
+            test.law.add(&draws, 0, &mut test.sums);
+        }
+    }
+
+    /// Looks at all p-values.
+    fn look(&mut self) {
+        let draws = self.seen;
+        let n = draws as f64;
+        let share = match self.asked.length {
+            Some(_) => 1.0,
+            None => 1.0 / (f64::from(self.looks + 1) * f64::from(self.looks + 2)),
+        };
+        let laws = self.laws.iter_mut().flatten();
+        let mut all: Vec<(Option<f64>, &mut Found)> = Vec::new();
+        for test in laws {
+            let [least, most] = test.between;
+            let p = test.law.p_value(&test.sums, n).filter(|_| least <= n && n <= most);
+            if p.is_some() && !test.found.is_refuted {
+                test.found.details = test.law.details(&test.sums, n);
+            }
+            all.push((p, &mut test.found));
+        }
+        if let Some(fine) = &mut self.fine {
+            let p = if fine.found.is_refuted { None } else { fine.p_value() };
+            all.push((p, &mut fine.found));
+        }
+        let p: Vec<f64> = all.iter().filter_map(|(p, _)| *p).collect();
+        let rejected = multiplicity::holm(&p, all.len(), share * self.asked.alpha);
+        let tested = all.into_iter().filter_map(|(p, found)| Some((p?, found)));
+        for ((p, found), rejected) in tested.zip(rejected) {
+            // A p-value that is not a number comes from draws that are none; they are named elsewhere.
+            if !found.is_refuted {
+                (found.p, found.is_refuted) = (Some((p, draws)), rejected);
+            }
+        }
+        self.looks += 1;
+        // Where the number was known, this was the only look.
+        if self.asked.length.is_none() {
+            self.next = self.next.saturating_mul(2);
+        }
+    }
+
+    /// What theory does not know.
+    fn unknown(&self) -> Option<String> {
+        let Prediction { law, increments, channels, .. } = &*self.prediction;
+        if self.asked.values != channels.len() && !increments.is_empty() {
+            let why = "it takes all channels of a draw";
+            return Some(format!("the distribution along the curve is not tested: {why}"));
+        }
+        if law.is_some() || !increments.is_empty() {
+            return None;
+        }
+        let known = if channels.iter().any(|channel| channel.moments.is_some()) {
+            "mean and variance"
+        } else {
+            "the mean"
+        };
+        Some(format!(
+            "the distribution of the draws is not tested: theory knows {known} of it alone"
+        ))
+    }
+}
+
+/// How many draws of distances that are rounded to `rounding`, relative to their positions, may be tested: rounding moves
+/// no end of a class by more than a twentieth of its standard error. `None` where theory has no distances.
+fn most_draws(prediction: &Prediction, rounding: f64) -> Option<f64> {
+    let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else { return None };
+    let classes = (bins.len() + 1) as f64;
+    let width = |k: usize| bins.get(k + 1).map_or(f64::INFINITY, |next| next - bins[k]);
+    let most = |k: usize| {
+        let below = (k + 1) as f64 / classes;
+        let narrow = width(k).min(k.checked_sub(1).map_or(f64::INFINITY, width));
+        let moved = rounding * (from.abs() + bins[k]) / (narrow * classes);
+        HARMLESS * HARMLESS * below * (1.0 - below) / (moved * moved)
+    };
+    Some((0..bins.len()).map(most).fold(f64::INFINITY, f64::min))
+}
+
+/// A number of lookups; what is none is a fault that is named elsewhere.
+#[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
+fn whole(count: f64) -> u32 {
+    count.round() as u32
+}
