@@ -34,7 +34,7 @@ pub struct Arguments {
     files: Vec<PathBuf>,
     /// What the mean should be
     #[arg(long, value_name = "T", allow_hyphen_values = true, conflicts_with = "case")]
-    #[arg(required_unless_present_any = ["case", "truth_image"], value_parser = numbers::number)]
+    #[arg(required_unless_present_any = ["case", "truth_image", "against"], value_parser = numbers::number)]
     truth: Option<f64>,
     /// The variance of one draw, or of one average with --batch; without it, it is not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = numbers::number)]

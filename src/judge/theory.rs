@@ -38,7 +38,9 @@ pub(crate) struct Asked {
 }
 
 /// The distribution of a draw, as far as theory knows it.
-pub(crate) trait Distribution: fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
+pub(crate) trait Distribution:
+    fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe
+{
     /// Its tests, before the first draw.
     fn tests(&self, asked: Asked) -> Box<dyn Tests>;
 }

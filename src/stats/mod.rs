@@ -8,13 +8,17 @@ pub mod catoni;
 pub mod census;
 pub mod chi_square;
 pub mod correlation;
+pub mod estimated_variance;
 pub mod gate;
 pub mod independence;
 pub mod multiplicity;
 pub mod normal;
+#[cfg(feature = "library")]
+pub mod permutation;
 pub mod powers;
 pub mod reflection;
 pub mod replays;
+pub mod symmetric;
 pub mod tally;
 pub mod ties;
 pub mod verdict;

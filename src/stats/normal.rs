@@ -12,6 +12,11 @@ pub fn two_sided(level: f64) -> f64 {
     upper_quantile(0.5 * level)
 }
 
+/// The probability that a standard normal exceeds `z`.
+pub fn upper_tail(z: f64) -> f64 {
+    0.5 * libm::erfc(z * std::f64::consts::FRAC_1_SQRT_2)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

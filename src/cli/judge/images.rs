@@ -7,6 +7,7 @@ use clap::Args;
 
 use super::Shown;
 use crate::cli::{Console, USAGE, numbers, output};
+use crate::judge::images::against::{Terms, compare};
 use crate::judge::images::{Claim, Judgement, Level, Wanted, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
@@ -16,21 +17,45 @@ use crate::report::judge::junit::Told;
 #[command(next_help_heading = "Images")]
 pub struct Arguments {
     /// Judge images: the passes of a renderer, pixel by pixel
-    #[arg(long, conflicts_with_all = ["case", "kurtosis", "batch", "variance_tolerance", "column"])]
+    #[arg(long, conflicts_with_all = ["case", "batch", "variance_tolerance", "column"])]
     #[arg(conflicts_with_all = ["lookups", "input", "stop_early", "draws"])]
     pub images: bool,
     /// What the mean of each pixel should be: an image
     #[arg(long, value_name = "FILE", requires = "images", conflicts_with = "truth")]
     truth_image: Option<PathBuf>,
+    /// The truth image is the mean of N independent passes, and has their error; needs a variance of one pass
+    #[arg(long, value_name = "N", requires = "truth_image")]
+    #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
+    truth_passes: Option<u32>,
     /// The variance of each pixel of one pass: an image
     #[arg(long, value_name = "FILE", requires = "images", conflicts_with = "variance")]
     variance_image: Option<PathBuf>,
+    /// The variance is no exact one but the sample variance of N passes other than those judged: its error counts, and
+    /// zeros, negative values and NaN in it are allowed
+    #[arg(long, value_name = "N", requires = "images")]
+    #[arg(value_parser = numbers::whole::<u32>(2..=u32::MAX), allow_negative_numbers = true)]
+    variance_passes: Option<u32>,
+    /// Estimate the variance from other passes of the same renderer: a stack (.npy), a folder with a pass in each file,
+    /// or the option once for each file
+    #[arg(long, value_name = "FILE", requires = "images")]
+    #[arg(conflicts_with_all = ["variance", "variance_image", "variance_passes"])]
+    variance_stack: Vec<PathBuf>,
+    /// Judge by a second stack instead of a truth: passes of a reference, noisy as they are; a stack (.npy), a folder,
+    /// or the option once for each file
+    #[arg(long, value_name = "FILE", requires = "images")]
+    #[arg(conflicts_with_all = ["truth", "truth_image", "truth_passes", "variance", "variance_image"])]
+    #[arg(conflicts_with_all = ["variance_passes", "variance_stack", "kurtosis", "range"])]
+    against: Vec<PathBuf>,
+    /// Both stacks of --against have one law in each pixel, not only one mean: the exact test alone decides, and the
+    /// variances must agree, too
+    #[arg(long, requires = "against")]
+    same_law: bool,
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
     /// values of all passes]
     #[arg(long, value_name = "N", requires = "images")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,
-    /// Write judgement.json, tiles.csv and z-map.png into a folder
+    /// Write judgement.json, tiles.csv, z-map.png and p-values.png into a folder
     #[arg(long, value_name = "DIR", requires = "images")]
     out: Option<PathBuf>,
 }
@@ -42,37 +67,31 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if let Some(out) = &images.out {
         output::writable(out)?;
     }
-    let beside = [&images.truth_image, &images.variance_image].into_iter().flatten();
-    let all: Vec<&PathBuf> = arguments.files.iter().chain(beside).collect();
-    let frame = files::Frame::of(&all)?;
-    let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
-        (Some(value), _) => Ok(Some(Level::All(value))),
-        (None, Some(path)) => files::picture_in(path, frame).map(Level::Each).map(Some),
-        (None, None) => Ok(None),
-    };
-    let claim = Claim {
-        truth: level(arguments.truth, &images.truth_image)?
-            .context("give --truth or --truth-image")?,
-        variance: level(arguments.variance, &images.variance_image)?,
-        range: arguments.range,
-        rounding: arguments.rounding,
-    };
+    if arguments.files.iter().any(|file| super::is_pipe(file)) {
+        bail!("images are not read of a pipe; give files");
+    }
+    if images.variance_passes.is_some()
+        && arguments.variance.is_none()
+        && images.variance_image.is_none()
+    {
+        bail!(
+            "--variance-passes says where a variance is from; give it by --variance-image or --variance"
+        );
+    }
     let wanted = Wanted {
         tile: images.tile.map(|tile| tile as usize),
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
     };
-    if arguments.files.iter().any(|file| super::is_pipe(file)) {
-        bail!("images are not read of a pipe; give files");
-    }
-    let name = name(&arguments.files);
-    let judgement = match files::stack_in(&arguments.files, frame)
-        .and_then(|stack| judge(&stack, &claim, &wanted))
-    {
+    let name = match images.against.is_empty() {
+        true => name(&arguments.files),
+        false => format!("{} against {}", name(&arguments.files), self::name(&images.against)),
+    };
+    let judgement = match judged(arguments, &wanted) {
         Ok(judgement) => judgement,
         Err(error) => {
-            arguments.write_junit(&[], &[(name, error.to_string())])?;
-            output::complain(&error.into());
+            arguments.write_junit(&[], &[(name, format!("{error:#}"))])?;
+            output::complain(&error);
             return Ok(USAGE);
         }
     };
@@ -83,6 +102,71 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     }
     errors.keep(arguments.write_junit(&[Told::of_images(&name, &judgement)], &[]));
     Ok(errors.close(arguments.code(judgement.verdict)))
+}
+
+/// Reads and judges.
+fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judgement> {
+    let images = &arguments.images;
+    let [against, variance_stack] =
+        [&images.against, &images.variance_stack].map(|paths| passes(paths));
+    let (against, variance_stack) = (against?, variance_stack?);
+    let beside = [&images.truth_image, &images.variance_image].into_iter().flatten();
+    let all = arguments.files.iter().chain(&against).chain(&variance_stack).chain(beside);
+    let frame = files::Frame::of(&all.collect::<Vec<_>>())?;
+    if !against.is_empty() {
+        let stack = files::stack_in(&arguments.files, frame)?;
+        let reference = files::stack_in(&against, frame)?;
+        let terms = Terms { is_same_law: images.same_law, rounding: arguments.rounding };
+        return Ok(compare(&stack, &reference, terms, wanted)?);
+    }
+    let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
+        (Some(value), _) => Ok(Some(Level::All(value))),
+        (None, Some(path)) => files::picture_in(path, frame).map(Level::Each).map(Some),
+        (None, None) => Ok(None),
+    };
+    let variance_stack = match &*variance_stack {
+        [] => None,
+        paths => Some(files::stack_in(paths, frame)?),
+    };
+    let claim = Claim {
+        truth: level(arguments.truth, &images.truth_image)?
+            .context("give --truth, --truth-image or --against")?,
+        truth_passes: images.truth_passes.map(|passes| passes as usize),
+        variance: level(arguments.variance, &images.variance_image)?,
+        variance_passes: images.variance_passes.map(|passes| passes as usize),
+        variance_stack,
+        kurtosis: arguments.kurtosis,
+        range: arguments.range,
+        rounding: arguments.rounding,
+    };
+    Ok(judge(&files::stack_in(&arguments.files, frame)?, &claim, wanted)?)
+}
+
+/// The files of a stack; those of a folder in the order of their names.
+fn passes(paths: &[PathBuf]) -> anyhow::Result<Vec<PathBuf>> {
+    let [folder] = paths else { return Ok(paths.to_vec()) };
+    if !folder.is_dir() {
+        return Ok(paths.to_vec());
+    }
+    let entries =
+        std::fs::read_dir(folder).and_then(Iterator::collect::<Result<Vec<_>, _>>).with_context(
+            || format!("{}: cannot be listed; give a folder that can be read", folder.display()),
+        )?;
+    let is_image = |path: &PathBuf| {
+        let ending =
+            path.extension().and_then(|ending| ending.to_str()).map(str::to_ascii_lowercase);
+        ending.is_some_and(|ending| ["npy", "pfm", "exr"].contains(&&*ending))
+    };
+    let mut found: Vec<PathBuf> =
+        entries.into_iter().map(|entry| entry.path()).filter(is_image).collect();
+    found.sort();
+    if found.is_empty() {
+        bail!(
+            "{}: a folder without images (.npy, .pfm, .exr); give one with a pass in each file",
+            folder.display()
+        );
+    }
+    Ok(found)
 }
 
 /// The first of several files with how many there are.

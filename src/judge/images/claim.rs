@@ -1,6 +1,7 @@
 //! What is claimed of the pixels of a pass.
 
 use super::error::ImageError;
+use super::estimate::Estimated;
 use super::picture::{Picture, Size, Stack};
 use crate::judge::claim::ROUNDING;
 use crate::stats::verdict::FURTHEST;
@@ -15,7 +16,7 @@ pub enum Level {
 }
 
 impl Level {
-    fn spread(&self, what: &str, size: Size) -> Result<Vec<f64>, ImageError> {
+    pub(super) fn spread(&self, what: &str, size: Size) -> Result<Vec<f64>, ImageError> {
         match self {
             Self::All(value) => Ok(vec![*value; size.values()]),
             Self::Each(picture) => {
@@ -46,8 +47,18 @@ impl Level {
 pub struct Claim {
     /// Their means.
     pub truth: Level,
+    /// Number of independent passes whose mean the truth is; `None` for an exact truth. Needs a variance.
+    pub truth_passes: Option<usize>,
     /// The variance of a pixel of one pass, if it is known.
     pub variance: Option<Level>,
+    /// Number of independent passes, other than those judged, that the variance is the sample variance of; `None` for
+    /// an exact variance. Entries below 0 count as 0; a value with a variance of NaN or infinity is not judged.
+    pub variance_passes: Option<usize>,
+    /// Independent passes of the same law that the variance is taken from, instead of `variance`.
+    pub variance_stack: Option<Stack>,
+    /// Upper bound of the kurtosis (3 for the normal law) of the values of a tile about their truths. Without any variance
+    /// it is a ground for a verdict; for an estimated variance it takes the place of the kurtosis that the passes show.
+    pub kurtosis: Option<f64>,
     /// Where all values lie, if it is known; either end may be infinite.
     pub range: Option<[f64; 2]>,
     /// What rounding may add to a value, relative to its truth; at least that of the files.
@@ -57,7 +68,16 @@ pub struct Claim {
 impl Claim {
     /// A claim of the truth alone: nothing follows from it unless a variance or a range is added.
     pub fn of_truth(truth: Level) -> Self {
-        Self { truth, variance: None, range: None, rounding: ROUNDING }
+        Self {
+            truth,
+            truth_passes: None,
+            variance: None,
+            variance_passes: None,
+            variance_stack: None,
+            kurtosis: None,
+            range: None,
+            rounding: ROUNDING,
+        }
     }
 }
 
@@ -65,6 +85,11 @@ impl Claim {
 pub(super) struct Pixels {
     pub truth: Vec<f64>,
     pub variance: Option<Vec<f64>>,
+    /// An estimated variance, if it is not exact.
+    pub estimate: Option<Estimated>,
+    /// 1 over the number of passes that the truth is the mean of; 0 for an exact truth.
+    pub truth_share: f64,
+    pub kurtosis: Option<f64>,
     pub range: Option<[f64; 2]>,
     pub rounding: f64,
     /// The mean |truth| of each channel; 1 where that is 0.
@@ -92,14 +117,17 @@ impl Pixels {
             None => "a finite number".to_owned(),
         };
         check("truth", size, &truth, &is_inside, &wanted)?;
-        let variance = claim
-            .variance
-            .as_ref()
-            .map(|variance| variance.spread("variance", size))
-            .transpose()?;
-        if let Some(variance) = &variance {
+        check_numbers(claim)?;
+        let (variance, estimate) = match Estimated::of(claim, size)? {
+            Some((variance, estimate)) => (Some(variance), Some(estimate)),
+            None => {
+                let level = claim.variance.as_ref();
+                (level.map(|variance| variance.spread("variance", size)).transpose()?, None)
+            }
+        };
+        if let (Some(variance), None) = (&variance, &estimate) {
             let is_fine = |x: f64| x.is_finite() && x >= 0.0;
-            check("variance", size, variance, &is_fine, "a finite number, 0 or more")?;
+            check("variance", size, variance, &is_fine, EXACT)?;
         }
         let mut units = vec![0.0; size.channels];
         for pixel in truth.chunks_exact(size.channels) {
@@ -113,7 +141,10 @@ impl Pixels {
         }
         units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
         let rounding = claim.rounding.max(stack.rounding).max(claim.truth.rounding());
-        let found = Self { truth, variance, range: claim.range, rounding, units };
+        let truth_share = claim.truth_passes.map_or(0.0, |passes| 1.0 / passes as f64);
+        let (range, kurtosis) = (claim.range, claim.kurtosis);
+        let found =
+            Self { truth, variance, estimate, truth_share, kurtosis, range, rounding, units };
         let of = |i: usize| found.floor(i) / found.units[i % size.channels];
         let floor = (0..size.values()).map(of).fold(0.0, f64::max);
         match tolerance.filter(|&tolerance| tolerance < 4.0 * floor) {
@@ -127,17 +158,30 @@ impl Pixels {
         self.rounding * self.truth[index].abs()
     }
 
-    /// Whether a value has no spread: by its variance, or because its truth is an end of the range.
-    pub(super) fn is_certain(&self, index: usize) -> bool {
+    /// Whether the truth is an end of the range; the mean of some passes may be one by chance.
+    fn is_end(&self, index: usize) -> bool {
         let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
-        let variance = self.variance.as_ref().map(|variance| variance[index]);
+        is_end && self.truth_share == 0.0
+    }
+
+    /// Whether a value has no spread: by its exact variance, or because its truth is an end of the range.
+    pub(super) fn is_certain(&self, index: usize) -> bool {
+        let is_end = self.is_end(index);
+        let exact = self.variance.as_ref().filter(|_| self.estimate.is_none());
+        let variance = exact.map(|variance| variance[index]);
         is_end || variance.is_some_and(|v| FURTHEST * v.sqrt() <= self.floor(index))
+    }
+
+    /// Whether a variance that was estimated is 0 everywhere.
+    pub(super) fn is_flat(&self) -> bool {
+        let estimated = self.variance.as_ref().filter(|_| self.estimate.is_some());
+        estimated.is_some_and(|variance| variance.iter().all(|&v| v == 0.0))
     }
 
     /// How far a value without spread may be from its truth.
     pub(super) fn bound(&self, index: usize) -> f64 {
         let variance = self.variance.as_ref().map_or(0.0, |variance| variance[index]);
-        let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
+        let is_end = self.is_end(index);
         self.floor(index) + if is_end { 0.0 } else { FURTHEST * variance.sqrt() }
     }
 
@@ -150,7 +194,29 @@ impl Pixels {
     }
 }
 
-fn check(
+/// What an exact variance must be.
+const EXACT: &str = "a finite number, 0 or more (if the variance was estimated from passes, say from how many by \
+                     --variance-passes N: then such values are allowed)";
+
+/// Numbers of passes and the kurtosis.
+fn check_numbers(claim: &Claim) -> Result<(), ImageError> {
+    let number = |what, value, wanted| Err(ImageError::Number { what, value, wanted });
+    let few = |passes: Option<usize>| passes.filter(|&passes| passes < 2);
+    if let Some(passes) = few(claim.variance_passes) {
+        return number("variance-passes", passes as f64, "a number of passes, 2 or more");
+    }
+    if claim.truth_passes == Some(0) {
+        return number("truth-passes", 0.0, "a number of passes, 1 or more");
+    }
+    match claim.kurtosis {
+        Some(k) if !(k >= 1.0 && k.is_finite()) => {
+            number("kurtosis", k, "a finite number, 1 or more")
+        }
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn check(
     what: &'static str,
     size: Size,
     values: &[f64],

@@ -8,7 +8,7 @@ use crate::stats::verdict::Verdict;
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
-    /// Why, in words; empty for a plain pass.
+    /// Why, in words; of a pass, what it excludes where that is little; else empty for a pass.
     pub reason: String,
     /// What the verdict promises, and what it does not.
     pub guarantees: Vec<String>,
@@ -36,6 +36,12 @@ pub struct Judgement {
     pub repeated: Vec<u32>,
     /// What the values show of the claimed variance.
     pub variance: Option<Variance>,
+    /// What is known of a variance that was estimated; `None` for an exact one, or none.
+    pub estimate: Option<Estimate>,
+    /// Number of passes whose mean the truth image is; `None` for an exact truth.
+    pub truth_passes: Option<usize>,
+    /// Comparison with a second stack; `None` where the truth is given.
+    pub comparison: Option<Comparison>,
     /// The whole picture, each channel.
     pub whole: Vec<Tile>,
     /// Every tile, the smallest first, row after row from the top, each with all its channels.
@@ -75,6 +81,15 @@ pub struct Refuted {
     pub value: f64,
 }
 
+impl Refuted {
+    /// The value at a place of a pass.
+    pub(super) fn at(size: Size, pass: usize, index: usize, value: f64) -> Self {
+        let (pixel, channel) = (index / size.channels, index % size.channels);
+        let (row, column) = (pixel / size.columns, pixel % size.columns);
+        Self { pass, row, column, channel, value }
+    }
+}
+
 /// Whether some numbers depend on each other.
 #[derive(Debug, Clone, Default, serde::Serialize)]
 pub struct Dependence {
@@ -106,12 +121,52 @@ pub struct Variance {
     pub about_truth: f64,
     /// The mean of s²/V.
     pub about_mean: f64,
+    /// The mean of s²/V beyond which nothing passes.
+    pub margin: f64,
     /// ln E against a variance of V at most.
     pub ln_e: f64,
     /// The ln E at which it is refuted.
     pub limit: f64,
     /// Whether it is.
     pub is_refuted: bool,
+}
+
+/// A variance that was estimated from passes.
+#[derive(Debug, Clone, Copy, serde::Serialize)]
+pub struct Estimate {
+    /// Number of passes that it was estimated from.
+    pub passes: usize,
+    /// Kurtosis of the values of the smallest tiles that is relied on: measured, or given.
+    pub kurtosis: f64,
+    /// Whether the caller gave the kurtosis.
+    pub is_given: bool,
+    /// Number of negative variances, which count as 0.
+    pub negative: u64,
+    /// Number of variances that are NaN or infinite: these values are not judged.
+    pub unknown: u64,
+    /// The first of either kind: row, column and channel, from 0.
+    pub first: Option<[usize; 3]>,
+}
+
+/// Two stacks against each other.
+#[derive(Debug, Clone, serde::Serialize)]
+pub struct Comparison {
+    /// Number of passes of the reference.
+    pub passes: usize,
+    /// Test of equal distributions: `permutation` of passes, `signs` of differences, or `none`.
+    pub method: &'static str,
+    /// Number of random permutations; 0 for signs.
+    pub permutations: u64,
+    /// Least p-value of all tiles and the whole together, for equal distributions.
+    pub p: f64,
+    /// Whether the caller claims equal distributions in each pixel.
+    pub is_same_law: bool,
+    /// Variance of the test over that of the reference, over all pixels; `None` where neither varies.
+    pub spread: Option<f64>,
+    /// p-value of that for equal distributions.
+    pub spread_p: f64,
+    /// Largest kurtosis of the smallest tiles' values, as measured.
+    pub kurtosis: Option<f64>,
 }
 
 /// A rectangle of pixels in one channel.
@@ -137,6 +192,8 @@ pub struct Tile {
     pub standard_error: f64,
     /// (mean − truth) in standard errors; `None` where that is no number.
     pub z: Option<f64>,
+    /// Probability of a difference at least as large where all is well: by a permutation of two stacks, else from z.
+    pub p: Option<f64>,
     /// ln E against the truth.
     pub ln_e: f64,
     /// ln of the evidence against a bias of +ε and of −ε; infinite where there is no doubt.

@@ -35,15 +35,19 @@
 //! # Ok::<(), trueflight::judge::images::ImageError>(())
 //! ```
 
+pub mod against;
 mod claim;
 mod error;
+mod estimate;
 pub mod files;
 pub mod judgement;
 mod likely;
 mod neighbours;
+mod noisy;
 mod order;
 mod picture;
 mod repeats;
+mod same;
 mod spread;
 mod tiles;
 mod verdict;
@@ -56,7 +60,9 @@ pub use picture::{Picture, Size, Stack};
 use self::claim::Pixels;
 use self::judgement::{Counts, Dependence, Refuted, Tile, Variance};
 use self::tiles::{Part, Terms};
+use crate::judge::scalar::Levels;
 use crate::numeric::parallel;
+use crate::stats::gate::VARIANCE_MARGIN;
 use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
 use crate::stats::verdict::{MISS, Verdict};
 
@@ -127,35 +133,58 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     let (refuted_by, refuting) = refuted(stack, &pixels);
     let neighbours = neighbours_of(stack, alpha);
     let is_free = !neighbours.is_refuted();
-    let (order, repeated) = order_of(stack, &pixels, alpha);
-    let variance = match refuting {
-        0 => spread::squares(stack, &pixels, is_free).map(|found| variance_of(found, alpha)),
+    // Passes without spread are one image where they should be.
+    let is_certain = (0..size.values()).all(|index| pixels.is_certain(index));
+    let (mut order, repeated) = order_of(stack, is_certain || pixels.is_flat(), alpha);
+    if let Some(reason) = own(stack, &pixels, claim) {
+        order.reason = reason;
+    }
+    let (parts, whole) = (tiles::parts(size, tile), tiles::wholes(size));
+    let q = |parts: &[Part]| match pixels.estimate.as_ref().filter(|_| refuting == 0) {
+        Some(found) => {
+            let stacks: Vec<&Stack> = found.stack.iter().chain([stack]).collect();
+            estimate::all_q(&stacks, parts, claim.kurtosis)
+        }
+        None => vec![0.0; parts.len()],
+    };
+    let (q_tiles, q_whole) = (q(&parts), q(&whole));
+    let is_noisy = pixels.estimate.is_some() || pixels.truth_share > 0.0;
+    let variance = match (refuting, is_noisy) {
+        (0, false) => spread::squares(stack, &pixels, is_free)
+            .map(|found| variance_of(found, alpha, VARIANCE_MARGIN)),
+        (0, true) => {
+            let q = q_whole.iter().copied().fold(0.0, f64::max);
+            spread::pairs(stack, &pixels, q, is_free, SHARES[2] * alpha)
+                .map(|(found, excess)| variance_of(found, alpha, VARIANCE_MARGIN * excess))
+        }
         _ => None,
     };
     let has_variance = !variance.is_some_and(|variance| variance.is_refuted);
-    let parts = parts(size, tile);
+    let levels = |share: f64, count: usize| Levels {
+        ln_fail: (count as f64 / (share * alpha)).ln(),
+        ln_pass: -MISS.ln(),
+    };
     let terms = Terms {
         is_free,
         has_variance,
         tolerance: wanted.tolerance,
         is_capped: false,
         count: parts.len(),
+        levels: levels(SHARES[0], parts.len()),
     };
-    let whole: Vec<Part> = (0..size.channels)
-        .map(|channel| Part {
-            size: size.rows.max(size.columns),
-            row: 0,
-            column: 0,
-            height: size.rows,
-            width: size.columns,
-            channel,
-        })
-        .collect();
-    let whole_terms = Terms { is_capped: true, count: 1, ..terms };
-    let (mut tiles, mut whole) = match refuting {
-        0 => (all(stack, &pixels, &parts, terms), all(stack, &pixels, &whole, whole_terms)),
-        _ => (Vec::new(), Vec::new()),
+    let whole_terms =
+        Terms { is_capped: true, count: 1, levels: levels(SHARES[1], whole.len()), ..terms };
+    let all = |parts: &[Part], terms: Terms, q: &[f64]| {
+        let is_noisy = is_noisy && (is_free || pixels.truth_share > 0.0 || tile == 1);
+        let one = |i: usize| match is_noisy {
+            true => noisy::tile(stack, &pixels, parts[i], terms, q[i]),
+            false => tiles::tile(stack, &pixels, parts[i], terms),
+        };
+        parallel::range(if refuting == 0 { parts.len() } else { 0 }, one)
     };
+    let (mut tiles, mut whole) = (all(&parts, terms, &q_tiles), all(&whole, whole_terms, &q_whole));
+    let estimate =
+        pixels.estimate.as_ref().map(|found| found.told(claim, size, tile, &parts, &q_tiles));
     let is_judged = !order.is_refuted();
     decide(&mut tiles, SHARES[0] * alpha, is_judged);
     decide(&mut whole, SHARES[1] * alpha, is_judged);
@@ -182,6 +211,9 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         neighbours,
         repeated,
         variance,
+        estimate,
+        truth_passes: claim.truth_passes,
+        comparison: None,
         worst: worst(&tiles),
         whole,
         tiles,
@@ -191,24 +223,26 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     Ok(judgement)
 }
 
-fn all(stack: &Stack, pixels: &Pixels, parts: &[Part], terms: Terms) -> Vec<Tile> {
-    parallel::map(parts, |&part| tiles::tile(stack, pixels, part, terms))
-}
-
-/// The tiles, the smallest first, row after row, each with all its channels. Larger ones find what is spread out.
-fn parts(Size { rows, columns, channels }: Size, tile: usize) -> Vec<Part> {
-    let sizes = std::iter::successors(Some(tile), |size| Some(2 * size));
-    let mut parts = Vec::new();
-    for size in sizes.take_while(|&size| size == tile || size < rows.max(columns)) {
-        for row in (0..rows).step_by(size) {
-            for column in (0..columns).step_by(size) {
-                let (height, width) = (size.min(rows - row), size.min(columns - column));
-                let part = |channel| Part { size, row, column, height, width, channel };
-                parts.extend((0..channels).map(part));
-            }
-        }
+/// Why images that were made of the passes judged are no grounds.
+fn own(stack: &Stack, pixels: &Pixels, claim: &Claim) -> Option<String> {
+    if same::is_own_truth(stack, pixels) {
+        return Some(
+            "the truth image is the mean of these very passes; give that of others".to_owned(),
+        );
     }
-    parts
+    if let Some(other) = &claim.variance_stack {
+        let [p, q] = same::shared(stack, other)?;
+        return Some(format!(
+            "pass {p} and pass {q} of the stack of the variance share values, counted from 0; give passes with \
+             seeds of their own"
+        ));
+    }
+    let is_own = pixels.estimate.is_some() && same::is_own_variance(stack, pixels);
+    is_own.then(|| {
+        "the variance image is that of these very passes; give that of others, or a bound on the kurtosis by \
+         --kurtosis instead of it"
+            .to_owned()
+    })
 }
 
 /// The first value that refutes the claim by itself, and how many do.
@@ -227,11 +261,19 @@ fn refuted(stack: &Stack, pixels: &Pixels) -> (Option<Refuted>, u64) {
                 continue;
             }
             count += 1;
-            first.get_or_insert_with(|| {
-                let (pixel, channel) = (index / size.channels, index % size.channels);
-                let (row, column) = (pixel / size.columns, pixel % size.columns);
-                Refuted { pass, row, column, channel, value }
-            });
+            first.get_or_insert_with(|| Refuted::at(size, pass, index, value));
+        }
+    }
+    (first, count)
+}
+
+/// The first value that is no number, and how many are none.
+fn not_finite(stack: &Stack) -> (Option<Refuted>, u64) {
+    let (mut first, mut count) = (None, 0);
+    for pass in 0..stack.passes {
+        for (index, &value) in stack.pass(pass).iter().enumerate().filter(|(_, x)| !x.is_finite()) {
+            count += 1;
+            first.get_or_insert_with(|| Refuted::at(stack.size, pass, index, value));
         }
     }
     (first, count)
@@ -261,7 +303,7 @@ fn neighbours_of(stack: &Stack, alpha: f64) -> Dependence {
 }
 
 /// Whether passes depend on each other, and which share values.
-fn order_of(stack: &Stack, pixels: &Pixels, alpha: f64) -> (Dependence, Vec<u32>) {
+fn order_of(stack: &Stack, is_certain: bool, alpha: f64) -> (Dependence, Vec<u32>) {
     let limit = limit(alpha);
     let is_tested = stack.passes >= order::fewest((-limit).exp());
     let mut said = Dependence { limit, is_tested, ..Dependence::default() };
@@ -285,8 +327,6 @@ fn order_of(stack: &Stack, pixels: &Pixels, alpha: f64) -> (Dependence, Vec<u32>
         );
         repeated = found.passes;
     }
-    // Passes without spread are one image where they should be.
-    let is_certain = (0..stack.size.values()).all(|index| pixels.is_certain(index));
     if !is_certain && repeats::is_one_image(stack) {
         "all passes are one image: give each pass a seed of its own".clone_into(&mut said.reason);
         repeated = (0..).zip(0..stack.passes).map(|(pass, _)| pass).collect();
@@ -294,12 +334,19 @@ fn order_of(stack: &Stack, pixels: &Pixels, alpha: f64) -> (Dependence, Vec<u32>
     (said, repeated)
 }
 
-fn variance_of(found: spread::Squares, alpha: f64) -> Variance {
+fn variance_of(found: spread::Squares, alpha: f64, margin: f64) -> Variance {
     let limit = -(SHARES[2] * alpha).ln();
     let spread::Squares { ln_e, about_truth, about_mean } = found;
     // Means that are off make squares about the truth large, but not those about the mean.
     let is_spread = about_mean - 1.0 >= 0.5 * (about_truth - 1.0);
-    Variance { about_truth, about_mean, ln_e, limit, is_refuted: ln_e >= limit && is_spread }
+    Variance {
+        about_truth,
+        about_mean,
+        margin,
+        ln_e,
+        limit,
+        is_refuted: ln_e >= limit && is_spread,
+    }
 }
 
 /// Fail by Holm, pass by both sides, and the list.

@@ -9,6 +9,7 @@
 //! Where the pixels of a pass depend on each other a draw is the average of y over a pass.
 
 use super::claim::Pixels;
+use super::estimate;
 use super::picture::Stack;
 use super::tiles::{AT_THE_END, doubling};
 use crate::judge::asks::VARIANCE_CAP;
@@ -23,6 +24,21 @@ pub(super) struct Squares {
     pub about_truth: f64,
     /// s²/V.
     pub about_mean: f64,
+}
+
+fn ask(floor: f64) -> Ask {
+    Ask {
+        check: "variance",
+        what: "variance",
+        spread: None,
+        is_hard: true,
+        range: Some([-1.0, f64::INFINITY]),
+        tolerance: None,
+        usual: VARIANCE_CAP,
+        cap: VARIANCE_CAP,
+        floor,
+        must_pass: false,
+    }
 }
 
 /// Compares squares with the variance; `None` where none is claimed, or all are certain.
@@ -49,20 +65,8 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
     if floor > 0.25 * VARIANCE_CAP {
         return None;
     }
-    let ask = Ask {
-        check: "variance",
-        what: "variance",
-        spread: None,
-        is_hard: true,
-        range: Some([-1.0, f64::INFINITY]),
-        tolerance: None,
-        usual: VARIANCE_CAP,
-        cap: VARIANCE_CAP,
-        floor,
-        must_pass: false,
-    };
     let n = stack.passes as f64;
-    let mut scalar = Scalar::new(ask, None, AT_THE_END);
+    let mut scalar = Scalar::new(ask(floor), None, AT_THE_END);
     let (mut y, mut sum) = (Vec::new(), 0.0);
     for (first, last) in doubling(stack.passes) {
         y.clear();
@@ -95,4 +99,71 @@ pub(super) fn squares(stack: &Stack, pixels: &Pixels, is_free: bool) -> Option<S
         about_truth: 1.0 + sum / (n * judged.len() as f64),
         about_mean: about_mean / judged.len() as f64,
     })
+}
+
+/// Compares pairs of passes with a variance that was estimated, or where the truth has an error of its own.
+///
+/// ```text
+/// y = (x_2k − x_2k+1)²/(2V) − 1 ≥ −1;   V of the pixel where it is exact, else a bound on the mean of all pixels:
+///     V̂/(1 − √(2r ln(2/α_v)))    as of `stats::estimated_variance`, which takes half of the level α_v
+/// ```
+pub(super) fn pairs(
+    stack: &Stack,
+    pixels: &Pixels,
+    q: f64,
+    is_free: bool,
+    level: f64,
+) -> Option<(Squares, f64)> {
+    let variance = pixels.variance.as_ref()?;
+    let is_judged = |&i: &usize| {
+        !pixels.is_certain(i) && pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[i])
+    };
+    let judged: Vec<usize> = (0..stack.size.values()).filter(is_judged).collect();
+    let count = judged.len() as f64;
+    let claimed = judged.iter().map(|&i| variance[i]).sum::<f64>() / count;
+    // NaN where nothing is judged.
+    if !(claimed > 0.0) {
+        return None;
+    }
+    // The channels of a pixel depend on each other: they are one draw.
+    let pixel = |i: &usize| i / stack.size.channels;
+    let groups: Vec<&[usize]> = judged.chunk_by(|i, j| pixel(i) == pixel(j)).collect();
+    let draws = groups.len() as f64;
+    let excess = match &pixels.estimate {
+        Some(found) => estimate::of_tile(1.0, q, found.passes, draws).upper(0.5 * level)?,
+        None => 1.0,
+    };
+    let of = |i: usize| if pixels.estimate.is_some() { claimed * excess } else { variance[i] };
+    let floor = judged.iter().map(|&i| pixels.floor(i).powi(2) / of(i)).sum::<f64>() / count;
+    if floor > 0.25 * VARIANCE_CAP {
+        return None;
+    }
+    let mut scalar = Scalar::new(ask(floor), None, AT_THE_END);
+    let (mut y, mut sum) = (Vec::new(), 0.0);
+    let count_pairs = stack.passes / 2;
+    for (first, last) in doubling(count_pairs) {
+        y.clear();
+        for pair in first..last {
+            let (one, other) = (stack.pass(2 * pair), stack.pass(2 * pair + 1));
+            let square = |i: &usize| 0.5 * (one[*i] - other[*i]).powi(2) / of(*i);
+            let before = y.len();
+            y.extend(
+                groups
+                    .iter()
+                    .map(|group| group.iter().map(square).sum::<f64>() * draws / count - 1.0),
+            );
+            let all: f64 = y[before..].iter().sum();
+            sum += all;
+            if !is_free {
+                y.truncate(before);
+                y.push(all / draws);
+            }
+        }
+        scalar.absorb(&y);
+    }
+    scalar.decide();
+    let ratio = (1.0 + sum / (count_pairs as f64 * draws)) * excess;
+    let ln_share = if pixels.estimate.is_some() { std::f64::consts::LN_2 } else { 0.0 };
+    let ln_e = scalar.evidence.ln_e - ln_share;
+    Some((Squares { ln_e, about_truth: ratio, about_mean: ratio }, excess))
 }

@@ -14,12 +14,12 @@
 
 use super::claim::Pixels;
 use super::judgement::Tile;
-use super::picture::Stack;
+use super::picture::{Size, Stack};
 use crate::judge::grounds::Spread;
 use crate::judge::scalar::{Ask, Levels, Scalar};
 use crate::judge::trial::MEAN_CAP;
 use crate::stats::gate::PLANNED;
-use crate::stats::normal::upper_quantile;
+use crate::stats::normal::{upper_quantile, upper_tail};
 use crate::stats::verdict::{MISS, Verdict};
 
 /// A rectangle of pixels, in one channel.
@@ -46,6 +46,8 @@ pub(super) struct Terms {
     pub is_capped: bool,
     /// K.
     pub count: usize,
+    /// The levels of a part by itself: a bound on the variance by a kurtosis takes a share of them.
+    pub levels: Levels,
 }
 
 /// s²: how many V/ε² a part is planned for, so that all `count` of them pass.
@@ -66,6 +68,30 @@ impl Part {
             (column..column + width)
                 .map(move |column| (row * columns + column) * channels + channel)
         })
+    }
+}
+
+/// A tile of which nothing is known but its truth, its mean and the standard error of that.
+pub(super) fn empty(part: Part, [truth, mean, standard_error]: [f64; 3]) -> Tile {
+    let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
+    let z = Some(z).filter(|z| z.is_finite());
+    Tile {
+        size: part.size,
+        row: part.row,
+        column: part.column,
+        height: part.height,
+        width: part.width,
+        channel: part.channel,
+        truth,
+        mean,
+        standard_error,
+        z,
+        p: z.map(|z| 2.0 * upper_tail(z.abs())),
+        ln_e: 0.0,
+        ln_p: [f64::NEG_INFINITY; 2],
+        tolerance: None,
+        is_listed: false,
+        verdict: Verdict::Inconclusive,
     }
 }
 
@@ -90,24 +116,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     let mean = averages.iter().sum::<f64>() / n;
     let shown = averages.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / (n - 1.0);
     let standard_error = (variance.map_or(shown, |variance| variance / count) / n).sqrt();
-    let z = if mean == truth { 0.0 } else { (mean - truth) / standard_error };
-    let mut found = Tile {
-        size: part.size,
-        row: part.row,
-        column: part.column,
-        height: part.height,
-        width: part.width,
-        channel: part.channel,
-        truth,
-        mean,
-        standard_error,
-        z: Some(z).filter(|z| z.is_finite()),
-        ln_e: 0.0,
-        ln_p: [f64::NEG_INFINITY; 2],
-        tolerance: None,
-        is_listed: false,
-        verdict: Verdict::Inconclusive,
-    };
+    let mut found = empty(part, [truth, mean, standard_error]);
     if places.iter().all(|&i| pixels.is_certain(i)) {
         // What has no spread was compared with its truth, value by value.
         (found.tolerance, found.ln_p) = (Some(0.0), [f64::INFINITY; 2]);
@@ -121,10 +130,14 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
     } else {
         [truth; 2]
     };
+    let known = variance.map(|variance| Spread::Known(variance / unit / unit));
+    let bounded = pixels.kurtosis.filter(|_| pixels.variance.is_none() && is_free);
+    let bounded = bounded.map(Spread::Kurtosis);
+    let levels = if known.is_none() && bounded.is_some() { terms.levels } else { AT_THE_END };
     let ask = Ask {
         check: "mean",
         what: "mean",
-        spread: variance.map(|variance| Spread::Known(variance / unit / unit)),
+        spread: known.or(bounded),
         is_hard: true,
         range: pixels.widened().map(|[low, high]| [(low - most) / unit, (high - least) / unit]),
         tolerance: terms.tolerance,
@@ -134,7 +147,7 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
         must_pass: true,
     };
     let planned = Some(draws * PLANNED / planned_units(terms.count));
-    let mut scalar = Scalar::new(ask, planned, AT_THE_END);
+    let mut scalar = Scalar::new(ask, planned, levels);
     let mut y = Vec::new();
     // Stakes on a range learn from the passes before; a block has as many passes as all before it.
     for (first, last) in doubling(stack.passes) {
@@ -157,11 +170,41 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
         let (off, error) = ((mean - truth) / unit, standard_error / unit);
         let sides = [tolerance - off, tolerance + off].map(|room| {
             // −ln of the normal law's upper tail
-            -(0.5 * libm::erfc(room / error * std::f64::consts::FRAC_1_SQRT_2)).ln()
+            -upper_tail(room / error).ln()
         });
         found.ln_p = [0, 1].map(|side| found.ln_p[side].min(sides[side]));
     }
     found
+}
+
+/// The tiles, the smallest first, row after row, each with all its channels. Larger ones find what is spread out.
+pub(super) fn parts(Size { rows, columns, channels }: Size, tile: usize) -> Vec<Part> {
+    let sizes = std::iter::successors(Some(tile), |size| Some(2 * size));
+    let mut parts = Vec::new();
+    for size in sizes.take_while(|&size| size == tile || size < rows.max(columns)) {
+        for row in (0..rows).step_by(size) {
+            for column in (0..columns).step_by(size) {
+                let (height, width) = (size.min(rows - row), size.min(columns - column));
+                let part = |channel| Part { size, row, column, height, width, channel };
+                parts.extend((0..channels).map(part));
+            }
+        }
+    }
+    parts
+}
+
+/// The whole picture, each channel.
+pub(super) fn wholes(size: Size) -> Vec<Part> {
+    let Size { rows, columns, channels } = size;
+    let part = |channel| Part {
+        size: rows.max(columns),
+        row: 0,
+        column: 0,
+        height: rows,
+        width: columns,
+        channel,
+    };
+    (0..channels).map(part).collect()
 }
 
 /// Levels that nothing reaches before the end.

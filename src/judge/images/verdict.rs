@@ -3,8 +3,7 @@
 use super::claim::{Claim, Pixels};
 use super::judgement::{Judgement, Refuted, Tile};
 use crate::catalogue::deviation::Deviation;
-use crate::catalogue::digits::percent;
-use crate::stats::gate::VARIANCE_MARGIN;
+use crate::catalogue::digits::{percent, short};
 use crate::stats::verdict::Verdict;
 
 /// The verdict of the whole, and what it promises.
@@ -25,10 +24,14 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
     let mut failing = Vec::new();
     if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
         failing.push(format!(
-            "the variance is too small: that of the values is {} of it (ln E = {:.1} ≥ {:.1})",
+            "the variance is too small: that of the values is {} of it (ln E = {:.1} ≥ {:.1}){}",
             percent(variance.about_mean),
             variance.ln_e,
-            variance.limit
+            variance.limit,
+            match judgement.estimate {
+                Some(_) => "",
+                None => "; if it was estimated from N other passes, say so by --variance-passes N",
+            }
         ));
         // Where the variance is refuted, no tile fails by it; the one that stands out may tell why.
         let size = |tile: &&Tile| tile.z.map_or(0.0, f64::abs);
@@ -55,22 +58,59 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
         return (Verdict::Fail, failing.join("; "));
     }
     let open = open(judgement, claim);
-    let verdict = if open.is_empty() { Verdict::Pass } else { Verdict::Inconclusive };
-    (verdict, open.join("; "))
+    if open.is_empty() {
+        return (Verdict::Pass, excluded(judgement));
+    }
+    (Verdict::Inconclusive, open.join("; "))
+}
+
+/// The widest ε, in units of the picture's mean, that a pass needs no words for.
+const WIDE: f64 = 0.05;
+
+/// What a pass excludes, where that is little: the widest ε of all tiles and of the whole.
+pub(super) fn excluded(judgement: &Judgement) -> String {
+    let widest =
+        |tiles: &[Tile]| tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
+    let (tile, whole) = (widest(&judgement.tiles), widest(&judgement.whole));
+    let mut said = Vec::new();
+    if tile.max(whole) > WIDE {
+        let place = judgement.tiles.iter().find(|found| found.tolerance == Some(tile));
+        let place =
+            place.map_or(String::new(), |found| format!(" ({})", self::place(judgement, found)));
+        said.push(format!(
+            "but only a bias above {} of the picture's mean is excluded in every tile{place}, above {} in the whole; render \
+             more passes or give a larger --tile to exclude less",
+            percent(tile),
+            percent(whole)
+        ));
+    }
+    let unknown = judgement.estimate.map_or(0, |found| found.unknown);
+    if unknown > 0 {
+        said.push(format!("{unknown} values without a variance are not judged"));
+    }
+    said.join("; ")
 }
 
 /// What keeps a picture that does not fail from passing.
 fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     let has_spread = judgement.whole.iter().any(|whole| whole.tolerance != Some(0.0));
-    if claim.variance.is_none() && claim.range.is_none() && has_spread {
+    let has_variance = has_variance(claim);
+    if !has_variance && claim.range.is_none() && claim.kurtosis.is_none() && has_spread {
         return vec![
             "what a pixel's values may be is not known: rare ones that were not drawn may carry the \
-             mean; give --variance, --variance-image or --range LOW,HIGH"
+             mean; give --variance, --variance-image, --variance-stack, --kurtosis K or --range LOW,HIGH"
+                .to_owned(),
+        ];
+    }
+    if !has_variance && claim.range.is_none() && claim.truth_passes.is_some() {
+        return vec![
+            "how far the mean of the truth's passes is off is not known; give the variance of one pass by \
+             --variance-image or --variance-stack"
                 .to_owned(),
         ];
     }
     let is_endless = claim.range.is_some_and(|[low, high]| !(high - low).is_finite());
-    if claim.variance.is_none() && is_endless && has_spread {
+    if !has_variance && claim.kurtosis.is_none() && is_endless && has_spread {
         return vec![
             "nothing passes by a range with an infinite end: rare values that were not drawn may carry the \
              mean; give both ends, --variance or --variance-image"
@@ -87,7 +127,7 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
         ));
     }
     if let Some(variance) =
-        judgement.variance.filter(|variance| variance.about_mean > VARIANCE_MARGIN)
+        judgement.variance.filter(|variance| variance.about_mean > variance.margin)
     {
         open.push(format!(
             "the values spread {:.3} times as wide as the variance says",
@@ -112,7 +152,7 @@ fn open(judgement: &Judgement, claim: &Claim) -> Vec<String> {
 }
 
 /// ε in words.
-fn bias(tile: &Tile) -> String {
+pub(super) fn bias(tile: &Tile) -> String {
     tile.tolerance.map_or("by any amount".to_owned(), |tolerance| {
         format!("by {:.2} % of the picture's mean or more", 100.0 * tolerance)
     })
@@ -133,7 +173,7 @@ fn channel(judgement: &Judgement, channel: usize) -> String {
     if judgement.size.channels > 1 { format!(", channel {channel}") } else { String::new() }
 }
 
-fn off(judgement: &Judgement, tile: &Tile) -> String {
+pub(super) fn off(judgement: &Judgement, tile: &Tile) -> String {
     let told = Deviation::new(tile.mean, tile.truth, judgement.passes as u64)
         .with_z(tile.z.unwrap_or(f64::NAN));
     let told = Deviation { unit: "passes", ..told };
@@ -165,18 +205,60 @@ fn fault(judgement: &Judgement, refuted: Refuted, pixels: &Pixels) -> String {
     }
 }
 
+fn has_variance(claim: &Claim) -> bool {
+    claim.variance.is_some() || claim.variance_stack.is_some()
+}
+
+/// What the promises assume of a variance, and of a truth, that are not exact.
+fn estimated(judgement: &Judgement) -> Vec<String> {
+    let mut said = Vec::new();
+    if let Some(found) = judgement.estimate {
+        let (kurtosis, passes) = (short(found.kurtosis, 3), found.passes);
+        said.push(if found.is_given {
+            format!(
+                "the variance is an estimate of {passes} passes; its error is paid for: the levels hold if no tile has a \
+                 kurtosis above {kurtosis}, as given"
+            )
+        } else {
+            format!(
+                "the variance is an estimate of {passes} passes; its error is paid for, at nominal levels: they assume that \
+                 no tile has a larger kurtosis than these values show ({kurtosis} at most); a bound by --kurtosis K makes \
+                 them hold"
+            )
+        });
+        let (negative, unknown) = (found.negative, found.unknown);
+        if let Some([row, column, channel]) = found.first {
+            let place = format!("row {row}, column {column}{}", self::channel(judgement, channel));
+            said.push(format!(
+                "{negative} variances are negative and count as 0, {unknown} are no numbers and their values are not \
+                 judged; the first: {place}"
+            ));
+        }
+    }
+    if let Some(passes) = judgement.truth_passes {
+        said.push(format!("the truth is the mean of {passes} passes, and has the error of that"));
+    }
+    said
+}
+
 fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     let mut said = Vec::new();
-    let has_grounds = claim.variance.is_some() || claim.range.is_some();
+    let has_variance = has_variance(claim);
+    let has_kurtosis = !has_variance && claim.kurtosis.is_some();
+    let has_grounds = has_variance || has_kurtosis || claim.range.is_some();
     let is_free = judgement.neighbours.is_tested && !judgement.neighbours.is_refuted();
     let pixels = if is_free { " of independent pixels" } else { "" };
-    let whose = if claim.variance.is_some() { " of that variance" } else { "" };
+    let whose = match (has_variance, claim.kurtosis.filter(|_| has_kurtosis)) {
+        (true, _) => " of that variance".to_owned(),
+        (_, Some(kurtosis)) => format!(" of a kurtosis of {kurtosis} at most in every tile"),
+        _ => String::new(),
+    };
     if has_grounds {
         said.push(format!(
             "independent passes{pixels}{whose} fail with chance {} at most, all tiles and channels together",
             judgement.alpha
         ));
-        let condition = if claim.variance.is_some() { " if the variance is right" } else { "" };
+        let condition = if has_variance { " if the variance is right" } else { "" };
         said.push(format!(
             "a picture, or a tile, that is off by its tolerance passes with chance {} at most{condition}",
             judgement.beta
@@ -184,6 +266,7 @@ fn guarantees(judgement: &Judgement, claim: &Claim) -> Vec<String> {
     } else {
         said.push("nothing fails or passes without a variance or a range".to_owned());
     }
+    said.extend(estimated(judgement));
     if !judgement.neighbours.is_tested {
         said.push("there are no neighbours".to_owned());
     } else if judgement.neighbours.is_refuted() {

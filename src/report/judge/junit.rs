@@ -115,6 +115,9 @@ fn test(told: &Told, inconclusive: Inconclusive) -> TestCase {
         status.set_description(told.lines.join("\n"));
     }
     let mut test = TestCase::new(&*told.name, status);
+    if told.verdict == Verdict::Pass && !told.reason.is_empty() {
+        test.set_system_out(format!("pass: {}", told.reason));
+    }
     test.set_classname("judge");
     test
 }

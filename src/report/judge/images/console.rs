@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use crate::catalogue::digits::{fixed, percent, short, signed};
 use crate::judge::images::Judgement;
-use crate::judge::images::judgement::{Dependence, Tile};
+use crate::judge::images::judgement::{Comparison, Dependence, Tile};
 use crate::report::console::layout::wrapped;
 
 /// The widest word at the left.
@@ -22,6 +22,22 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     line("images", &format!("{} passes of {} in {name}", judgement.passes, judgement.size));
     for whole in &judgement.whole {
         line("whole", &whole_line(judgement, whole));
+    }
+    if let Some(comparison) = &judgement.comparison {
+        line("against", &against_line(comparison));
+    }
+    if let Some(found) = judgement.estimate {
+        let source = if found.is_given { "as given" } else { "measured" };
+        line(
+            "estimate",
+            &format!(
+                "the variance is that of {} passes; kurtosis {} at most ({source}); {} negative, {} no numbers",
+                found.passes,
+                short(found.kurtosis, 3),
+                found.negative,
+                found.unknown
+            ),
+        );
     }
     if let Some(variance) = judgement.variance {
         line(
@@ -58,11 +74,35 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
     if judgement.size.channels > 1 { format!("channel {}: ", tile.channel) } else { String::new() }
 }
 
+/// What was compared, and how.
+fn against_line(found: &Comparison) -> String {
+    let method = match found.method {
+        "permutation" => format!("{} permutations of passes", found.permutations),
+        "signs" => "signs of differences".to_owned(),
+        _ => "no test: too few passes of pixels that depend on each other".to_owned(),
+    };
+    let spread = found.spread.map_or(String::new(), |ratio| {
+        let p = if found.permutations > 0 {
+            format!(" (p = {})", short(found.spread_p, 2))
+        } else {
+            String::new()
+        };
+        let word = if found.is_same_law { "" } else { "; reported only" };
+        format!("; variance {} times that of the reference{p}{word}", fixed(ratio, 4))
+    });
+    format!(
+        "{} passes of the reference; equal laws: p = {} ({method}){spread}",
+        found.passes,
+        short(found.p, 3)
+    )
+}
+
 /// Mean, error, truth and z.
 fn numbers(tile: &Tile) -> String {
     let z = tile.z.map_or(String::new(), |z| format!(", z = {}", signed(z)));
     let (mean, error) = (fixed(tile.mean, 8), short(tile.standard_error, 3));
-    format!("{mean} ± {error}, truth {}{z}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
+    let p = tile.p.map_or(String::new(), |p| format!(", p = {}", short(p, 2)));
+    format!("{mean} ± {error}, truth {}{z}{p}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
 }
 
 fn whole_line(judgement: &Judgement, whole: &Tile) -> String {

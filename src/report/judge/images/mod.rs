@@ -1,13 +1,14 @@
 //! What `judge --images` found: on the console, as a table of tiles, and as a picture.
 
 pub mod console;
+pub mod p_values;
 pub mod tiles_csv;
 pub mod z_map;
 
 use crate::judge::images::Judgement;
 use crate::report::{Artifact, ReportError};
 
-/// `judgement.json`, and `tiles.csv` and `z-map.png` where tiles were judged.
+/// `judgement.json`, and `tiles.csv`, `z-map.png` and `p-values.png` where tiles were judged.
 ///
 /// # Errors
 ///
@@ -17,9 +18,14 @@ pub fn artifacts(judgement: &Judgement, name: &str) -> Result<Vec<Artifact>, Rep
     let mut files = vec![Artifact::text("judgement.json", json)];
     if !judgement.tiles.is_empty() {
         files.push(Artifact::text("tiles.csv", tiles_csv::csv(judgement)?));
-        let draw = |message| ReportError::Draw { figure: "z-map".to_owned(), message };
-        let bytes = z_map::png(judgement, name).map_err(draw)?;
-        files.push(Artifact { path: "z-map.png".into(), bytes });
+        for (figure, png) in [
+            ("z-map", z_map::png as fn(&Judgement, &str) -> Result<Vec<u8>, String>),
+            ("p-values", p_values::png),
+        ] {
+            let draw = |message| ReportError::Draw { figure: figure.to_owned(), message };
+            let bytes = png(judgement, name).map_err(draw)?;
+            files.push(Artifact { path: format!("{figure}.png").into(), bytes });
+        }
     }
     Ok(files)
 }

@@ -7,7 +7,7 @@ use crate::judge::images::judgement::Tile;
 use crate::report::ReportError;
 use crate::report::columns::table;
 
-const HEADER: [&str; 17] = [
+const HEADER: [&str; 18] = [
     "size",
     "row",
     "column",
@@ -18,6 +18,7 @@ const HEADER: [&str; 17] = [
     "mean",
     "standard_error",
     "z",
+    "p",
     "ln_e",
     "ln_p_above",
     "ln_p_below",
@@ -36,7 +37,7 @@ pub fn csv(judgement: &Judgement) -> Result<String, ReportError> {
     table("tiles", HEADER, judgement.tiles.iter().map(row))
 }
 
-fn row(tile: &Tile) -> [String; 17] {
+fn row(tile: &Tile) -> [String; 18] {
     let optional = |x: Option<f64>| x.map(exact).unwrap_or_default();
     let is_failing = tile.verdict == Verdict::Fail;
     [
@@ -50,6 +51,7 @@ fn row(tile: &Tile) -> [String; 17] {
         exact(tile.mean),
         exact(tile.standard_error),
         optional(tile.z),
+        optional(tile.p),
         exact(tile.ln_e),
         exact(tile.ln_p[0]),
         exact(tile.ln_p[1]),

@@ -14,15 +14,15 @@ use crate::report::render::{colour, palette};
 /// Colours end at ±5 standard errors.
 const STRONGEST: f64 = 5.0;
 /// The longer side of a map on the sheet.
-const LONGEST: f64 = 480.0;
+pub(super) const LONGEST: f64 = 480.0;
 /// The distance of maps from each other and from the rim.
-const GAP: f64 = 24.0;
+pub(super) const GAP: f64 = 24.0;
 /// The width of the bar of colours with its numbers.
 const BAR: f64 = 76.0;
 /// Where the maps begin.
-const HEAD: f64 = 92.0;
+pub(super) const HEAD: f64 = 92.0;
 /// The most frames that are drawn: more hide what they frame.
-const FRAMES: usize = 400;
+pub(super) const FRAMES: usize = 400;
 
 /// The map as a PNG file; `name` is that of the images.
 ///
@@ -75,15 +75,16 @@ fn facts(judgement: &Judgement) -> String {
     } else {
         String::new()
     };
+    let reference = if judgement.comparison.is_some() { "reference" } else { "truth" };
     format!(
-        "standard errors from the truth, {} passes, tiles of {tile} × {tile} pixels; {} of {} tiles of all \
+        "standard errors from the {reference}, {} passes, tiles of {tile} × {tile} pixels; {} of {} tiles of all \
          sizes fail{dots}",
         judgement.passes, counts.fail, counts.tiles
     )
 }
 
 /// How many pixels in a row share a dot of the map.
-fn dot(judgement: &Judgement) -> usize {
+pub(super) fn dot(judgement: &Judgement) -> usize {
     let longest = judgement.size.rows.max(judgement.size.columns) as f64;
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a quotient of lengths
     let dot = (longest / LONGEST).ceil() as usize;
@@ -111,7 +112,7 @@ fn map(judgement: &Judgement, channel: usize, at: [f64; 2], size: [f64; 2]) -> I
     Image { at, size, columns, pixels }
 }
 
-fn border(sheet: &mut Sheet, [left, top]: Spot, [width, height]: Spot, ink: RGBAColor) {
+pub(super) fn border(sheet: &mut Sheet, [left, top]: Spot, [width, height]: Spot, ink: RGBAColor) {
     let (right, low) = (left + width, top + height);
     sheet.path(vec![[left, top], [right, top], [right, low], [left, low], [left, top]], 1.0, ink);
 }

@@ -1,0 +1,230 @@
+//! What two stacks show of a tile.
+//!
+//! ```text
+//! rows      the averages of a tile in every pass, of both stacks
+//! y         (x̄ − ȳ)/u of every pixel;  u the mean |ȳ| of the picture in that channel
+//! V         the mean of s_x²/N + s_y²/M over the pixels;   r the larger of both stacks'
+//! signs     d = x_k − y_k of pass k of both stacks, in every pixel
+//! P±, ε     as of `noisy`; where pixels depend on each other by Student's law of the averages of passes, with the
+//!           degrees of freedom of the smaller stack
+//! ```
+
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+use super::super::judgement::Tile;
+use super::super::picture::Stack;
+use super::super::tiles::{self, Part};
+use super::super::{ImageError, Wanted, estimate};
+use crate::judge::trial::MEAN_CAP;
+use crate::numeric::parallel;
+use crate::stats::estimated_variance::Estimate;
+use crate::stats::normal::{upper_quantile, upper_tail};
+use crate::stats::symmetric;
+use crate::stats::verdict::MISS;
+
+/// Sums over the passes of both stacks, for every value.
+pub(super) struct Evidence<'a> {
+    stacks: [&'a Stack; 2],
+    wanted: &'a Wanted,
+    is_free: bool,
+    rounding: f64,
+    units: Vec<f64>,
+    means: [Vec<f64>; 2],
+    variances: [Vec<f64>; 2],
+    /// The mean and the variance of all passes together: no order of the passes changes them.
+    together: [Vec<f64>; 2],
+}
+
+impl<'a> Evidence<'a> {
+    /// The sums; the tolerance is relative to the reference.
+    pub(super) fn new(
+        stack: &'a Stack,
+        reference: &'a Stack,
+        rounding: f64,
+        wanted: &'a Wanted,
+        is_free: bool,
+    ) -> Result<Self, ImageError> {
+        let size = stack.size;
+        let mut units = vec![0.0; size.channels];
+        let means = [stack, reference].map(mean);
+        for pixel in means[1].chunks_exact(size.channels) {
+            units
+                .iter_mut()
+                .zip(pixel)
+                .for_each(|(unit, x)| *unit += x.abs() / size.pixels() as f64);
+        }
+        if units.iter().all(|&unit| unit == 0.0) && wanted.tolerance.is_none() {
+            return Err(ImageError::NoUnit);
+        }
+        units.iter_mut().filter(|unit| **unit == 0.0).for_each(|unit| *unit = 1.0);
+        let rounding = rounding.max(stack.rounding).max(reference.rounding);
+        let variances =
+            [estimate::variances(stack)?.values, estimate::variances(reference)?.values];
+        let [n, m] = [stack.passes as f64, reference.passes as f64];
+        let all = |i: usize| (n * means[0][i] + m * means[1][i]) / (n + m);
+        let square = |i: usize| {
+            let apart = means[0][i] - means[1][i];
+            let within = (n - 1.0) * variances[0][i] + (m - 1.0) * variances[1][i];
+            (within + n * m / (n + m) * apart * apart) / (n + m - 1.0)
+        };
+        let values = 0..size.values();
+        let together = [values.clone().map(all).collect(), values.map(square).collect()];
+        let stacks = [stack, reference];
+        Ok(Self { stacks, wanted, is_free, rounding, units, means, variances, together })
+    }
+
+    fn passes(&self) -> [f64; 2] {
+        self.stacks.map(|stack| stack.passes as f64)
+    }
+
+    fn averages(&self, places: &[usize]) -> Vec<f64> {
+        let of = |stack: &'a Stack| (0..stack.passes).map(move |pass| stack.pass(pass));
+        let passes = of(self.stacks[0]).chain(of(self.stacks[1]));
+        passes.map(|x| places.iter().map(|&i| x[i]).sum::<f64>() / places.len() as f64).collect()
+    }
+
+    /// The averages of every part in every pass, pass after pass, and the prior variance of each part.
+    pub(super) fn rows(&self, parts: &[Part]) -> (Vec<f64>, Vec<f64>) {
+        let columns = parallel::map(parts, |part| {
+            let places: Vec<usize> = part.places(self.stacks[0]).collect();
+            let variance: f64 = places.iter().map(|&i| self.together[1][i]).sum();
+            (self.averages(&places), variance / (places.len() as f64).powi(2))
+        });
+        let passes = self.stacks[0].passes + self.stacks[1].passes;
+        let values = (0..passes).flat_map(|pass| columns.iter().map(move |(x, _)| x[pass]));
+        (values.collect(), columns.iter().map(|(_, prior)| *prior).collect())
+    }
+
+    /// How wide each pass of both stacks spreads about the mean of all, and the prior variance of that.
+    pub(super) fn spreads(&self) -> (Vec<f64>, f64) {
+        let [mean, variance] = &self.together;
+        let of = |x: &[f64]| {
+            let terms = x.iter().zip(mean).zip(variance).filter(|(_, v)| **v > 0.0);
+            terms.map(|((x, mean), v)| (x - mean).powi(2) / v).sum::<f64>()
+        };
+        let passes = |stack: &'a Stack| (0..stack.passes).map(move |pass| stack.pass(pass));
+        let values: Vec<f64> = self.stacks.into_iter().flat_map(passes).map(of).collect();
+        let n = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let prior = values.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
+        (values, prior)
+    }
+
+    /// The variance of the first stack over that of the second, over all values.
+    pub(super) fn spread(&self) -> Option<f64> {
+        let [one, other] = self.variances.each_ref().map(|v| v.iter().sum::<f64>());
+        Some(one / other).filter(|ratio| ratio.is_finite() && *ratio > 0.0)
+    }
+
+    /// All tiles; the first `count` are tiles, the others the whole. `p` are their p-values for equal distributions;
+    /// without these, signs give them.
+    pub(super) fn tiles(&self, parts: &[Part], count: usize, p: Option<&[f64]>) -> Vec<Tile> {
+        let q = self.stacks.map(|stack| estimate::all_q(&[stack], parts, None));
+        parallel::range(parts.len(), |i| {
+            let is_whole = i >= count;
+            let number = if is_whole { 1 } else { count };
+            let mut tile = self.tile(parts[i], [q[0][i], q[1][i]], number, is_whole);
+            tile.p = match p {
+                Some(p) => Some(p[i]),
+                None => self.by_signs(parts[i]),
+            };
+            tile
+        })
+    }
+
+    /// p by the signs of differences; `None` where pixels depend on each other.
+    fn by_signs(&self, part: Part) -> Option<f64> {
+        if !self.is_free && part.height * part.width > 1 {
+            return None;
+        }
+        let [one, other] = self.stacks;
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for pass in 0..one.passes.min(other.passes) {
+            let (x, y) = (one.pass(pass), other.pass(pass));
+            for i in part.places(one) {
+                let d = x[i] - y[i];
+                sum += d;
+                squares += d * d;
+            }
+        }
+        Some(symmetric::p_value(sum, squares))
+    }
+
+    fn tile(&self, part: Part, q: [f64; 2], count: usize, is_whole: bool) -> Tile {
+        let places: Vec<usize> = part.places(self.stacks[0]).collect();
+        let pixels = places.len() as f64;
+        let unit = self.units[part.channel];
+        let mean_of = |x: &[f64]| places.iter().map(|&i| x[i]).sum::<f64>() / pixels;
+        let [mean, truth] = self.means.each_ref().map(|x| mean_of(x));
+        let passes = self.passes();
+        let [first, second] = [0, 1].map(|k| mean_of(&self.variances[k]) / passes[k]);
+        let is_free = self.is_free || places.len() == 1;
+        let variance = first + second;
+        let error = if is_free { (variance / pixels).sqrt() } else { self.welch(&places) };
+        let mut found = tiles::empty(part, [truth, mean, error]);
+        let y: Vec<f64> =
+            places.iter().map(|&i| (self.means[0][i] - self.means[1][i]) / unit).collect();
+        let floor = self.rounding * truth.abs() / unit;
+        if variance == 0.0 {
+            let slack = 4.0 * floor + 1e-15;
+            if y.iter().all(|y| y.abs() <= slack) {
+                (found.tolerance, found.ln_p) = (Some(slack), [f64::INFINITY; 2]);
+            }
+            return found;
+        }
+        // How far either variance may be off: values that one stack did not see make its own look small.
+        let pairs = self.stacks.map(|stack| (stack.passes / 2) as f64 * pixels);
+        let relative = (q[0] / pairs[0]).max(q[1] / pairs[1]);
+        let estimate = Estimate { variance: variance / (unit * unit), error: relative };
+        if is_free && relative.is_finite() {
+            found.ln_e = estimate.ln_e(&y, floor);
+        }
+        let tail = 0.025 / count.max(1) as f64;
+        let degrees = passes[0].min(passes[1]) - 1.0;
+        let student = StudentsT::new(0.0, 1.0, degrees).ok();
+        let (bound, quantiles) = match (is_free, &student) {
+            (true, _) => {
+                let upper = estimate.upper(MISS).map(|v| (v / pixels).sqrt());
+                (upper, upper_quantile(MISS) + upper_quantile(tail))
+            }
+            (false, Some(law)) => {
+                let quantile = |tail: f64| -law.inverse_cdf(tail);
+                (Some(error / unit), quantile(MISS) + quantile(tail))
+            }
+            (false, None) => (None, 0.0),
+        };
+        if let Some(error) = bound.filter(|error| *error > 0.0) {
+            let cap = if is_whole { MEAN_CAP } else { f64::INFINITY };
+            let tolerance = self.wanted.tolerance.unwrap_or((quantiles * error).min(cap));
+            let off = (mean - truth) / unit;
+            let above = |z: f64| match (&student, is_free) {
+                (Some(law), false) => law.cdf(-z),
+                _ => upper_tail(z),
+            };
+            found.tolerance = Some(tolerance);
+            found.ln_p = [tolerance - off, tolerance + off].map(|room| -above(room / error).ln());
+        }
+        found
+    }
+
+    /// The standard error of x̄ − ȳ of averages of whole passes.
+    fn welch(&self, places: &[usize]) -> f64 {
+        let averages = self.averages(places);
+        let (one, other) = averages.split_at(self.stacks[0].passes);
+        let of = |x: &[f64]| {
+            let n = x.len() as f64;
+            let mean = x.iter().sum::<f64>() / n;
+            x.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0) / n
+        };
+        (of(one) + of(other)).sqrt()
+    }
+}
+
+fn mean(stack: &Stack) -> Vec<f64> {
+    let mut sums = vec![0.0; stack.size.values()];
+    for pass in 0..stack.passes {
+        sums.iter_mut().zip(stack.pass(pass)).for_each(|(sum, x)| *sum += x);
+    }
+    let n = stack.passes as f64;
+    sums.into_iter().map(|sum| sum / n).collect()
+}

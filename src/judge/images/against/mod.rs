@@ -1,0 +1,247 @@
+//! Two stacks against each other: whether a renderer has the means of a reference, both of them noisy.
+//!
+//! Two tests of each tile, and of the whole, with different hypotheses:
+//!
+//! ```text
+//! same law    the passes of both stacks have one distribution in every pixel: an exact level α
+//!             `stats::permutation` of passes, all tiles and the whole at one level; pixels may depend on each other
+//!             `stats::symmetric` signs of differences where the passes are too few for that; independent pixels
+//! same mean   distributions may differ (a better sampler, more samples a pass), means may not:
+//!             `stats::estimated_variance` of x̄ − ȳ over the pixels of a tile, V by both stacks, with the kurtosis that
+//!             they show; Holm at α
+//! ```
+//!
+//! A tile fails where both reject: if the laws are equal with chance α at most, whatever they are; if only the means are
+//! equal the level is nominal, since V̂ and x̄ − ȳ come from the same passes, and since rare values that neither stack
+//! drew may carry the mean (Bahadur and Savage 1956). With `is_same_law` the first test alone decides, and equal
+//! variances are tested, too.
+//!
+//! Source of the question: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
+//! t-test*, Journal of Computer Graphics Techniques 9 (2020).
+
+mod evidence;
+mod verdict;
+
+use self::evidence::Evidence;
+use super::judgement::{Comparison, Counts, Dependence, Judgement, Tile};
+use super::{ImageError, LISTED, Stack, Wanted, claim, estimate, same, tiles};
+use super::{neighbours_of, not_finite, order_of, worst};
+use crate::judge::claim::ROUNDING;
+use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
+use crate::stats::permutation::{Groups, distinct};
+use crate::stats::verdict::{MISS, Verdict};
+
+/// What is claimed of two stacks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Terms {
+    /// Whether both have one distribution in each pixel, and not only one mean.
+    pub is_same_law: bool,
+    /// What rounding may add to a value, relative to its mean; at least that of the files.
+    pub rounding: f64,
+}
+
+impl Default for Terms {
+    fn default() -> Self {
+        Self { is_same_law: false, rounding: ROUNDING }
+    }
+}
+
+/// The shares of α where variances are compared, too: tiles with the whole, and the variance.
+const SHARES: [f64; 2] = [0.8, 0.2];
+
+/// Judges a stack by a reference.
+///
+/// ```
+/// use trueflight::judge::images::against::{Terms, compare};
+/// use trueflight::judge::images::{Size, Stack, Wanted};
+/// use trueflight::stats::verdict::Verdict;
+///
+/// // 16 passes of 16 × 16 pixels, each the mean of four fair coins, times a factor.
+/// let size = Size { rows: 16, columns: 16, channels: 1 };
+/// let stack = |seed: u64, factor: f64| {
+///     let coins = (0..16 * size.pixels() as u64).map(|number| {
+///         let bits = (seed << 32 | number).wrapping_mul(0x9e37_79b9_7f4a_7c15); // SplitMix64
+///         let bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+///         let bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+///         factor * f64::from((bits >> 60).count_ones()) / 4.0
+///     });
+///     Stack::new(16, size, coins.collect())
+/// };
+/// let (reference, terms, wanted) = (stack(1, 1.0)?, Terms::default(), Wanted::default());
+/// assert_ne!(compare(&stack(2, 1.0)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
+/// assert_eq!(compare(&stack(2, 1.2)?, &reference, terms, &wanted)?.verdict, Verdict::Fail);
+/// # Ok::<(), trueflight::judge::images::ImageError>(())
+/// ```
+///
+/// # Errors
+///
+/// What is wanted makes no sense, the sizes differ, or a value of the reference is no number.
+pub fn compare(
+    stack: &Stack,
+    reference: &Stack,
+    terms: Terms,
+    wanted: &Wanted,
+) -> Result<Judgement, ImageError> {
+    wanted.check()?;
+    check(stack, reference, terms)?;
+    let (size, alpha, tile) = (stack.size, wanted.alpha, wanted.tile(stack));
+    let (refuted_by, refuting) = not_finite(stack);
+    let neighbours = either([stack, reference].map(|stack| neighbours_of(stack, alpha)));
+    let is_free = !neighbours.is_refuted();
+    let is_flat = [stack, reference].iter().all(|stack| super::repeats::is_one_image(stack));
+    let of = |stack| order_of(stack, is_flat, alpha);
+    let ((one, repeated), (mut other, _)) = (of(stack), of(reference));
+    if other.is_refuted() {
+        other.reason = format!("the reference: {}", other.reason);
+    }
+    let mut order = either([one, other]);
+    if let Some([p, q]) = same::shared(stack, reference) {
+        order.reason = format!(
+            "pass {p} and pass {q} of the reference share values, counted from 0: two stacks of the same passes say \
+             nothing; give each stack seeds of its own"
+        );
+    }
+    let (mut parts, whole) = (tiles::parts(size, tile), tiles::wholes(size));
+    let count = parts.len();
+    parts.extend(whole);
+    let is_judged = refuting == 0 && !order.is_refuted();
+    let mut comparison = Comparison {
+        passes: reference.passes,
+        method: "none",
+        permutations: 0,
+        p: 1.0,
+        is_same_law: terms.is_same_law,
+        spread: None,
+        spread_p: 1.0,
+        kurtosis: None,
+    };
+    let mut all = Vec::new();
+    let mut differing = 0;
+    if is_judged {
+        let evidence = Evidence::new(stack, reference, terms.rounding, wanted, is_free)?;
+        let smallest: Vec<_> = parts.iter().copied().filter(|part| part.size == tile).collect();
+        let q = [stack, reference].map(|stack| estimate::all_q(&[stack], &smallest, None));
+        let q = q.iter().flatten().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
+        comparison.kurtosis = (q > 0.0).then(|| estimate::kurtosis(q));
+        let rows = [stack.passes, reference.passes];
+        let alpha = if terms.is_same_law { SHARES[0] * alpha } else { alpha };
+        let enough = distinct(rows[0], rows[1]) >= 2.0 / alpha;
+        let adjusted;
+        if enough {
+            let (values, prior) = evidence.rows(&parts);
+            let found = Groups::new(values, rows, &prior).compare(alpha, 1);
+            all = evidence.tiles(&parts, count, Some(&found.p));
+            (comparison.method, comparison.permutations) = ("permutation", found.deals);
+            adjusted = found.adjusted;
+            let (values, prior) = evidence.spreads();
+            let spread = Groups::new(values, rows, &[prior]).compare(SHARES[1] * wanted.alpha, 2);
+            comparison.spread_p = spread.p[0];
+        } else {
+            all = evidence.tiles(&parts, count, None);
+            let times = all.len() as f64;
+            adjusted =
+                all.iter().map(|tile| tile.p.map_or(1.0, |p| (times * p).min(1.0))).collect();
+            comparison.method = if is_free { "signs" } else { "none" };
+        }
+        comparison.spread = evidence.spread();
+        comparison.p = adjusted.iter().copied().fold(1.0, f64::min);
+        differing = decide(&mut all, &adjusted, alpha, wanted.alpha, terms.is_same_law);
+    }
+    let whole = all.split_off(count.min(all.len()));
+    let of = |verdict| all.iter().filter(|tile| tile.verdict == verdict).count();
+    let counts = Counts {
+        tiles: all.len(),
+        pass: of(Verdict::Pass),
+        fail: of(Verdict::Fail),
+        listed: all.iter().filter(|tile| tile.is_listed).count(),
+    };
+    let mut judgement = Judgement {
+        verdict: Verdict::Inconclusive,
+        reason: String::new(),
+        guarantees: Vec::new(),
+        alpha,
+        beta: MISS,
+        listed_rate: LISTED,
+        passes: stack.passes,
+        size,
+        tile,
+        refuted_by,
+        refuting,
+        order,
+        neighbours,
+        repeated,
+        variance: None,
+        estimate: None,
+        truth_passes: None,
+        comparison: Some(comparison),
+        worst: worst(&all),
+        whole,
+        tiles: all,
+        counts,
+    };
+    verdict::decide(&mut judgement, differing);
+    Ok(judgement)
+}
+
+fn check(stack: &Stack, reference: &Stack, terms: Terms) -> Result<(), ImageError> {
+    if reference.size != stack.size {
+        return Err(ImageError::Differ {
+            file: "the stack of the reference".to_owned(),
+            found: reference.size,
+            other: "a pass".to_owned(),
+            expected: stack.size,
+        });
+    }
+    if !(terms.rounding >= 0.0 && terms.rounding.is_finite()) {
+        let (what, value) = ("rounding", terms.rounding);
+        return Err(ImageError::Number { what, value, wanted: "a finite number, 0 or more" });
+    }
+    let passes = 0..reference.passes;
+    passes.into_iter().try_for_each(|pass| {
+        claim::check(
+            "reference",
+            stack.size,
+            reference.pass(pass),
+            &f64::is_finite,
+            "a finite number",
+        )
+    })
+}
+
+/// The one that was found, if any.
+fn either([one, other]: [Dependence; 2]) -> Dependence {
+    if other.is_refuted() && !one.is_refuted() || other.evidence > one.evidence && !one.is_refuted()
+    {
+        other
+    } else {
+        one
+    }
+}
+
+/// Fails what both tests reject, and returns how many are rejected for equal distributions alone.
+fn decide(
+    tiles: &mut [Tile],
+    adjusted: &[f64],
+    level: f64,
+    alpha: f64,
+    is_same_law: bool,
+) -> usize {
+    let ln_e: Vec<f64> = tiles.iter().map(|tile| tile.ln_e).collect();
+    let p: Vec<f64> = ln_e.iter().map(|ln_e| (-ln_e).exp().min(1.0)).collect();
+    let is_off = holm(&p, tiles.len(), alpha);
+    let mut differing = 0;
+    for ((tile, &adjusted), is_off) in tiles.iter_mut().zip(adjusted).zip(is_off) {
+        let has_passed = tile.ln_p.iter().all(|&ln_p| ln_p >= -MISS.ln());
+        let is_different = adjusted <= level;
+        differing += usize::from(is_different && !is_off && !is_same_law);
+        tile.verdict = match is_different {
+            true if is_off || is_same_law => Verdict::Fail,
+            false if has_passed => Verdict::Pass,
+            _ => Verdict::Inconclusive,
+        };
+    }
+    for index in e_benjamini_hochberg(&ln_e, LISTED) {
+        tiles[index].is_listed = true;
+    }
+    differing
+}

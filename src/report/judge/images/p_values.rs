@@ -1,0 +1,174 @@
+//! `p-values.png`: the p-value of each tile, as a map and as a histogram.
+//!
+//! Source of both pictures: A. Jung, J. Hanika, C. Dachsbacher, *Detecting Bias in Monte Carlo Renderers using Welch's
+//! t-test*, Journal of Computer Graphics Techniques 9 (2020). Here the p-values are those of permutations where two
+//! stacks are compared, which are exact for equal laws; else those of z by the normal law.
+
+use super::z_map::{FRAMES, GAP, HEAD, LONGEST, border, dot};
+use crate::harness::record::Verdict;
+use crate::judge::images::Judgement;
+use crate::judge::images::judgement::Tile;
+use crate::report::plots::font::{Typeface, fit};
+use crate::report::plots::paint;
+use crate::report::plots::sheet::{Align, Image, Sheet};
+use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
+use crate::report::render::palette;
+
+/// The bins of the histogram.
+const BINS: usize = 20;
+/// The width of the histogram with its numbers, and the height of its panel.
+const WIDTH: f64 = 420.0;
+const HEIGHT: f64 = 260.0;
+/// p-values up to this are red on the map.
+const SMALL: f64 = 1e-3;
+/// The red of small p-values.
+const RED: [u8; 3] = [0xB2, 0x18, 0x2B];
+/// A tile without a p-value.
+const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
+
+/// The pictures as one PNG file; `name` is that of the images.
+///
+/// # Errors
+///
+/// In words, where the painter gives up.
+pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
+    let face = Typeface::load().map_err(|error| error.to_string())?;
+    let (rgb, size) = paint::pixels_of(&compose(judgement, name, &face))?;
+    palette::encode(&rgb, size).map_err(|error| error.to_string())
+}
+
+/// p of the smallest tiles, which do not overlap.
+fn smallest(judgement: &Judgement) -> impl Iterator<Item = &Tile> {
+    judgement.tiles.iter().filter(|tile| tile.size == judgement.tile)
+}
+
+fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
+    let size = judgement.size;
+    let scale = LONGEST / size.rows.max(size.columns) as f64;
+    let [width, height] = [size.columns, size.rows].map(|n| n as f64 * scale);
+    let across = size.channels as f64;
+    let all = GAP + across * (width + GAP) + WIDTH + GAP;
+    let mut sheet = Sheet::new(all, HEAD + height.max(HEIGHT + 70.0) + 24.0);
+    let room = all - 2.0 * GAP;
+    let source = match judgement.comparison.as_ref().map(|found| found.method) {
+        Some("permutation") => "by permutations of the passes: uniform if both stacks have one law",
+        Some(_) => "bounds by signs of differences: rather too large",
+        None => "of z by the normal law: about uniform if all is well, with many values a tile",
+    };
+    let facts = format!("p-values of tiles of {0} × {0} pixels, {source}", judgement.tile);
+    let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a frame: it fails. No pattern should be seen";
+    for (y, text, em, colour) in [
+        (24.0, format!("{name}: {}", judgement.verdict.word()), 16.0, DARK),
+        (46.0, facts, 11.5, GREY),
+        (64.0, legend.to_owned(), 11.5, GREY),
+    ] {
+        sheet.text([GAP, y], fit(face, &text, em, room), em, colour, Align::Start);
+    }
+    for channel in 0..size.channels {
+        let left = GAP + channel as f64 * (width + GAP);
+        if size.channels > 1 {
+            let middle = [left + 0.5 * width, HEAD - 9.0];
+            sheet.text(middle, format!("channel {channel}"), 11.5, DARK, Align::Middle);
+        }
+        sheet.image(map(judgement, channel, [left, HEAD], [width, height]));
+        border(&mut sheet, [left, HEAD], [width, height], GREY);
+        let fails = |tile: &&Tile| tile.channel == channel && tile.verdict == Verdict::Fail;
+        for tile in judgement.tiles.iter().filter(fails).take(FRAMES) {
+            let at = [left + tile.column as f64 * scale, HEAD + tile.row as f64 * scale];
+            let size = [tile.width, tile.height].map(|n| n as f64 * scale);
+            border(&mut sheet, at, size, ink(RED[0], RED[1], RED[2]));
+        }
+    }
+    histogram(&mut sheet, judgement, face, GAP + across * (width + GAP));
+    sheet
+}
+
+fn map(judgement: &Judgement, channel: usize, at: [f64; 2], size: [f64; 2]) -> Image {
+    let dot = dot(judgement);
+    let columns = judgement.size.columns.div_ceil(dot);
+    let mut shown = vec![f64::NAN; columns * judgement.size.rows.div_ceil(dot)];
+    for tile in smallest(judgement).filter(|tile| tile.channel == channel) {
+        let Some(p) = tile.p else { continue };
+        for row in tile.row / dot..=(tile.row + tile.height - 1) / dot {
+            for column in tile.column / dot..=(tile.column + tile.width - 1) / dot {
+                let shown = &mut shown[row * columns + column];
+                // The least of all pixels of a dot.
+                *shown = shown.min(p);
+            }
+        }
+    }
+    let pixels = shown.iter().map(|&p| colour(p)).collect();
+    Image { at, size, columns, pixels }
+}
+
+fn colour(p: f64) -> [u8; 3] {
+    if p.is_nan() {
+        return NONE;
+    }
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 0 to 255
+    let grey = (255.0 * p.clamp(0.0, 1.0)).round() as u8;
+    if p <= SMALL { RED } else { [grey; 3] }
+}
+
+/// How many tiles have a p in each of 20 bins.
+fn counts(judgement: &Judgement) -> [usize; BINS] {
+    let mut counts = [0; BINS];
+    for p in smallest(judgement).filter_map(|tile| tile.p) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 0 to 20
+        let bin = (p * BINS as f64) as usize;
+        counts[bin.min(BINS - 1)] += 1;
+    }
+    counts
+}
+
+fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f64) {
+    let counts = counts(judgement);
+    let all: usize = counts.iter().sum();
+    let expected = all as f64 / BINS as f64;
+    // Three standard deviations of a binomial count.
+    let band = 3.0 * (expected * (1.0 - 1.0 / BINS as f64)).sqrt();
+    let most = counts.iter().map(|&n| n as f64).fold(expected + band, f64::max).max(1.0);
+    let (x0, width, low) = (left + 44.0, WIDTH - 56.0, HEAD + HEIGHT);
+    let x = |share: f64| x0 + share * width;
+    let y = |n: f64| low - (HEIGHT - 8.0) * n / most;
+    let area = |[a, b]: [f64; 2], [c, d]: [f64; 2]| vec![[a, c], [b, c], [b, d], [a, d]];
+    let shade = area([x(0.0), x(1.0)], [y((expected - band).max(0.0)), y(expected + band)]);
+    sheet.area(shade, ink(0xE0, 0xE0, 0xE0));
+    for (bin, &count) in counts.iter().enumerate() {
+        let ends = [bin, bin + 1].map(|k| x(k as f64 / BINS as f64));
+        let corners = area([ends[0] + 1.0, ends[1] - 1.0], [y(0.0), y(count as f64)]);
+        sheet.area(corners, COLOURS[0]);
+    }
+    sheet.path(vec![[x(0.0), y(expected)], [x(1.0), y(expected)]], 1.5, COLOURS[1]);
+    border(sheet, [x0, HEAD], [width, HEIGHT], GREY);
+    for (share, text) in [(0.0, "0"), (0.25, "0.25"), (0.5, "0.5"), (0.75, "0.75"), (1.0, "1")] {
+        sheet.text([x(share), low + 12.0], text, 10.5, DARK, Align::Middle);
+    }
+    sheet.text([x(0.5), low + 28.0], "p-value", 11.5, DARK, Align::Middle);
+    for n in [0.0, expected, most] {
+        let text = format!("{n:.0}");
+        sheet.text([x0 - 6.0, y(n)], text, 10.5, DARK, Align::End);
+    }
+    for (line, text) in [
+        format!("{all} tiles; line and band: uniform, ± 3 standard deviations."),
+        "Uniform: nothing was found. A peak at 0: tiles are off.".to_owned(),
+        "A peak at 1: less noise than the variance says, or passes shared.".to_owned(),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let at = [left + 8.0, low + 46.0 + 15.0 * line as f64];
+        sheet.text(at, fit(face, &text, 10.5, WIDTH - 8.0), 10.5, GREY, Align::Start);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn colours_tell_small_p_values_and_missing_ones() {
+        assert_eq!((colour(1e-4), colour(1.0), colour(f64::NAN)), (RED, [255; 3], NONE));
+        assert_eq!(colour(0.5), [128; 3]);
+    }
+}
