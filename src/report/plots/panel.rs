@@ -258,7 +258,9 @@ mod tests {
         let mut sheet = Sheet::new(90.0, 90.0);
         for low in odd {
             for value in odd {
-                odd.map(|high| panel().bar(&mut sheet, 45.0, [low, value, high], (3.0, 1.0, DARK)));
+                for high in odd {
+                    panel().bar(&mut sheet, 45.0, [low, value, high], (3.0, 1.0, DARK));
+                }
             }
         }
         assert!(!sheet.shapes.is_empty());
