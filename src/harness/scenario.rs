@@ -28,8 +28,8 @@ pub struct Scenario {
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
     variants: Option<Variants>,
-    /// Whether the answer is about a ray.
-    has_ray: bool,
+    /// What the problem asks of the ray.
+    ray: RayNeed,
 }
 
 /// Reads the scenario at a value of the sweep; the error lists the mistakes.
@@ -61,8 +61,8 @@ impl Scenario {
             estimators = Estimators::read(settings, body, reader, defaults, &accept);
         });
         let (problem, estimators, body) = (problem?, estimators?, body?.clone());
-        let (meshes, has_ray) = (OnceLock::new(), kind.ray != RayNeed::Nothing);
-        Some(Self { body, problem, meshes, estimators, variants: None, has_ray })
+        let (meshes, ray) = (OnceLock::new(), kind.ray);
+        Some(Self { body, problem, meshes, estimators, variants: None, ray })
     }
 
     /// The same along a sweep of the medium, with what is known at the values of the case.
@@ -102,7 +102,7 @@ impl Scenario {
 
     /// Doubts about the medium and its ray, a sentence each.
     pub fn notes(&self) -> Vec<String> {
-        if self.has_ray { misses::notes(&self.body) } else { Vec::new() }
+        misses::notes(&self.body, self.ray)
     }
 
     /// The field's name in the catalogue.

@@ -206,7 +206,13 @@ fn read_npy(mut bytes: &[u8], axes: Axes) -> Result<Samples, Unreadable> {
         let shape = header.written_shape();
         return wrong(format!("the array has the shape {shape}, not three axes"), ARRAY);
     };
-    let shape = sizes([a, b, c])?;
+    let Ok(shape) = sizes([a, b, c]) else {
+        let shape = header.written_shape();
+        return wrong(
+            format!("the array has the shape {shape}"),
+            format!("a grid has from 1 to {MOST_SAMPLES} samples"),
+        );
+    };
     let Some(number) = Number::named(&header.kind) else {
         return wrong(format!("the samples have the type {}", header.kind), ARRAY);
     };

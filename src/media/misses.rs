@@ -1,17 +1,27 @@
 //! Rays and spans that meet nothing of their medium, said in words: every estimator answers them rightly, and tests
 //! nothing.
 
+use super::body::RayNeed;
 use super::{Body, Medium, Volume};
 use crate::catalogue::digits::short;
 use crate::catalogue::number;
 use crate::geometry::{Bounds, Point, Ray};
 
-/// Doubts about a body and its ray, a sentence each, every sentence once.
-pub fn notes(body: &Body) -> Vec<String> {
+/// Doubts about a body and its ray, a sentence each, every sentence once. A problem that needs a line alone follows it as
+/// far as the volume goes.
+pub fn notes(body: &Body, need: RayNeed) -> Vec<String> {
     let mut notes: Vec<String> = Vec::new();
     for channel in body.channels() {
         let note = match channel {
-            Body::Volume { volume, ray, .. } => of_volume(&**volume, ray, &channel.medium()),
+            Body::Volume { .. } if need == RayNeed::Nothing => None,
+            Body::Volume { name, volume, ray } => {
+                let is_bounded = volume.bounds().enclosing_box().is_some();
+                let length =
+                    if need == RayNeed::Line && is_bounded { f64::MAX } else { ray.length };
+                let ray = Ray { length, ..*ray };
+                let (name, volume) = (name.clone(), volume.clone());
+                of_volume(&*volume.clone(), &ray, &Body::Volume { name, volume, ray }.medium())
+            }
             one => of_line(&one.medium()),
         };
         notes.extend(note.filter(|note| !notes.contains(note)));
@@ -56,8 +66,8 @@ fn is_nothing(medium: &Medium) -> bool {
     !support.is_empty() && medium.optical_depth(support).value == 0.0
 }
 
-/// The bounds in words.
-fn place(bounds: Bounds) -> String {
+/// Bounds in words, as in "box is [0, 0, 0] to [1, 1, 1]".
+pub fn place(bounds: Bounds) -> String {
     let point = |point: Point| format!("[{}]", point.0.map(|x| short(x, 6)).join(", "));
     match bounds {
         Bounds::Everywhere => "bounds are nowhere".to_owned(),

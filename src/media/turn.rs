@@ -45,10 +45,11 @@ impl Turn {
         self.rows.map(|row| dot(row, direction))
     }
 
-    /// The numbers that make a point's lattice coordinates: the rounding of these is theirs.
+    /// The numbers that make a point's lattice coordinates: three products, each of a difference, and three sums are rounded,
+    /// by 5/2 of a unit each, and half of that is what the reader of a distance counts.
     pub(super) fn terms(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
         let far = [0, 1, 2].map(|j| (point[j] - self.origin[j]).abs());
-        self.rows.map(|row| 3.0 * dot(row.map(f64::abs), far) + shift)
+        self.rows.map(|row| 1.5 * dot(row.map(f64::abs), far) + shift)
     }
 
     /// A value at a place of the lattice; 0 outside it.

@@ -29,7 +29,7 @@ use super::{Problem, Scene};
 use crate::catalogue::Settings;
 use crate::geometry::{Point, Ray};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium};
+use crate::media::{Body, Medium, misses};
 
 /// The radiance along a ray into a furnace.
 #[derive(Clone)]
@@ -54,7 +54,11 @@ impl Problem for Furnace {
         let inside = scene.volume.bounds().clip(&onward);
         if inside.is_empty() {
             let help = "turn it, or move its origin: what misses the volume tests nothing";
-            settings.fault("ray", "the ray misses the volume", help);
+            let found = format!(
+                "the ray misses the volume, whose {}",
+                misses::place(scene.volume.bounds())
+            );
+            settings.fault("ray", found, help);
             return None;
         }
         let entry = ray.at(inside.from);

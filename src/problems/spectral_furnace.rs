@@ -28,7 +28,7 @@ use super::Problem;
 use crate::catalogue::{Domain, Settings};
 use crate::geometry::{Bounds, Point};
 use crate::media::body::MOST_CHANNELS;
-use crate::media::{Body, Medium, Volume};
+use crate::media::{Body, Medium, Volume, misses};
 use crate::phase::Phase;
 
 /// The values of one draw.
@@ -127,7 +127,8 @@ impl Problem for SpectralFurnace {
         let inside = bounds.clip(ray);
         if inside.is_empty() {
             let help = "turn it, or move its origin: what misses the volume tests nothing";
-            settings.fault("ray", "the ray misses the volume", help);
+            let found = format!("the ray misses the volume, whose {}", misses::place(bounds));
+            settings.fault("ray", found, help);
             return None;
         }
         let media = bodies.iter().map(Body::medium).collect();

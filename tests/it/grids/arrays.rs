@@ -60,8 +60,8 @@ fn wrong_arrays_are_refused() {
         (npy("<i4", "(1, 1, 1)", "False", &(-3_i32).to_le_bytes()), "(0, 0, 0) is -3"),
         (npy("<c8", "(1, 1, 2)", "False", &four), "<c8"),
         (npy("|O", "(1, 1, 2)", "False", &four), "|O"),
-        (npy("<f4", "(1000000000, 1000000000, 1000000000)", "False", &four), "samples"),
-        (npy("<f4", "(0, 2, 2)", "False", &[]), "2 × 2 × 0"),
+        (npy("<f4", "(1000000000, 1000000000, 1000000000)", "False", &four), "shape (1000000000, "),
+        (npy("<f4", "(0, 2, 2)", "False", &[]), "shape (0, 2, 2)"),
         (b"no such thing".to_vec(), "header"),
         (whole[..whole.len() - 3].to_vec(), "shorter"),
         ([&whole[..], &[0]].concat(), "longer"),
@@ -106,7 +106,7 @@ fn settings_of_other_formats_are_refused_with_their_cure() {
     let case = |settings: &str| {
         format!(
             "title = \"t\"\n[problem.transmittance]\nvolume.grid = {{ {settings} }}\n\
-             ray = {{ origin = [0, 0, 0], direction = [1, 0, 0], length = 1 }}\nestimators = [{{ analog-free-flight = {{}} }}]"
+             ray = {{ origin = [0, 0, 0], direction = [1, 0, 0], length = 1 }}\nestimators = [{{ closed-form = {{}} }}]"
         )
     };
     let there = data("field/23-npy-axes/zyx.npy").display().to_string();

@@ -132,7 +132,7 @@ fn what_cannot_be_read_is_one_error_each_and_exit_code_2() {
     write("a.nvdb", b"NanoVDB0");
     write("a.pbrt", b"Shape \"sphere\"");
     write("a.exr", b"v/1\x01");
-    write("a.pfm", b"P6");
+    write("a.pfm", b"P6\n1 1\n255\n");
     write("a.csv", b"");
     write("a.f64", b"1234");
     write("a.xyz", b"1");

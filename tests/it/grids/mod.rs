@@ -74,7 +74,7 @@ fn estimators_pass_in_a_turned_grid() {
             volume.grid = {{ file = \"{0}/{file}\", extinction = 0.5 }}
             ray = {{ origin = [4, -2.5, 2], direction = [0.1, 0.3, 0.4], length = 9 }}
             sampling.constant.value = 2
-            estimators = [{{ ratio = {{}} }}, {{ woodcock = {{}} }}, {{ analog-free-flight = {{}} }}]",
+            estimators = [{{ ratio = {{}} }}, {{ woodcock = {{}} }}, {{ closed-form = {{}} }}]",
             folder.display()
         )
     };

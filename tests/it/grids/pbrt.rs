@@ -98,8 +98,13 @@ fn wrong_scenes_are_refused() {
         ("0.5 1", "0.5 x", "line 7: \"x\" is not a number"),
         ("0.5 1", "0.5 -1", "(1, 0, 0) is -1"),
         ("0.5 1", "0.5 nan", "is NaN"),
-        (".25 ]", ".25", "a list does not end"),
-        ("\"float g\" 0", "\"float g", "a text does not end"),
+        (".25 ]", ".25", "\"float g\" is not a number"),
+        (
+            ".25 ] \"float g\" 0\nShape \"sphere\" \"float radius\" 1\n",
+            ".25",
+            "a list does not end",
+        ),
+        ("\"float radius\" 1", "\"float radius", "a text does not end"),
         ("[ 2 1 4 ]", "[ 2 1 ]", "without three numbers"),
         ("WorldBegin", "WorldBegin Rotate 30 0 0 1", "stands under Rotate"),
         ("WorldBegin", "WorldBegin Translate 1 2", "lacks one of its three numbers"),
@@ -127,7 +132,7 @@ fn a_grid_of_pbrt_is_zero_beyond_its_box() {
     let there = folder.path().join("a.pbrt");
     let text = format!(
         "title = \"t\"\n[problem.transmittance]\nvolume.grid = {{ file = \"{}\" }}\n\
-         ray = {{ origin = [-1, 0.5, 1], direction = [1, 0, 0], length = 9 }}\nestimators = [{{ analog-free-flight = {{}} }}]",
+         ray = {{ origin = [-1, 0.5, 1], direction = [1, 0, 0], length = 9 }}\nestimators = [{{ closed-form = {{}} }}]",
         there.display()
     );
     // Along x at the height of the first row: 0 at −0.5, 0.5 at 0.5, 1 at 1.5, 0 at 2.5; the box is from 0 to 2.
