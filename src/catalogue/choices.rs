@@ -130,7 +130,7 @@ impl<'a> Settings<'a> {
         self.choice_among(names, names)
     }
 
-    /// The same where some names are known only to say what is wrong with them: hints list what is `offered`.
+    /// A table with exactly one key, one of `names`; hints list only the names that are `offered`.
     pub(crate) fn choice_among(
         &self,
         names: &[String],
@@ -179,7 +179,7 @@ impl<'a> Settings<'a> {
         self.chosen_among(key, names, names)
     }
 
-    /// The same where hints list what is `offered` of the names.
+    /// A choice that must be there; hints list only the names that are `offered`.
     pub fn chosen_among(
         &self,
         key: &'static str,
@@ -212,7 +212,7 @@ impl<'a> Settings<'a> {
         }
     }
 
-    /// How a key is written with the table that it belongs to, as in `phase.henyey-greenstein = { g = … }`.
+    /// A key with the table that it belongs to, as in `phase.henyey-greenstein = { g = … }`.
     fn in_full(&self, key: &str) -> String {
         let mut parts = self.path.rsplit('.');
         let (name, owner) = (parts.next().unwrap_or_default(), parts.next().unwrap_or_default());

@@ -27,17 +27,17 @@ pub(super) type Unsuitable = (String, &'static str);
 /// The size of a case's own grids, and whether lookups take the nearest sample.
 pub(super) type OwnGrid = ([usize; 3], bool);
 
-/// What a case is read with.
+/// The options of one export.
 pub(super) struct Reader<'a> {
     /// The name of the case.
     pub name: String,
-    /// Who renders it.
+    /// The renderer.
     pub target: Target,
-    /// How it is written.
+    /// The form of the scene.
     pub wishes: &'a Wishes,
 }
 
-/// Where a medium is, and σ_t of each channel, all of them homogeneous or all of them sampled.
+/// The place of a medium, and σ_t of each channel, all of them homogeneous or all of them sampled.
 pub(super) struct Fields {
     /// The box or ball.
     pub shape: Bounds,
@@ -77,7 +77,7 @@ impl Reader<'_> {
         Ok(numbers.iter().filter_map(|number| all[number - 1].take()).collect())
     }
 
-    /// What is said of a scene's channels and its medium.
+    /// Notes on a scene's channels and its medium.
     pub fn remarks(&self, scene: &Scene) -> Vec<String> {
         let mut remarks = Vec::new();
         if let Some(numbers) = &self.wishes.channels {
@@ -181,7 +181,7 @@ pub(super) fn unread() -> Unsuitable {
     ("it cannot be read".into(), "run `trueflight plan` on it")
 }
 
-/// A phase function whose number is of single precision.
+/// A phase function with its number in single precision.
 pub(super) fn lobe(phase: Phase) -> Phase {
     match phase {
         Phase::HenyeyGreenstein(lobe) => {
@@ -208,7 +208,7 @@ fn rounded(Aabb { low, high }: Aabb) -> Aabb {
     Aabb { low: Point(low.0.map(single)), high: Point(high.0.map(single)) }
 }
 
-/// How many cubic cells a box has along each axis, with so many along the longest.
+/// The numbers of cubic cells of a box along each axis, `most` of them along the longest.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 1 to `most`
 fn cells(bounds: Aabb, most: usize) -> [usize; 3] {
     let edges: [f64; 3] = std::array::from_fn(|axis| bounds.high.0[axis] - bounds.low.0[axis]);

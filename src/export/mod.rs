@@ -69,7 +69,7 @@ pub struct Exported {
     pub truth: Truth,
 }
 
-/// How a case becomes a scene.
+/// Options of an export.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Wishes {
     /// The number of cells along the longest side of a field that is sampled; without it 32 in space and 256 along a

@@ -14,7 +14,7 @@ pub struct Scene {
     pub problem: &'static str,
     /// Who renders it.
     pub target: Target,
-    /// Where the medium is: a box or a ball.
+    /// The box or ball that the medium fills.
     pub shape: Bounds,
     /// The medium of each channel, 1 to 3: one where all colours are alike.
     pub channels: Vec<Channel>,
@@ -120,7 +120,7 @@ impl Scene {
         grids
     }
 
-    /// Whether the renderer is told that the medium is homogeneous.
+    /// Whether the scene's medium is a homogeneous one to the renderer.
     pub fn is_homogeneous(&self) -> bool {
         self.grids().is_empty() && !self.is_heterogeneous
     }
@@ -146,7 +146,7 @@ impl Scene {
         self.channels.iter().map(|channel| channel.albedo).collect()
     }
 
-    /// The same with one channel alone.
+    /// The scene of one channel alone.
     #[must_use]
     pub fn of_channel(&self, index: usize) -> Self {
         Self { channels: vec![self.channels[index].clone()], ..self.clone() }

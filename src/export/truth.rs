@@ -33,7 +33,7 @@ use crate::theory::{self, Prediction};
 
 /// The name of the file.
 pub const FILE: &str = "truth.json";
-/// What its keys mean, where all colours are alike, and where questions have channels.
+/// The versions of the file without channels and with them.
 pub const VERSIONS: [u32; 2] = [1, 2];
 /// Rounding errors of single precision that are allowed for each of the mean collisions of a straight ray.
 const ROUNDINGS: f64 = 16.0;
@@ -179,8 +179,8 @@ pub fn of(scene: &Scene, prediction: &Prediction) -> Truth {
     }
 }
 
-/// What theory says of a picture's channel: it lists the channels of one quantity after those of another, and leaves out
-/// what is 0 whatever happens.
+/// The predicted channel of a picture. Theory lists the channels of one quantity after those of another, and omits
+/// channels that are always 0.
 fn channel_of<'a>(
     prediction: &'a Prediction,
     scene: &Scene,

@@ -103,7 +103,7 @@ pub fn read_kernel(settings: &Settings) -> Option<Order> {
     settings.word_or("kernel", &words, Order::default().word()).and_then(Order::of)
 }
 
-/// What `sampling` and `control` take.
+/// The forms of `sampling` and `control`, for messages.
 const RECIPE: &str = "a number, a name in quotes, or a table, as in { constant = { value = … } }";
 
 /// Reads a recipe, if the file has it; `None` after a mistake.

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `sampling = 2`, `sampling.constant = 2` | `sampling.constant.value = 2`; likewise `control` |
 //! | `medium = 2`, `medium.constant = 2` | `medium.constant.extinction = 2`; likewise `volume` |
+//! | `volume = "cloud.vol"`, a name with a dot | `volume.grid.file = "cloud.vol"` |
 //! | `sampling = [1, 2]`, `medium = [1, 2]` | a list with such a table for each channel |
 //! | `sweep.WHAT = [1, 2, 3]` | `sweep.WHAT.values = [1, 2, 3]`, for all that is swept |
 //! | `estimators = "ratio"` | `estimators = ["ratio"]` |
@@ -16,7 +17,7 @@ use std::mem;
 
 use crate::catalogue::{Entry, Fault, Node, Value, number};
 
-/// Keys whose value names a page, and the only required setting of that list's page `constant`.
+/// Keys that choose a page, and the only required setting of the page `constant` among their pages.
 const CONSTANTS: [(&str, &str); 4] = [
     ("medium", "extinction"),
     ("volume", "extinction"),
@@ -111,6 +112,11 @@ impl Writer<'_> {
         if let Value::Number(_) = node.value {
             wrap(node, keyed(setting));
             wrap(node, keyed("constant"));
+            return;
+        }
+        if setting == "extinction" && matches!(&node.value, Value::Text(name) if name.contains('.')) {
+            wrap(node, keyed("file"));
+            wrap(node, keyed("grid"));
             return;
         }
         let [only] = entries(node) else { return };

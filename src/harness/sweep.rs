@@ -19,8 +19,9 @@
 //! the mean of the case's `sampling` list, and the largest of the list stays the largest. The last three sweeps change
 //! the answer: every estimator is drawn at every value.
 //!
-//! Each is a list, as in `sweep.sampling = [1, 2, 4]`, or `{ values = [ … ] }`, or `{ from, to, points, scale }` with `scale = "linear"` or `"log"`,
-//! `points` values from end to end. Estimators that do not depend on it are drawn once.
+//! Each is a list of values, as in `sweep.sampling = [1, 2, 4]`, which is short for `{ values = [ … ] }`, or
+//! `{ from, to, points, scale }` with `scale = "linear"` or `"log"`: `points` values from end to end. Estimators that do
+//! not depend on it are drawn once.
 
 use super::rewrite::{self, Rewrite};
 use crate::catalogue::{Domain, Settings};

@@ -202,6 +202,10 @@ fn near_misses_are_told_the_key_to_write() {
         let told = mistakes(&text).unwrap_or_else(|| panic!("{to} was read")).render(false);
         assert!(told.contains(message) && told.contains(help), "{to}\n{told}");
     }
+    // A file is a grid, and a grid has no form along a line.
+    let file = transmittance(&good.replace("0.5", "\"cloud.vol\""));
+    let told = mistakes(&file).expect("a mistake").render(false);
+    assert!(told.contains("`volume` instead of `medium`"), "{told}");
     let tolerance = format!("tolerance = 0.01\n{}", transmittance(good));
     let told = mistakes(&tolerance).expect("a mistake").render(false);
     assert!(told.contains("write `tolerance.mean = 0.01`"), "{told}");
