@@ -56,8 +56,9 @@ for part in $parts; do
         TABLE=$(dirname "$TABLE")/colours.csv OURS=
         [ -n "${KEEP-}" ] || rm -f "$TABLE"
         measure "$root/results/renderers/cube.toml" $lights
+        cp "$root/results/renderers/cube.toml" "$scenes/cube-heterogeneous.toml"
         FORM=--heterogeneous
-        measure "$root/results/renderers/cube.toml" $lights
+        measure "$scenes/cube-heterogeneous.toml" $lights
         FORM=
         measure "$cases/spectral-transmittance/layers.toml" $lights
         for case in like-colours known-bugs; do measure "$cases/spectral-furnace/$case.toml" $hits $lights; done

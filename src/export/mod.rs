@@ -143,7 +143,10 @@ fn write(scene: &Scene, out: &Path) -> Result<Exported, ExportError> {
         }
     }
     put(theory::FILE.into(), theory::case(scene).as_bytes())?;
-    let truth = truth::of(scene, &theory::ask(scene, stage.path())?);
+    let mut truth = truth::of(scene, &theory::ask(scene, stage.path())?);
+    if scene.target == Target::Mitsuba {
+        truth.notes.extend(theory::remark(scene, stage.path()));
+    }
     for (view, channel) in scene.asked() {
         let name = scene.file(view, channel);
         if !truth.questions.iter().any(|question| question.scene == name) {

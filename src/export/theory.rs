@@ -125,6 +125,19 @@ fn phase(phase: Phase) -> String {
     }
 }
 
+/// The reason why a renderer is biased, or has no variance, that tracks for one channel through the largest σ_t of all
+/// without multiple importance sampling, as far as theory knows one.
+pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
+    if !scene.is_coloured() || scene.is_homogeneous() || scene.problem != "transmittance" {
+        return None;
+    }
+    let text = case(scene).replace("{ independent =", "{ hero =");
+    let source = Source { name: scene.case.clone(), path: folder.join(FILE), text };
+    let case = Case::read(&source).ok()?;
+    let refusal = case.scenario.prepare(0, None, case.pilots(1, 0)).err()?;
+    Some(format!("tracking for one channel, without multiple importance sampling of the others, {refusal}"))
+}
+
 /// What theory predicts of the case file in a folder.
 ///
 /// # Errors

@@ -14,6 +14,7 @@
 
 use std::cell::RefCell;
 use std::mem;
+use std::ops::Range;
 
 use crate::catalogue::{Entry, Fault, Node, Value, number};
 
@@ -114,6 +115,17 @@ impl Writer<'_> {
             wrap(node, keyed("constant"));
             return;
         }
+        let quoted = match &node.value {
+            Value::Text(text) => text.trim().parse::<f64>().ok(),
+            _ => None,
+        };
+        if let Some(x) = quoted {
+            let message = format!("`{key}` is a number in quotes");
+            let help = format!("write `{key} = {}`", number(x));
+            self.fault(node.span.clone(), format!("{path}.{key}"), message, help);
+            node.value = Value::Number(x);
+            return self.constant(node, [key, setting], path);
+        }
         if setting == "extinction" && matches!(&node.value, Value::Text(name) if name.contains('.')) {
             wrap(node, keyed("file"));
             wrap(node, keyed("grid"));
@@ -127,7 +139,8 @@ impl Writer<'_> {
                 let message = format!("`{name}` stands in `{key}` without the page `constant`");
                 let x = number(*x);
                 let help = format!("write `{key} = {x}` or `{key}.constant.{setting} = {x}`");
-                self.fault(only, format!("{path}.{key}.{name}"), message, help);
+                let place = only.node.span.clone();
+                self.fault(place, format!("{path}.{key}.{name}"), message, help);
                 // Reading goes on as if it were right.
                 setting.clone_into(&mut only.key);
                 wrap(node, keyed("constant"));
@@ -146,7 +159,7 @@ impl Writer<'_> {
                 if fixed { format!(", or `{key} = {x}` without a sweep") } else { String::new() };
             let help = format!("write a list, as in `sweep.{key} = [{x}]`{instead}");
             let message = format!("`{key}` is a number, {x}");
-            self.fault(what, format!("{path}.sweep.{key}"), message, help);
+            self.fault(what.node.span.clone(), format!("{path}.sweep.{key}"), message, help);
             wrap(&mut what.node, listed);
         }
         if let Value::Array(_) = what.node.value {
@@ -154,8 +167,7 @@ impl Writer<'_> {
         }
     }
 
-    fn fault(&self, entry: &Entry, path: String, message: String, help: String) {
-        let fault = Fault { span: entry.node.span.clone(), path, message, help };
-        self.faults.borrow_mut().push(fault);
+    fn fault(&self, span: Range<usize>, path: String, message: String, help: String) {
+        self.faults.borrow_mut().push(Fault { span, path, message, help });
     }
 }

@@ -187,6 +187,7 @@ fn near_misses_are_told_the_key_to_write() {
             "`sweep.sampling = [3]`",
         ),
         ("sampling = 2", "sweep = [1, 2]", "`sweep` is no table", "sweep.sampling = [1, 2, 4]"),
+        ("sampling = 2", "sampling = \"2\"", "is a number in quotes", "write `sampling = 2`"),
         ("sampling = 2", "sampling = true", "is true or false", "a number, a name in quotes"),
         ("sampling = 2", "sampling = -1", "`value` is -1", "above 0"),
         ("sampling = 2", "sampling = 0", "`value` is 0", "above 0"),
