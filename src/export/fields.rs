@@ -90,6 +90,9 @@ impl Reader<'_> {
         if scene.is_coloured() && self.target == Target::Pbrt {
             remarks.push("each channel is a scene of its own: pbrt has wavelengths".into());
         }
+        if self.wishes.cells.is_some() && scene.grids().is_empty() {
+            remarks.push("the medium is homogeneous: there is nothing to cut into --cells".into());
+        }
         if self.wishes.heterogeneous && !scene.is_heterogeneous {
             remarks.push("the medium is heterogeneous as it is".into());
         }
