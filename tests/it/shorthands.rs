@@ -42,11 +42,11 @@ fn names_stand_for_tables_without_keys_and_the_other_way_round() {
              estimators = [{{ double = {{}} }}, {{ single = {{ rule{rule}, albedo = 0.7 }} }}]"
         ))
     };
-    let expected = results(&frame(".mean = {}", " = \"terminating\""));
+    let expected = results(&frame(".mean = {}", " = \"non-terminating\""));
     for (control, rule) in [
-        (" = \"mean\"", " = \"terminating\""),
-        (" = { mean = {} }", ".terminating = {}"),
-        (".mean = {}", " = { terminating = {} }"),
+        (" = \"mean\"", " = \"non-terminating\""),
+        (" = { mean = {} }", ".non-terminating = {}"),
+        (".mean = {}", " = { non-terminating = {} }"),
     ] {
         assert_eq!(results(&frame(control, rule)), expected, "{control}, {rule}");
     }
