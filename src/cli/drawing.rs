@@ -60,7 +60,7 @@ pub fn draw_share(
 
 fn judged(plan: &Plan, cache: &mut Cache, store: &Store, console: &Console) -> Record {
     let begin = Instant::now();
-    let bar = output::progress("drawing", "draws", 0, console);
+    let bar = output::progress_until("drawing", "draws", 0, plan.options.seconds, console);
     // What an earlier run drew says nothing about the speed of this one.
     let draws = run::draw_heard(plan, cache, store, &|step| match step {
         Step::Drawn(draws) => bar.inc(draws),

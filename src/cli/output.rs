@@ -1,12 +1,13 @@
 //! What goes to the console: results to stdout, the rest to stderr.
 
+use std::fmt;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::Context;
 use clap::ValueEnum;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::{Console, USAGE};
 use crate::harness::{CaseError, Record};
@@ -174,13 +175,31 @@ fn tell(kind: &str, text: &str) {
 
 /// A bar on the terminal's stderr; hidden where there is none.
 pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> ProgressBar {
+    progress_until(doing, things, length, None, options)
+}
+
+/// A bar of work that ends after so many seconds, if there is a limit.
+pub fn progress_until(
+    doing: &str,
+    things: &str,
+    length: u64,
+    seconds: Option<f64>,
+    options: &Console,
+) -> ProgressBar {
     let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
     if !options.quiet && std::io::stderr().is_terminal() {
         bar.set_draw_target(ProgressDrawTarget::stderr());
         let template =
-            format!("{doing} {{wide_bar}} {{human_pos}} of {{human_len}} {things}, {{eta}} left");
+            format!("{doing} {{wide_bar}} {{human_pos}} of {{human_len}} {things}, {{left}} left");
+        let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+        let left = move |state: &ProgressState, text: &mut dyn fmt::Write| {
+            let limited = limit.map(|limit| limit.saturating_sub(state.elapsed()));
+            let left = limited.unwrap_or(Duration::MAX).min(state.eta());
+            // A bar has nowhere to tell of an error.
+            let _ = write!(text, "{:#}", HumanDuration(left));
+        };
         if let Ok(style) = ProgressStyle::with_template(&template) {
-            bar.set_style(style);
+            bar.set_style(style.with_key("left", left));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
     }

@@ -143,7 +143,7 @@ fn inconclusive_is_3_unless_one_says_otherwise() {
         let output = place.check(code, &format!("cases --draws 1000 {FILES} {flag}"));
         let [junit, _, markdown] = place.reports();
         assert_says(&junit, &[in_junit, "type=\"inconclusive\"", "draws"]);
-        assert_says(&markdown, &["### Inconclusive", "To repeat"]);
+        assert_says(&markdown, &["### Inconclusive", "To decide"]);
         assert_says(&said(&output), &["2 inconclusive"]);
         let run = place.command(&format!("run cases --draws 1000 {flag}")).output().expect("runs");
         assert_eq!(run.status.code(), Some(code), "run {flag}");

@@ -6,9 +6,14 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use trueflight::catalogue::causes::{CAUSES, Pattern, Side, TABLE, line};
+use crate::common;
+use trueflight::catalogue::causes::{CAUSES, Pattern, Place, Side, TABLE, line};
+use trueflight::harness::mutation::{self, Walk};
+use trueflight::harness::record::{CaseRecord, Verdict};
+use trueflight::harness::{Plan, run, verdict};
 use trueflight::mutants::{self, streams};
-use trueflight::self_test::mutation;
+use trueflight::report::likely;
+use trueflight::self_test;
 
 /// What most of the known bugs must find in their list.
 const SHARE: f64 = 0.9;
@@ -138,10 +143,54 @@ const QUICK: [&str; 10] = [
 fn the_patterns_on_record_are_those_that_bugs_leave() {
     let recorded: BTreeMap<String, String> =
         known_bugs().into_iter().map(|[name, word, _]| (name, word)).collect();
-    let drawn = mutation::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
+    let drawn =
+        self_test::mutation::patterns(1, DRAWS, &|name| QUICK.contains(&name)).expect("cases");
     assert_eq!(drawn.len(), QUICK.len());
     for (name, pattern) in drawn {
         assert_eq!(word(&pattern), recorded[name], "{name}");
+    }
+}
+
+/// A case swept over σ̂, with a known bug in the place of ratio tracking, judged.
+fn swept_with(bug: &str) -> CaseRecord {
+    let text = "title = \"swept\"
+        [problem.transmittance]
+        volume.eq21 = {}
+        ray = { origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }
+        sweep.sampling.values = [0.5, 1, 2, 4]
+        estimators = [{ ratio = {} }]";
+    let cases = [common::case("swept", text)];
+    let options = common::options(1, 400_000);
+    let mut plan = Plan::new(&cases, &options);
+    let about = mutants::all().into_iter().find(|about| about.name == bug).expect("a known bug");
+    for planned in &mut plan.cases[0].experiments {
+        let faulty = mutation::experiment(&about, Walk::Faulty, &cases[0], planned, 1);
+        let faulty = faulty.expect("a mutant of ratio tracking").expect("it can be drawn");
+        planned.outcome.as_mut().expect("it can be drawn").experiment = faulty;
+    }
+    let draws = run::draw(&plan, &|_| {});
+    verdict::judged(&plan, &draws, 0.0).results.cases.remove(0)
+}
+
+/// In Eq. 21 σ_t is below 0.956, and a walk has 20 σ̂ collisions on average.
+#[test]
+fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
+    for (bug, end) in [
+        ("weight-absolute", Place::LowEnd),
+        ("weight-clamped", Place::LowEnd),
+        ("cap-100", Place::HighEnd),
+        ("flight-log2", Place::Anywhere),
+    ] {
+        let case = swept_with(bug);
+        let failing: Vec<_> =
+            case.rows.iter().filter(|row| row.verdict == Some(Verdict::Fail)).collect();
+        assert!(!failing.is_empty(), "{bug}");
+        for row in failing {
+            assert_eq!(likely::pattern(&case, row).place, end, "{bug}");
+            let said = likely::lines(&case, row).join(" ");
+            let hint = end.hint().unwrap_or("usual causes where");
+            assert!(said.contains(hint), "{bug}: {said}");
+        }
     }
 }
 
@@ -151,7 +200,7 @@ const DRAWS: u64 = 1_000_000;
 #[test]
 #[ignore = "long: prints the patterns of all known bugs, some minutes of two cores"]
 fn write_patterns() {
-    for (name, pattern) in mutation::patterns(1, DRAWS, &|_| true).expect("cases") {
+    for (name, pattern) in self_test::mutation::patterns(1, DRAWS, &|_| true).expect("cases") {
         println!("PATTERN,{name},{}", word(&pattern));
     }
 }
