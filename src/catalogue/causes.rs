@@ -1,4 +1,4 @@
-//! What usually causes a failure of a certain pattern.
+//! Likely causes of a failure, by its pattern.
 //!
 //! A pattern is which checks failed, and on which side. The causes of a pattern are the frequent kinds of the known
 //! bugs (`trueflight self-test`) that leave it. They are likely, not certain.
@@ -47,7 +47,7 @@ impl Side {
     }
 }
 
-/// Where along a sweep an estimator fails.
+/// Part of a sweep in which an estimator fails.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Place {
     /// Everywhere, here and there, or nothing was swept.
@@ -60,7 +60,7 @@ pub enum Place {
 }
 
 impl Place {
-    /// What that says by itself.
+    /// Likely cause of a failure there, whatever fails.
     pub fn hint(self) -> Option<&'static str> {
         match self {
             Self::Anywhere => None,
@@ -96,7 +96,7 @@ pub struct Pattern {
     pub dependence: bool,
     /// Draws or positions that lack bits.
     pub resolution: bool,
-    /// Where along the sweep.
+    /// Part of the sweep.
     pub place: Place,
 }
 

@@ -1,4 +1,4 @@
-//! How far a measured quantity is from theory, in the one form that every message uses.
+//! Deviations of measured quantities from theory, in the one form that every message uses.
 //!
 //! ```text
 //! +17 % (measured 0.00590, expected 0.00503), z = +23.8 over 4e6 draws
@@ -22,7 +22,7 @@ pub struct Deviation {
     pub expected: f64,
     /// The deviation in standard errors; `None` where the standard error is not known.
     pub z: Option<f64>,
-    /// How many draws were measured.
+    /// Number of measured draws.
     pub draws: u64,
     /// What is counted as a draw, in the plural: `draws`, `averages`, `passes`.
     pub unit: &'static str,
@@ -34,7 +34,7 @@ impl Deviation {
         Self { measured, expected, z: None, draws, unit: "draws" }
     }
 
-    /// The same deviation with its number of standard errors, if that is a finite number.
+    /// Deviation with its number of standard errors, if that is a finite number.
     #[must_use]
     pub fn with_z(self, z: f64) -> Self {
         Self { z: Some(z).filter(|z| z.is_finite()), ..self }

@@ -36,7 +36,7 @@ pub fn count(n: u64) -> String {
     if n < 1_000_000 { n.to_string() } else { short(n as f64, 4) }
 }
 
-/// A number of draws that is enough where so many are needed: rounded up to two significant digits, as options take it.
+/// A needed number of draws rounded up to two significant digits, as options take it.
 pub fn enough(draws: f64) -> String {
     let power = draws.log10().floor() - 1.0;
     let unit = if power > 0.0 { 10f64.powi(power as i32) } else { 1.0 };

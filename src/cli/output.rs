@@ -178,7 +178,7 @@ pub fn progress(doing: &str, things: &str, length: u64, options: &Console) -> Pr
     progress_until(doing, things, length, None, options)
 }
 
-/// A bar of work that ends after so many seconds, if there is a limit.
+/// A bar of work that ends after `seconds` at the latest, if there is a limit.
 pub fn progress_until(
     doing: &str,
     things: &str,

@@ -187,7 +187,7 @@ impl Experiment<'_> {
         }
     }
 
-    /// How far a scalar is from theory, in words.
+    /// Deviation of a scalar from theory, in words.
     fn deviation(&self, question: &Question, scalar: &Scalar, state: &GateState) -> String {
         let &Scalar { expected, scale, design, .. } = scalar;
         let error = (design.variance / state.draws as f64).sqrt();
@@ -257,7 +257,7 @@ impl Experiment<'_> {
         }
     }
 
-    /// How far the mean of a channel is from the truth; `None` for an experiment as a whole.
+    /// Deviation of a channel's mean from the truth; `None` for an experiment as a whole.
     fn mean(&self, question: &Question) -> Option<Deviation> {
         let index = question.channel?;
         let channel = &self.planned.outcome.as_ref().ok()?.prediction.channels[index];

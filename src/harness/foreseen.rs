@@ -1,4 +1,4 @@
-//! What is known of a verdict before the first draw: which checks have too few draws to pass.
+//! Verdicts that are known before the first draw: checks with too few draws to pass.
 
 use super::checks::{Kind, Question, Scalar};
 use super::plan::{Plan, Planned, PlannedCase};
@@ -73,7 +73,7 @@ pub fn too_weak(plan: &Plan, case: &PlannedCase, question: &Question) -> Verdict
     if counts || plan.options.strict { Verdict::Inconclusive } else { Verdict::Underpowered }
 }
 
-/// How many draws a scalar lacks, or why no number of draws is enough.
+/// Message with the draws that a scalar needs, or with the reason why no number of draws is enough.
 pub fn lack(what: &str, scalar: &Scalar, needed: f64) -> String {
     if needed.is_finite() {
         format!("{what} needs {} draws", enough(needed))

@@ -140,7 +140,7 @@ impl<'a> Plan<'a> {
         Self::heard(cases, options, &|_, _| {})
     }
 
-    /// Prepares every experiment of the cases; `listen` is told how many are prepared, of how many.
+    /// Prepares every experiment of the cases; `listen` is called with the number of those that are ready, and of all.
     pub fn heard(
         cases: &'a [Case],
         options: &Options,

@@ -1,4 +1,4 @@
-//! What usually causes a failure of foreign draws.
+//! Likely causes of a failure of foreign draws.
 
 use super::judgement::Judgement;
 use crate::catalogue::causes::{Pattern, Side};

@@ -68,7 +68,7 @@ pub(super) struct Scalar {
     pub ask: Ask,
     /// The quantity that y stands for, as it is claimed.
     pub(super) expected: f64,
-    /// How much of the quantity y = 1 is.
+    /// Size of y = 1 in units of the quantity.
     pub(super) scale: f64,
     /// What is counted, in the plural.
     pub(super) unit: &'static str,

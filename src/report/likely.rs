@@ -1,4 +1,4 @@
-//! What usually causes the failures of an experiment: the words that the console and the reports share.
+//! Likely causes of an experiment's failures: the words that the console and the reports share.
 
 use crate::catalogue::causes::{Pattern, Place};
 use crate::harness::record::{CaseRecord, Row, Verdict};

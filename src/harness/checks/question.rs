@@ -118,7 +118,7 @@ pub struct Scalar {
     pub underpowered: Option<f64>,
     /// The quantity that y stands for, in theory: for messages.
     pub expected: f64,
-    /// How much of the quantity y = 1 is.
+    /// Size of y = 1 in units of the quantity.
     pub scale: f64,
 }
 

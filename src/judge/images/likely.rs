@@ -1,4 +1,4 @@
-//! What usually causes a failure of a stack of images.
+//! Likely causes of a failure of a stack of images.
 
 use super::judgement::Judgement;
 use crate::catalogue::causes::Pattern;

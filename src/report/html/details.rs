@@ -13,7 +13,8 @@ pub fn of(joined: &JoinedRow, plots: &[Plot]) -> Markup {
     let JoinedRow { case, row, .. } = joined;
     html! {
         @if !row.reason.is_empty() { p.reason { (row.reason) } }
-        (page::command(row.next_command()))
+        @if !row.decide.is_empty() { (page::command(Some(("decide", &row.decide)))) }
+        (page::command(Some(("repeat", &row.command))))
         (page::causes(&likely::lines(case, row)))
         p { a href={ "#" (words::anchor(case, row)) } { "Address of this row" } }
         @if row.verdict != Some(Verdict::Refused) { (numbers(row)) (sparks::evidence(&row.findings)) }

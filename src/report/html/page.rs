@@ -51,7 +51,7 @@ pub fn causes(lines: &[String]) -> Markup {
 pub fn command(command: Option<(&str, &str)>) -> Markup {
     html! {
         @if let Some((word, command)) = command.filter(|command| !command.1.is_empty()) {
-            p.command title=(word) { code { (command) } }
+            p.command { (word) ": " code { (command) } }
         }
     }
 }

@@ -105,7 +105,9 @@ fn every_report_gives_the_command_that_decides() {
         let text = escaped(std::fs::read_to_string(place.path().join(file)).expect("a report"));
         assert!(text.contains(&draws), "no {draws} in {file}");
         assert!(text.contains("decide"), "no command to decide in {file}");
-        assert!(!text.contains("repeat: trueflight"), "{file} repeats what is inconclusive");
+        // The page has both below each row.
+        let repeats = text.contains("repeat: trueflight") && !file.ends_with("html");
+        assert!(!repeats, "{file} repeats what is inconclusive");
     }
 }
 
