@@ -115,9 +115,6 @@ pub struct CaseRecord {
     /// How many draws its scalars took to pass, all together, in units of what is typical,
     /// `17 V/ε²` draws each.
     pub pace: Option<f64>,
-    /// Of a plan: the command that decides the rows that its draws leave inconclusive. Empty where there are none.
-    #[serde(default, skip_serializing_if = "String::is_empty")]
-    pub decide: String,
     /// One row per experiment and channel; the rows of one experiment follow each other.
     pub rows: Vec<Row>,
     /// What was swept, with the theory's curves.
@@ -182,7 +179,8 @@ pub struct Row {
     pub stream: Option<u64>,
     /// The command that repeats the experiment.
     pub command: String,
-    /// The command that decides an inconclusive experiment; empty where no number of draws does, and for all others.
+    /// The command that decides an inconclusive experiment, or, of a plan, all of the case that it leaves inconclusive.
+    /// Empty where no number of draws does, and for all others.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub decide: String,
     /// Of a plan: `inconclusive` or `underpowered` where the planned draws are too few for a pass.

@@ -39,7 +39,9 @@ pub fn planned(plan: &Plan) -> Record {
             std::iter::repeat_n(draws, planned.channels())
         });
         case.rows.iter_mut().zip(draws).for_each(|(row, draws)| row.draws = draws);
-        case.decide = deciding_all(plan, planned_case);
+        let decide = deciding_all(plan, planned_case);
+        let open = |row: &&mut Row| row.foreseen == Some(Verdict::Inconclusive);
+        case.rows.iter_mut().filter(open).for_each(|row| row.decide.clone_from(&decide));
     }
     record
 }
@@ -129,7 +131,6 @@ fn record(plan: &Plan, parts: impl Iterator<Item = Part>) -> Record {
             draws_per_ray: Some(planned.case.draws_per_ray),
             visible_bias: None,
             pace: None,
-            decide: String::new(),
             rows,
             sweep,
             anatomy,

@@ -140,8 +140,8 @@ fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
             &format!("{word} {}: {open} of {all} rows: {draws}", case.name),
             (word, Paint::Yellow),
         );
-        if !case.decide.is_empty() {
-            let _ = writeln!(text, "    decide: {}", case.decide);
+        if let Some(row) = case.rows.iter().find(|row| !row.decide.is_empty()) {
+            let _ = writeln!(text, "    decide: {}", row.decide);
         }
     }
     let weak: usize = cases.iter().map(|case| rows(case, Verdict::Underpowered)).sum();
