@@ -1,49 +1,88 @@
-//! `trueflight explain`: the manual page of anything in the catalogue.
+//! `trueflight explain`: the manual page of anything in the catalogue, with a case to copy.
 
-use clap::Args;
+use std::io::IsTerminal;
+
+use clap::{Args, ValueEnum};
 
 use super::Console;
-use super::list::pages;
+use super::list::{self, What, pages};
 use super::output;
-use crate::harness::{Catalogue, suite};
+use crate::catalogue::suggestion;
+use crate::harness::{Catalogue, example, suite};
 use crate::render::gallery;
+use crate::report::console::page;
 
 /// Arguments of `explain`.
 #[derive(Debug, Args)]
 pub struct Arguments {
-    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot
-    name: String,
+    /// A name that `trueflight list` shows, such as ratio, eq21 or pilot, or a part of the list, such as media
+    #[arg(required = true)]
+    name: Vec<String>,
 }
 
-/// Prints every page of that name; `console` has no say in it.
-pub fn main(
-    arguments: &Arguments,
-    catalogue: &Catalogue,
-    _console: &Console,
-) -> anyhow::Result<u8> {
-    let name = &arguments.name;
-    let mut found = Vec::new();
-    let mut names = Vec::new();
-    for (part, page) in pages(catalogue) {
-        if page.name() == *name {
-            found.push(format!("{name} ({part})\n\n{}\n", page.text().trim_end()));
-        }
-        names.push(page.name());
-    }
-    if let Some(source) = suite::find(name) {
-        found.push(format!("{name} (cases)\n\n{}\n", source.text.trim_end()));
-    }
-    if let Some(source) = gallery::find(name) {
-        found.push(format!("{name} (pictures)\n\n{}\n", source.text.trim_end()));
-    }
+/// Prints every page of a name, or the list of a part: for a terminal without the signs of Markdown and as wide as
+/// it is, else as it is written.
+pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
+    // `free flight`, `free_flight` and `Free-Flight` are `free-flight`.
+    let written = arguments.name.join("-");
+    let name = &written.to_lowercase().replace('_', "-");
+    let found = explained(name, catalogue);
     if found.is_empty() {
-        let sources = suite::suite().into_iter().chain(gallery::gallery());
-        names.extend(sources.map(|source| source.name));
-        let near = names.iter().filter(|known| known.contains(name.as_str()));
-        let near: Vec<&str> = near.map(String::as_str).collect();
-        let hint = if near.is_empty() { String::new() } else { format!(": {}", near.join(", ")) };
-        anyhow::bail!("nothing is called \"{name}\"; `trueflight list` shows the names{hint}");
+        let Ok(what) = What::from_str(name, true) else {
+            return Err(unknown(&written, name, catalogue));
+        };
+        list::print(what, catalogue, console)?;
+        return Ok(0);
     }
-    output::print(&found.join("\n"))?;
+    let pen = output::pen(console);
+    let is_shown = std::io::stdout().is_terminal() || pen.colour;
+    let text = |(part, text): (String, String)| {
+        if is_shown {
+            page::rendered(&format!("# {name} ({part})\n\n{text}\n"), pen)
+        } else {
+            format!("{name} ({part})\n\n{text}\n")
+        }
+    };
+    let texts: Vec<String> = found.into_iter().map(text).collect();
+    output::print(&texts.join("\n"))?;
     Ok(0)
+}
+
+/// The pages of a name: for each the part of the catalogue, and the text in Markdown with a case to copy.
+fn explained(name: &str, catalogue: &Catalogue) -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (part, page) in pages(catalogue).into_iter().filter(|(_, page)| page.name() == name) {
+        let mut text = page.text().trim_end().to_owned();
+        if let Some(case) = example::of(&part, name) {
+            text += "\n\nA case to copy; `trueflight run case.toml` draws it:\n\n";
+            text += &fenced(&case);
+        }
+        found.push((part, text));
+    }
+    let files = [("cases", suite::find(name)), ("pictures", gallery::find(name))];
+    for (part, source) in files {
+        found.extend(source.map(|source| (part.to_owned(), fenced(&source.text))));
+    }
+    found
+}
+
+fn fenced(toml: &str) -> String {
+    format!("```toml\n{}\n```", toml.trim_end())
+}
+
+/// The error about a name that nothing has, with what was probably meant.
+fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
+    let sources = suite::suite().into_iter().chain(gallery::gallery()).map(|source| source.name);
+    let kinds = What::value_variants().iter().map(|what| what.name());
+    let pages = pages(catalogue).into_iter().map(|(_, page)| page.name());
+    let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();
+    names.sort();
+    names.dedup();
+    let near: Vec<&str> =
+        names.iter().map(String::as_str).filter(|known| known.contains(name)).collect();
+    let all = "`trueflight list` shows the names";
+    let otherwise =
+        if near.is_empty() { all.to_owned() } else { format!("{all}: {}", near.join(", ")) };
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    anyhow::anyhow!("nothing is called \"{written}\"; {}", suggestion(name, &names, &otherwise))
 }

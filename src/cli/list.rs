@@ -1,8 +1,11 @@
 //! `trueflight list`: the catalogue, from the code's own documentation.
 
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::io::IsTerminal;
 
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+use clap::error::ErrorKind;
 use clap::{Args, ValueEnum};
 
 use super::Console;
@@ -19,7 +22,7 @@ use crate::{phase, report};
 #[derive(Debug, Args)]
 pub struct Arguments {
     /// One part of the catalogue; without it, all of it
-    #[arg(value_enum)]
+    #[arg(value_parser = Kind)]
     what: Option<What>,
     /// How the rows are printed
     #[arg(long, value_enum, default_value_t)]
@@ -28,18 +31,65 @@ pub struct Arguments {
 
 /// A part of the catalogue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum What {
+pub enum What {
+    #[value(alias = "medium")]
     Media,
+    #[value(aliases = ["phase", "phase-function", "phase-functions"])]
     Phases,
     Sampling,
+    #[value(alias = "control")]
     Controls,
+    #[value(alias = "estimator")]
     Estimators,
+    #[value(alias = "problem")]
     Problems,
+    #[value(alias = "check")]
     Checks,
+    #[value(alias = "report")]
     Reports,
+    #[value(alias = "file")]
     Files,
+    #[value(alias = "case")]
     Cases,
+    #[value(alias = "picture")]
     Pictures,
+}
+
+impl What {
+    /// Name of the part: the first word of the first column of its rows.
+    pub fn name(self) -> String {
+        self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+    }
+}
+
+/// Reads a part of the catalogue. The error about a name in the catalogue says which command shows its page.
+#[derive(Debug, Clone)]
+struct Kind;
+
+impl TypedValueParser for Kind {
+    type Value = What;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<What, clap::Error> {
+        let found = EnumValueParser::<What>::new().parse_ref(command, argument, value);
+        found.map_err(|error| {
+            let name = value.to_string_lossy();
+            let mut known = pages(&Catalogue::builtin()).into_iter();
+            let Some((part, _)) = known.find(|(_, page)| page.name() == name) else { return error };
+            let text = format!(
+                "`{name}` is a page of the part {part}; `trueflight explain {name}` shows it\n"
+            );
+            command.clone().error(ErrorKind::InvalidValue, text)
+        })
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(What::value_variants().iter().filter_map(ValueEnum::to_possible_value)))
+    }
 }
 
 /// One row: a part of the catalogue, a name and one sentence.
@@ -74,10 +124,25 @@ pub fn pages(catalogue: &Catalogue) -> Vec<(String, Page)> {
 
 /// Prints the names with one sentence each.
 pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> anyhow::Result<u8> {
-    let wanted = |part: &str| {
-        let what = arguments.what.and_then(|what| what.to_possible_value());
-        what.is_none_or(|what| part.split(' ').next() == Some(what.get_name()))
-    };
+    let rows = rows(arguments.what, catalogue);
+    output::print(&match arguments.format {
+        Format::Table => table(&rows, console),
+        Format::Csv => csv(&rows)?,
+        Format::Json => serde_json::to_string_pretty(&rows)? + "\n",
+    })?;
+    Ok(0)
+}
+
+/// Prints one part of the catalogue as a table.
+pub fn print(what: What, catalogue: &Catalogue, console: &Console) -> anyhow::Result<()> {
+    output::print(&table(&rows(Some(what), catalogue), console))
+}
+
+/// Rows of one part of the catalogue, or of all of it.
+fn rows(what: Option<What>, catalogue: &Catalogue) -> Vec<Row> {
+    let what = what.map(What::name);
+    let wanted =
+        |part: &str| what.as_deref().is_none_or(|what| part.split(' ').next() == Some(what));
     let wanted_pages = pages(catalogue).into_iter().filter(|(part, _)| wanted(part));
     let row = |(part, page): (String, Page)| {
         let (name, summary) = (page.name(), page.summary());
@@ -98,12 +163,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
             rows.push(Row { part: "pictures".into(), name: source.name, summary: title });
         }
     }
-    output::print(&match arguments.format {
-        Format::Table => table(&rows, console),
-        Format::Csv => csv(&rows)?,
-        Format::Json => serde_json::to_string_pretty(&rows)? + "\n",
-    })?;
-    Ok(0)
+    rows
 }
 
 fn table(rows: &[Row], console: &Console) -> String {

@@ -7,7 +7,7 @@
 //! A file imports only files before it in this list:
 //!
 //! ```text
-//! words       shorthand  source  rewrite  sweep  names  filter  options  addresses  normality  suite
+//! words       shorthand  source  rewrite  sweep  names  filter  options  addresses  normality  suite  example
 //! case        ready  estimator  problem  plot_data  course  scenario  case  catalogue
 //! plan        checks  levels  plan  foreseen  mutation
 //! draws       progress  draw  drawn  cache  share  workers  frames  blocks  store  run
@@ -29,6 +29,7 @@ pub mod draw;
 pub mod drawn;
 pub mod estimator;
 pub mod evaluate;
+pub mod example;
 pub mod filter;
 pub mod foreseen;
 mod frames;

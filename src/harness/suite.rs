@@ -92,6 +92,14 @@ const CALIBRATION: BuiltIn = cases![
     "transmittance-curve/calibration",
 ];
 
+/// A case of which `explain` shows a part, where no case of the suite has that estimator.
+const SHOWN: BuiltIn = cases!["lambertian/eq21",];
+
+/// Every case that `explain` may show a part of.
+pub fn shown() -> Vec<Source> {
+    [suite(), SHOWN.all()].concat()
+}
+
 /// The cases on which the gate itself is tested.
 pub fn calibration() -> Vec<Source> {
     CALIBRATION.all()

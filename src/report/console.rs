@@ -7,6 +7,7 @@
 mod closing;
 mod costs;
 pub mod layout;
+pub mod page;
 pub mod views;
 
 use std::fmt::Write;

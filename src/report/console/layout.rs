@@ -34,6 +34,10 @@ pub enum Paint {
     Red,
     /// In doubt.
     Yellow,
+    /// Titles of works, and words that are stressed.
+    Italic,
+    /// Names, settings and code.
+    Cyan,
 }
 
 impl Pen {
@@ -46,6 +50,8 @@ impl Pen {
             Paint::Green => "32",
             Paint::Red => "1;31",
             Paint::Yellow => "33",
+            Paint::Italic => "3",
+            Paint::Cyan => "36",
         };
         if self.colour { format!("\x1b[{code}m{text}\x1b[0m") } else { text.to_owned() }
     }
