@@ -54,6 +54,13 @@ impl Page {
         let first = text.split("\n\n").next().unwrap_or_default();
         first.replace('\n', " ").trim_end_matches('.').to_owned()
     }
+
+    /// Where an estimator is unbiased: what stands in the paragraph `Unbiased for: …`, on one line; `None` without one.
+    pub fn unbiased_for(&self) -> Option<String> {
+        let text = self.text();
+        let said = text.split("\n\n").find_map(|paragraph| paragraph.strip_prefix("Unbiased for: "))?;
+        Some(said.replace('\n', " ").trim_end_matches('.').to_owned())
+    }
 }
 
 #[cfg(test)]
@@ -65,5 +72,8 @@ mod tests {
         assert!(page.summary().starts_with("Settings as written"));
         let plain = super::Page { module: "haze", source: "Haze above a floor.\n\nThin." };
         assert_eq!(plain.summary(), "Haze above a floor");
+        assert_eq!(plain.unbiased_for(), None);
+        let thin = super::Page { module: "x", source: "X.\n\nUnbiased for: thin\nmedia.\n\nMore." };
+        assert_eq!(thin.unbiased_for().as_deref(), Some("thin media"));
     }
 }

@@ -64,7 +64,7 @@ pub struct Invariant<L = f64> {
 }
 
 impl<L: Lane> Invariant<L> {
-    /// Of a particle that begins with a weight.
+    /// Invariant of a particle that begins with a weight.
     #[inline(always)]
     pub fn open(weight: L) -> Self {
         Self { begin: weight, taken: weight.each(0.0), scale: weight.size() }

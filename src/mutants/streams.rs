@@ -1,7 +1,7 @@
 //! Wrong streams: right estimators on random numbers that are used twice.
 //!
 //! ```text
-//! (seed, experiment, block, lane) → stream;  no two addresses share a number;  8 lanes to a block
+//! (seed, experiment, block, lane) → stream;  no two addresses share a number;  16 lanes to a block
 //! ```
 //!
 //! The mean stays right, and so does every single block: what is wrong is the spread of the blocks'

@@ -240,7 +240,7 @@ impl StreamVerdicts {
     }
 }
 
-/// How the streams of one law verdicts with one claim.
+/// Counts of verdicts on the streams of one distribution with one claim.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StreamVerdicts {
     /// The law.

@@ -56,6 +56,7 @@ mod sphere_techniques;
 mod stress;
 mod sweeps;
 mod threads;
+mod trust;
 mod value_stability;
 mod vdb;
 mod verdicts;

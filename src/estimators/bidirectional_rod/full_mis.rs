@@ -1,5 +1,7 @@
 //! All techniques of bidirectional path tracing, weighted by densities of whole paths.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where σ_t/σ̂ is one number; refused elsewhere, and for τ > 12.
+//!
 //! ```text
 //! X = Σ_s w_s c_s,   w_s = c_s^{−β}/Σⱼ cⱼ^{−β},   c₀ = c_{r+2} = 1,  cⱼ = T̂_{j−1} [a ρ_{j−1}]_{j≥2} [a ρⱼ]_{j≤r}
 //! ```
@@ -12,8 +14,8 @@
 //!
 //! On a segment that one technique tracks by ratio and another by delta tracking the densities of the null
 //! vertices are in the ratio `p_rt/p_dt = ∏ σ̂/(σ̂ − σ_t) = 1/T̂ⱼ`: no optical depth is needed. By the
-//! balance heuristic all techniques score the same function of the path, `1/Σⱼ cⱼ⁻¹ ≤ 1/2`. Unbiased for `σ̂ ≥ σ_t`;
-//! with `"ratio"`, `σ_t/σ̂` must be one number, for theory.
+//! balance heuristic all techniques score the same function of the path, `1/Σⱼ cⱼ⁻¹ ≤ 1/2`. With
+//! `"ratio"`, `σ_t/σ̂` must be one number, for theory.
 //!
 //! Shared subpaths are what renderers draw. Contributions of techniques have the same moments; they vary together,
 //! and the variance of their sum is bounded: its root is at most the sum of theirs.

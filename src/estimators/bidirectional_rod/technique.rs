@@ -1,5 +1,7 @@
 //! One technique of bidirectional path tracing by itself.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where σ_t/σ̂ is one number; refused elsewhere, and for τ > 12.
+//!
 //! ```text
 //! X = c_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r},   1 for s = 0 and s = r + 2
 //! ```
@@ -10,7 +12,7 @@
 //! | `connection` | `"exact"`: `T̂ = exp(−∫σ_t)`, no lookups; `"ratio"`: tracked through σ̂ | `"exact"` |
 //!
 //! s = 0 is unidirectional path tracing, s = r + 2 light tracing, s = 1 next-event estimation at the last vertex
-//! from the sensor. Unbiased for `σ̂ ≥ σ_t`; 0 ≤ X ≤ 1. With `"ratio"`, `σ_t/σ̂` must be one number, for theory.
+//! from the sensor. 0 ≤ X ≤ 1. With `"ratio"`, `σ_t/σ̂` must be one number, for theory.
 //! Each order of the problem with such a technique is a channel.
 //!
 //! Source: E. Lafortune, Y. Willems, *Rendering Participating Media with Bidirectional Path Tracing*, Eurographics

@@ -1,5 +1,8 @@
 //! The walk of one hero scores all channels, divided by the hero's density alone.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel, > σ_t where another channel has null collisions, as long as
+//! theory bounds the variance; refused elsewhere.
+//!
 //! ```text
 //! X_λ = f_λ/f_h where it leaves,  h of probability w_h,  f as in the walk
 //! ```

@@ -1,5 +1,7 @@
 //! Spectral multiple importance sampling: a hero's walk, weighted by the densities of all heroes.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_λ = f_λ/Σ_h w_h f_h where it leaves,   f_λ the density of the walk in the channel λ: lengths, events, directions
 //! ```

@@ -1,5 +1,8 @@
 //! Spectral tracking: all channels walk together through one σ̂, by chances that depend on all of them.
 //!
+//! Unbiased for: one constant σ̂ ≥ σ_t and one phase function for all channels, `average` and `maximum` as long as
+//! theory bounds the variance; refused elsewhere.
+//!
 //! ```text
 //! at a collision an event e has the chance P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   X_λ = w_λ where it leaves
 //! average  P_e = mean_λ μ_e,λ/μ̄      maximum  P_e ∝ max_λ μ_e,λ      history  P_e ∝ Σ_λ w_λ μ_e,λ

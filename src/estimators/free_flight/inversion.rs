@@ -1,5 +1,7 @@
 //! Free flight by inversion: solve τ(0, s) = −ln(1 − ξ).
 //!
+//! Unbiased for: every medium, with the exact distribution.
+//!
 //! ```text
 //! s = τ⁻¹(−ln u),  u uniform in (0, 1];  a depth beyond τ(0, S) escapes and scores S
 //! ```

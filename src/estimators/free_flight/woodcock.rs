@@ -1,10 +1,12 @@
 //! Free flight by Woodcock (delta) tracking: fly through a majorant to the first real collision.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, with the exact distribution; refused elsewhere.
+//!
 //! ```text
 //! s = the first tᵢ with uᵢ < σ_t(tᵢ)/σ̄(tᵢ),  tᵢ a Poisson process of rate σ̄;  S if there is none
 //! ```
 //!
-//! Exact in law for `σ̄ ≥ σ_t`; refused elsewhere and for τ > 700. Lookups are those of `woodcock` for the
+//! Refused for τ > 700, too. Lookups are those of `woodcock` for the
 //! transmittance: `E = ∫ σ̄ T dt`.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code

@@ -1,5 +1,8 @@
 //! A particle that walks into a furnace by one of the rules of the single particle model.
 //!
+//! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, and by the others as long as theory
+//! bounds the variance; refused elsewhere.
+//!
 //! ```text
 //! X = Σ w r (1 − a) over its tentative collisions + w where it leaves,   E[X] = 1
 //! ```

@@ -1,6 +1,9 @@
 //! A particle that splits in a furnace: what goes straight on and what is scattered are both followed, up
 //! to a bound; then one of them, by a rule.
 //!
+//! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, and by the others as long as theory
+//! bounds the variance; refused elsewhere.
+//!
 //! ```text
 //! at a collision that splits: w → (1 − r) w straight on, and a r w into a new direction
 //! X = Σ w r (1 − a) over all tentative collisions + Σ w over all that leaves,   E[X] = 1

@@ -1,5 +1,7 @@
 //! A particle that walks from a point source by one of the rules of the single particle model.
 //!
+//! Unbiased for: r ≤ 2/(a + 1) by the rule `terminating`, σ̂ ≥ σ_t by the others; refused elsewhere.
+//!
 //! ```text
 //! collisions within R: Σ w r [x < R],  squared distance Σ w r (1 − a) x²,  collisions Σ w r
 //! ```

@@ -1,6 +1,8 @@
 //! A particle that enters a body from all sides and walks by one of the rules of the single particle
 //! model.
 //!
+//! Unbiased for: whatever it is unbiased for in a furnace; refused where no channel has a known mean and spread.
+//!
 //! ```text
 //! place even over the boundary, cosine with the inward normal √u, azimuth even
 //! energy Σ w r (1 − a) + w,  path length Σ w ℓ,  collisions Σ w r,  tentative collisions Σ 1

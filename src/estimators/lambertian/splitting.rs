@@ -1,6 +1,8 @@
 //! A particle that enters a body from all sides and splits: what goes straight on and what is scattered are
 //! both followed, up to a bound; then one of them, by a rule.
 //!
+//! Unbiased for: whatever it is unbiased for in a furnace; refused where no channel has a known mean and spread.
+//!
 //! ```text
 //! at a collision that splits: w → (1 − r) w straight on, and a r w into a new direction
 //! ```

@@ -1,5 +1,7 @@
 //! Hits and shadow rays, weighted by the pdfs of directions: what most renderers do.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! ρ = p_uni/p_nee = p(ω)/1,   null collisions are left out of both densities
 //! X = [reached unscattered] + Σ p t̂(y, L) w_nee(ρ) + [hit after y] w_uni(ρ)

@@ -1,5 +1,7 @@
 //! Hits and shadow rays, weighted by the pdfs of the whole null-scattering path.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! ρ = p_uni/p_nee = p(ω) Π (1 − r)   over the null collisions of the last segment, r = σ_t/σ̂
 //! X = [reached unscattered] + Σ p t̂ w_nee(ρ) + [hit after y] w_uni(ρ),   t̂ = Π (1 − r) by ratio tracking

@@ -1,5 +1,7 @@
 //! Next-event estimation: every scattering casts a shadow ray to the emitter.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! X = [reached unscattered] + Σ p(ω) t̂(y, L)   over the scatterings y of a path by delta tracking
 //! ```

@@ -1,10 +1,12 @@
 //! Unidirectional path tracing: delta tracking until a path hits the emitter.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! X = 1 if the path reaches the emitter, else 0;   Var[X] = L(1 − L) whatever σ̂
 //! ```
 //!
-//! It takes σ̂ and no settings. Exact in law for `σ̂ ≥ σ_t`, refused elsewhere. It is the walk of `analog` in `rod`.
+//! It takes σ̂ and no settings. Its distribution is exact. It is the walk of `analog` in `rod`.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. J. Hemmings, T. C. Longworth, *Techniques used in the GEM code for Monte
 //! Carlo neutronics calculations in reactors and other systems of complex geometry*, ANL-7050 (1965); B. Miller, I.

@@ -1,5 +1,7 @@
 //! A hit and a shadow ray, weighted by the pdfs of directions: what most renderers do.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere, and for τ/μ > 64.
+//!
 //! ```text
 //! ρ = q = p(μ)/p_nee,   null collisions are left out of both densities
 //! X = q t̂ w_nee(ρ) + [hit] w_uni(ρ),   each with its own direction

@@ -1,5 +1,7 @@
 //! A hit and a shadow ray, weighted by the pdfs of the whole null-scattering path.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere, and for τ/μ > 64.
+//!
 //! ```text
 //! ρ = p_uni/p_nee = q Π (1 − r)   over the null collisions of the last segment, q = p(μ)/p_nee, r = σ_t/σ̂
 //! X = q t̂ w_nee(ρ) + [hit] w_uni(ρ),   t̂ = Π (1 − r) by ratio tracking, each with its own direction

@@ -1,5 +1,7 @@
 //! Next-event estimation: the scattering casts a shadow ray to the light.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere, and for τ/μ > 64.
+//!
 //! ```text
 //! X = q t̂ after a scattering,   q = p(μ)/p_nee of the direction that is chosen, t̂ along it
 //! ```

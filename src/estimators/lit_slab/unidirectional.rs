@@ -1,11 +1,13 @@
 //! Unidirectional path tracing: delta tracking, a direction by the phase function, and again until it hits the light.
 //!
+//! Unbiased for: σ̂ ≥ σ_t and a light with a size; refused elsewhere, and for τ/μ > 64.
+//!
 //! ```text
 //! X = 1 if the path hits the light after one scattering, else 0;   Var[X] = L(1 − L) whatever σ̂
 //! ```
 //!
-//! It takes σ̂ and no settings. Exact in law for `σ̂ ≥ σ_t`, refused elsewhere, and for a light without a size, which
-//! no direction meets. A direction that misses the light ends the walk.
+//! It takes σ̂ and no settings. Its distribution is exact. A light without a size is met by
+//! no direction. A direction that misses the light ends the walk.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. J. Hemmings, T. C. Longworth, *Techniques used in the GEM code for Monte
 //! Carlo neutronics calculations in reactors and other systems of complex geometry*, ANL-7050 (1965); B. Miller, I.

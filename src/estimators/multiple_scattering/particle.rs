@@ -1,6 +1,8 @@
 //! A particle that walks from the camera by one of the rules of the single particle model, and gathers the
 //! sky where it leaves: `SimulateParticle` with importons.
 //!
+//! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, every r by the others.
+//!
 //! ```text
 //! X = w L_sky(d')  where it leaves in the direction d',   0 where it is absorbed
 //! ```

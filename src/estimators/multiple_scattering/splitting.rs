@@ -1,6 +1,8 @@
 //! A particle that splits on its way from the camera: what goes straight on and what is scattered are both
 //! followed, up to a bound; then one of them, by a rule.
 //!
+//! Unbiased for: r ≤ 1 by the rule `analog`, r ≤ 2/(a + 1) by `terminating`, every r by the others.
+//!
 //! ```text
 //! at a collision that splits: w → (1 − r) w straight on, and a r w into a new direction
 //! X = Σ w L_sky(d') over all that leaves

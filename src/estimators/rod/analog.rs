@@ -1,10 +1,12 @@
 //! Delta tracking as nature does it: a collision is real with chance r, and then absorbs with 1 − a.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! scattered with chance a r, straight on with 1 − r, absorbed with (1 − a) r;  w = 1;  r = σ_t/σ̂
 //! ```
 //!
-//! It takes σ̂ and no settings. Absorption is by roulette. Exact in law for `σ̂ ≥ σ_t`, refused elsewhere.
+//! It takes σ̂ and no settings. Absorption is by roulette. Its distribution is exact.
 //! Draws are 0 or 1, and the variances are `R(1 − R)` and `T(1 − T)` whatever σ̂.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light

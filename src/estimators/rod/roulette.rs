@@ -1,5 +1,7 @@
 //! The non-terminating walk with Russian roulette on small weights.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, for which theory bounds the variance; refused elsewhere.
+//!
 //! ```text
 //! after a collision with |w| < w₀: the walk goes on with chance |w|/w₀ and weight sgn(w) w₀, else it ends
 //! ```

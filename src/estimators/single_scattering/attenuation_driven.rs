@@ -1,5 +1,7 @@
 //! Attenuation-driven: the interaction points of one transmittance walk are the scattering points.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t or the residual is not 0.
+//!
 //! ```text
 //! X = Σᵢ T̂(tᵢ) σ_t(tᵢ) S(tᵢ) T̂_shadow(tᵢ) / σ̂(tᵢ),   tᵢ a Poisson process of rate σ̂
 //! T̂(tᵢ) = T_c(tᵢ) ∏_{j<i} (1 − rⱼ),  rⱼ = (σ_t − σ_c)/σ̂

@@ -1,5 +1,7 @@
 //! Attenuation-driven with sampling importance resampling: one shadow ray for a whole walk.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t or the residual is not 0.
+//!
 //! ```text
 //! X = (Σᵢ |yᵢ|) sgn(y_J) T̂_shadow(t_J),  yᵢ = T̂(tᵢ) σ_t(tᵢ) S(tᵢ)/σ̂(tᵢ),  P(J = i) = |yᵢ|/Σ|y|
 //! ```

@@ -1,5 +1,7 @@
 //! Scattering at the first real collision of delta tracking.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! s the first tᵢ with uᵢ < σ_t(tᵢ)/σ̄(tᵢ),  p(s) = σ_t T;   X = S(s) T̂_shadow, 0 if there is none
 //! analog: scattered if uᵢ < a σ_t/σ̄, else absorbed,  p(s) = a σ_t T;   X = (S/a) T̂_shadow, 0 if absorbed
@@ -11,7 +13,7 @@
 //! | `absorption` | `"weight"`: the albedo is a factor of S; `"analog"`: it is the chance of a real collision to scatter | `"weight"` |
 //! | `shadow` | `"exact"`, `ratio = { sampling, control }` or `delta = { sampling }` | `"exact"` |
 //!
-//! Unbiased for `σ̄ ≥ σ_t`; refused elsewhere. The density knows nothing of the light: the variance
+//! The density knows nothing of the light: the variance
 //! grows as `1/D³` when the light comes near the ray.
 //!
 //! Source: E. R. Woodcock, T. Murphy, P. Hemmings, T. Longworth, *Techniques used in the GEM code

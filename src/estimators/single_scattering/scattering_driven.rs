@@ -1,5 +1,7 @@
 //! Scattering-driven: points where the main part of the extinction would scatter, analytically.
 //!
+//! Unbiased for: σ_m > 0 where σ_t > 0; refused elsewhere.
+//!
 //! ```text
 //! p(s) = σ_m(s) e^{−∫₀ˢ σ_m} / (1 − e^{−τ_m}),   X = T̂ σ_t S T̂_shadow / p
 //! ```

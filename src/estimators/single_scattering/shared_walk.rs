@@ -1,5 +1,7 @@
 //! Several equiangular points with the continuous transmittance of one walk.
 //!
+//! Unbiased for: every σ̂ > 0 where the residual is not 0.
+//!
 //! ```text
 //! X = (1/n) Σⱼ T̂(sⱼ) σ_t(sⱼ) S(sⱼ) T̂_shadow(sⱼ) / p(sⱼ),   p(s) = D/(Δθ r²)
 //! T̂(s) = T_c(s) ∏_{tᵢ<s} (1 − rᵢ),  one walk for all s

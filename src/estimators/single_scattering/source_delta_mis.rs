@@ -1,5 +1,7 @@
 //! Equiangular points and delta tracking together, weighted by multiple importance sampling.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! p₁ = D/(Δθ r²),   p₂ = c σ_t x,   f = σ_t S x T̂_shadow
 //! both   X = Σ_{i=1,2} f(sᵢ) w_i/p_i,   w_i = p_i^β/(p₁^β + p₂^β),   0 where there is no s₂
@@ -18,7 +20,7 @@
 //! With a tracked camera the weights are those of the null-scattering path: both densities hold the same majorant
 //! transmittances, which cancel, and so do all of the shadow ray. A shadow ray is cast even where x is 0.
 //!
-//! Unbiased for `σ̄ ≥ σ_t`; refused elsewhere. The variance stays bounded however near the light is.
+//! The variance stays bounded however near the light is.
 //!
 //! Source: E. Veach, L. Guibas, *Optimally Combining Sampling Techniques for Monte Carlo Rendering*,
 //! SIGGRAPH 1995, section 3; C. Kulla, M. Fajardo, *Importance Sampling Techniques for Path Tracing

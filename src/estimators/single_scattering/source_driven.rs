@@ -1,5 +1,7 @@
 //! Source-driven scattering: points at equal angles as seen from the light (Cauchy, equiangular).
 //!
+//! Unbiased for: whatever its transmittances are unbiased for.
+//!
 //! ```text
 //! θ uniform over the angles of the support,  s = foot + D tan θ,  p(s) = D/(Δθ r²)
 //! X = T̂ σ_t S T̂_shadow / p

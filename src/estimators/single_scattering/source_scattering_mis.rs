@@ -1,5 +1,7 @@
 //! Source- and scattering-driven points together, weighted by the balance heuristic.
 //!
+//! Unbiased for: σ_m ≥ 0; refused elsewhere.
+//!
 //! ```text
 //! X = Σ_{i=1,2} T̂ σ_t S T̂_shadow / (p₁ + p₂)  at sᵢ,  sᵢ of density pᵢ
 //! p₁ = D/(Δθ r²),   p₂ = σ_m e^{−∫σ_m} / (1 − e^{−τ_m})

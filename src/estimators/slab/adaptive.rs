@@ -1,6 +1,8 @@
 //! The single particle model as `SimulateParticle` has it, in a slab: terminating for minorants where
 //! that is possible, else non-terminating.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0; refused where the variance is infinite.
+//!
 //! ```text
 //! terminating where r ≥ 1 and a r + |1 − r| ≤ 1, that is 1 ≤ r ≤ 2/(a + 1);  else non-terminating
 //! ```

@@ -1,5 +1,7 @@
 //! The single particle model that never ends inside a slab: what is absorbed is weight.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0; refused where the variance is infinite.
+//!
 //! ```text
 //! D = a|r| + |1 − r|,  r = σ_t/σ̂
 //! scattered with chance a|r|/D and weight sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w

@@ -1,5 +1,7 @@
 //! The single particle model that keeps its weight, in a slab: what it cannot keep ends the walk.
 //!
+//! Unbiased for: r ≤ 2/(a + 1); refused elsewhere.
+//!
 //! ```text
 //! scattered with chance a r and weight w, straight on with chance |1 − r| and weight sgn(1 − r) w,
 //! absorbed otherwise;  r = σ_t/σ̂

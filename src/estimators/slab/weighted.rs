@@ -1,5 +1,7 @@
 //! Delta tracking through a slab with the albedo as a weight, for any σ̂.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0; refused where the variance is infinite.
+//!
 //! ```text
 //! D = |r| + |1 − r|,  r = σ_t/σ̂
 //! scattered with chance |r|/D and weight a sgn(r) D w, straight on with |1 − r|/D and sgn(1 − r) D w

@@ -1,5 +1,7 @@
 //! Independent tracking: one channel a draw, by an analog walk through its own medium.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_h = 1/w_h, the others 0,  h of probability w_h;   Var X_λ = 1/w_λ − 1
 //! ```

@@ -1,5 +1,7 @@
 //! Spectral and next-event multiple importance sampling with errors of its source as printed: biased, here to be caught.
 //!
+//! Unbiased for: never: it is here to be caught.
+//!
 //! | `error` | as printed | what is right |
 //! |---|---|---|
 //! | `"last-piece"` | Algorithm 2, line 9 returns before f and both densities have the transmittance of the last piece | it multiplies all three |

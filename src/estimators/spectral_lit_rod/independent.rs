@@ -1,5 +1,7 @@
 //! Independent tracking: one channel a draw, by hits and shadow rays of its own.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_h = x_h/w_h, the others 0,  h of probability w_h,  x_h a draw of `full-mis` in `lit-rod`
 //! ```

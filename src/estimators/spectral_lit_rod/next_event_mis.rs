@@ -1,5 +1,7 @@
 //! Spectral and next-event multiple importance sampling: hits and shadow rays of one hero, weighted over all heroes.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_λ = [unscattered] p_uni,λ/Σ_h w_h p_uni,h + Σ over shadow rays and the hit  f_λ/Σ_h w_h (p_uni,h + p_nee,h)
 //! ```

@@ -1,5 +1,7 @@
 //! Spectral multiple importance sampling: a hero's walk until it hits the emitter, weighted over all heroes.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_λ = p_λ/Σ_h w_h p_h,   p_λ the density of the whole path by the walk of λ: distances, events, directions
 //! ```

@@ -1,5 +1,7 @@
 //! Independent tracking: one channel a draw, by an analog walk with its own albedo.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! X_h = 1/w_h where it leaves, the others 0,  h of probability w_h
 //! ```

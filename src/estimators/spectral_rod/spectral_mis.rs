@@ -1,5 +1,7 @@
 //! Spectral multiple importance sampling: the analog walk of a hero, weighted by the balance heuristic.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! X_λ = a_λ^r/Σ_h w_h a_h^r where it leaves after r scatterings,  the walk with the albedo of the hero
 //! ```

@@ -1,5 +1,7 @@
 //! Spectral tracking in a rod: one chance to be scattered for all channels.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, as long as the variance is finite; refused elsewhere.
+//!
 //! ```text
 //! a real collision scatters with P_s, then w_λ ← w_λ a_λ/P_s;  X_λ = w_λ where it leaves
 //! average  P_s = mean a        maximum  P_s = a_max/(a_max + (1 − a)_max)

@@ -1,5 +1,8 @@
 //! The walk of one hero to its scattering scores all channels, divided by the hero's density alone.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel, > σ_t where another channel has null collisions; refused
+//! elsewhere.
+//!
 //! ```text
 //! X_λ = q_λ/q_h p_λ(cos θ) Φ/(4π r²) T̂_λ,  h of probability w_h,  q as in the walk
 //! ```

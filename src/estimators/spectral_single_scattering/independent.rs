@@ -1,5 +1,7 @@
 //! Independent tracking: one channel a draw, by analog delta tracking through its own medium.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_h = p_h(cos θ) Φ/(4π r²) T̂_h/w_h where the walk scatters, the others 0,  h of probability w_h
 //! ```

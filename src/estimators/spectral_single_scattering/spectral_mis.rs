@@ -1,6 +1,8 @@
 //! Spectral multiple importance sampling: the first scattering of a hero's walk and a shadow ray from there, weighted by
 //! the densities of all heroes.
 //!
+//! Unbiased for: a constant σ̂ ≥ σ_t in each channel; refused elsewhere.
+//!
 //! ```text
 //! X_λ = q_λ/Σ_h w_h q_h · p_λ(cos θ) Φ/(4π r²) T̂_λ,   q_λ the density of the walk, and of a shadow ray that is tracked
 //! ```

@@ -1,5 +1,7 @@
 //! Spectral tracking: all channels walk together through one σ̂, by chances that depend on all of them.
 //!
+//! Unbiased for: one constant σ̂ ≥ σ_t for all channels; refused elsewhere.
+//!
 //! ```text
 //! at a collision an event e has the chance P_e, then w_λ ← w_λ μ_e,λ/(μ̄ P_e);   where it scatters
 //! X_λ = w_λ p_λ(cos θ) Φ/(4π r²) T̂_λ

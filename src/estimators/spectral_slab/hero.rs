@@ -1,5 +1,7 @@
 //! The analog walk of one hero scores all channels, divided by the hero's density alone.
 //!
+//! Unbiased for: σ̂ ≥ σ_t, as long as the variance is finite; refused elsewhere.
+//!
 //! ```text
 //! X_λ = (a_λ/a_h)^r where it leaves after r scatterings,  h of probability w_h
 //! ```

@@ -1,5 +1,7 @@
 //! Ratio tracking of all channels at once, through one σ̂ for all.
 //!
+//! Unbiased for: every constant σ̂ > 0.
+//!
 //! ```text
 //! X_λ = Π (1 − σ_λ(tᵢ)/μ̄),  tᵢ a Poisson process of rate μ̄
 //! ```
@@ -8,7 +10,7 @@
 //! |---|---|---|
 //! | `sampling` | one constant σ̂ > 0 for all channels | required here or in the case |
 //!
-//! Unbiased for every σ̂ > 0. Nothing is chosen by chance but the places: where the densities of the channels are
+//! Nothing is chosen by chance but the places: where the densities of the channels are
 //! alike it has the least variance of all.
 //!
 //! Source: J. Novák, A. Selle, W. Jarosz, *Residual Ratio Tracking for Estimating Attenuation in Participating

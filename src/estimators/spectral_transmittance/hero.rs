@@ -1,5 +1,8 @@
 //! The walk of one hero channel scores all channels, divided by the hero's density alone.
 //!
+//! Unbiased for: a constant σ̂ > 0 in each channel; with `collisions = "delta"` σ̂ ≥ σ_t, > σ_t where another
+//! channel has null collisions; refused elsewhere.
+//!
 //! ```text
 //! X_λ = f_λ/p_h,  h of probability w_h,  f and p as in the walk
 //! ```

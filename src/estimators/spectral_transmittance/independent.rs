@@ -1,5 +1,7 @@
 //! Independent tracking: each channel by walks of its own, through its own σ̂.
 //!
+//! Unbiased for: a constant σ̂ > 0 in each channel, ≥ σ_t with `collisions = "delta"`; refused elsewhere.
+//!
 //! ```text
 //! one channel a draw   X_h = x_h/w_h, the others 0,  h of probability w_h
 //! all channels in turn X_λ = x_λ, each by a walk of its own

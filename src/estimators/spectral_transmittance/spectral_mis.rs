@@ -1,5 +1,7 @@
 //! Spectral multiple importance sampling: the walk of one hero, weighted by the balance heuristic over all.
 //!
+//! Unbiased for: a constant σ̂ > 0 in each channel, ≥ σ_t with `collisions = "delta"`; refused elsewhere.
+//!
 //! ```text
 //! X_λ = f_λ/Σ_h w_h p_h,  f and p of the whole null-collision path, as in the walk
 //! ```

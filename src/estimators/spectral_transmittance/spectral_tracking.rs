@@ -1,5 +1,7 @@
 //! Spectral tracking: one σ̂ for all channels, and a chance of null collisions that depends on all of them.
 //!
+//! Unbiased for: one constant σ̂ ≥ σ_t for all channels; refused elsewhere.
+//!
 //! ```text
 //! at a collision null with P_n, then w_λ ← w_λ (n_λ/μ̄)/P_n;  else real, and X = 0;   X_λ = w_λ at the end
 //! average  P_n = mean_λ n_λ/μ̄

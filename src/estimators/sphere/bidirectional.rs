@@ -1,5 +1,7 @@
 //! Bidirectional path tracing: hits, shadow rays, and connections with a vertex of the light.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! a path … x – y – light, y its last scattering seen from the eye, x the one before, is made
 //!   by a hit          with the density 1                    the walk comes to y and on to the light
@@ -24,7 +26,7 @@
 //! near vertices are no less likely than far ones, it is worth less than ½. It therefore exists only in a combination over
 //! whole paths.
 //!
-//! Unbiased for `σ̂ ≥ σ_t`. Theory bounds the variance of independent subpaths; connections that share a vertex vary
+//! Theory bounds the variance of independent subpaths; connections that share a vertex vary
 //! together, and so do they where the light is distant and not even: there pilot draws stand in for the variance. The
 //! number of lookups is not known.
 //!

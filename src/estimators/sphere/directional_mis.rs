@@ -1,5 +1,7 @@
 //! Hits and shadow rays, weighted by the densities of directions: what most renderers do.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! ρ = p_uni/p_nee = q,   q = Ω/4π the light's share of all directions; null collisions are left out of both
 //! X = [light met before the first scattering] + Σ w q T̂ w_nee(ρ) + [hit] w w_uni(ρ)

@@ -1,5 +1,7 @@
 //! Hits and shadow rays, weighted by the densities of the whole null-scattering path.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! ρ = p_uni/p_nee = q ν,   q = Ω/4π the light's share of all directions, ν the chance that the tentative collisions of
 //!     the last segment are null: Π (1 − σ_t/σ̂) by the rules analog, terminating and weighted
@@ -17,7 +19,7 @@
 //! anew at every real scattering. Roulette is left out of both densities. A distant light is never met, `p_uni = 0`: it is
 //! next-event estimation.
 //!
-//! Unbiased for `σ̂ ≥ σ_t`, for which theory bounds the variance: a shadow ray and a hit are each worth `q/(1 + q)` at
+//! For `σ̂ ≥ σ_t` theory bounds the variance: a shadow ray and a hit are each worth `q/(1 + q)` at
 //! most. The number of lookups is not known.
 //!
 //! Source: B. Miller, I. Georgiev, W. Jarosz, *A null-scattering path integral formulation of light transport*, ACM

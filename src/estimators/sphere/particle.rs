@@ -1,5 +1,7 @@
 //! A particle that walks from the eye until it meets the light: no shadow rays.
 //!
+//! Unbiased for: σ̂ ≥ σ_t and a light that a walk can meet; refused elsewhere.
+//!
 //! ```text
 //! X = w where the walk ends on the light, 0 where it ends elsewhere
 //! ```

@@ -1,5 +1,7 @@
 //! Closed-form tracking: the optical depth is known, so the answer is too.
 //!
+//! Unbiased for: every medium, exactly.
+//!
 //! ```text
 //! X = exp(−τ),  Var X = 0,  no lookups
 //! ```

@@ -1,11 +1,12 @@
 //! Decomposition tracking: the control's flight in closed form, then Woodcock through the residual.
 //!
+//! Unbiased for: a constant 0 ≤ σ_c ≤ σ_t and σ̂ ≥ σ_t − σ_c; refused elsewhere.
+//!
 //! ```text
 //! t_c = −ln(u)/σ_c;  Woodcock through σ_t − σ_c up to min(t_c, ℓ);  X = 1 if both pass, else 0
 //! ```
 //!
-//! Unbiased for a constant control `0 ≤ σ_c ≤ σ_t` (default: the minimum of σ_t) and a majorant
-//! `σ̂ ≥ σ_t − σ_c` of the residual; draws are 0 or 1.
+//! The control is the minimum of σ_t if none is given. Draws are 0 or 1.
 //!
 //! ```text
 //! J_k = τ for every k,  Var X = T(1 − T),  E[lookups] = ∫ σ̂ T dt

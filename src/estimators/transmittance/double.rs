@@ -1,11 +1,12 @@
 //! The double particle model: both particles are kept, the transmitted one with weight 1 − r.
 //!
+//! Unbiased for: every σ̂ > 0 where the residual is not 0.
+//!
 //! ```text
 //! X = T_c ∏ᵢ (1 − r(tᵢ)),  r = (σ_t − σ_c)/σ̂,  tᵢ a Poisson process of rate σ̂
 //! ```
 //!
-//! Unbiased for every σ̂ that is positive wherever the residual is not zero: below the density
-//! (r > 1, negative weights) and with negative extinction (σ_c > σ_t, r < 0) alike. Without a
+//! Weights are negative below the density (r > 1), and above 1 with negative extinction (σ_c > σ_t, r < 0). Without a
 //! control it is `ratio`; with a constant one, `residual-ratio`.
 //!
 //! ```text

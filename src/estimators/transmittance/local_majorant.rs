@@ -1,5 +1,7 @@
 //! Local-majorant Woodcock tracking: a walk that starts afresh at every segment boundary.
 //!
+//! Unbiased for: a σ̂ ≥ σ_t that is constant in pieces; refused elsewhere.
+//!
 //! ```text
 //! in segment j: fly with the constant σ̄ⱼ; beyond its end, go to the boundary and start again
 //! ```
@@ -9,7 +11,7 @@
 //! optical depth instead. Only the random numbers differ: a boundary that is crossed takes those of a step
 //! more. Segments without extinction are left out.
 //!
-//! Unbiased for `σ̄ⱼ ≥ σ_t` in every segment j; draws are 0 or 1. Moments and cost are those of
+//! Draws are 0 or 1. Moments and cost are those of
 //! `woodcock`.
 //!
 //! Source: Y. Yue, K. Iwasaki, B.-Y. Chen, Y. Dobashi, T. Nishita, *Unbiased, adaptive stochastic

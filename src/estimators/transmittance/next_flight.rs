@@ -1,11 +1,13 @@
 //! Next-flight estimation: at every collision, add the chance to fly straight to the end.
 //!
+//! Unbiased for: every constant σ̂ > 0.
+//!
 //! ```text
 //! F(x) = v(x) + 1[x' < ℓ] ρ(x') F(x'),  v(x) = e^{−σ̄(ℓ−x)},  ρ = 1 − σ_t/σ̄
 //! X = F(0),  x' = x + flight of rate σ̄
 //! ```
 //!
-//! Unbiased for every constant `σ̄ > 0`; below the density the weights change sign.
+//! Below the density the weights change sign.
 //!
 //! ```text
 //! E[F^k] from the Volterra equations of theory::volterra with g_k = Σ_{j<k} C(k, j) v^{k−j} A_j

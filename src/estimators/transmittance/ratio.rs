@@ -1,10 +1,12 @@
 //! Ratio tracking: keep, at each tentative collision, the share that is null.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0.
+//!
 //! ```text
 //! X = ∏ᵢ (1 − σ_t(tᵢ)/σ̂(tᵢ)),  tᵢ a Poisson process of rate σ̂ on [0, ℓ]
 //! ```
 //!
-//! Unbiased for every σ̂ that is positive wherever σ_t is. Where `σ̂ < σ_t` the factor is negative
+//! Where `σ̂ < σ_t` the factor is negative
 //! and the variance grows; where `σ̂ ≥ σ_t` throughout, X lies in [0, 1]. It is `double` without a
 //! control, and shares its code: the same random numbers make the same draws.
 //!

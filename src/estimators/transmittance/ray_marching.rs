@@ -1,5 +1,7 @@
 //! Ray marching: a Riemann sum in the exponent. Biased, and here to be caught.
 //!
+//! Unbiased for: never: it is here to be caught.
+//!
 //! ```text
 //! X = exp(−h Σⱼ σ_t((j + u) h)),  h = ℓ/steps,  u = ½, or uniform in [0, 1) with jitter
 //! ```

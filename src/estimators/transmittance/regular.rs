@@ -1,5 +1,7 @@
 //! Regular tracking: step from boundary to boundary of a piecewise-constant medium.
 //!
+//! Unbiased for: media that are constant between breaks, exactly; refused elsewhere.
+//!
 //! ```text
 //! X = ∏ᵢ exp(−σ_t(mᵢ) Δᵢ),  mᵢ the middle of segment i
 //! ```

@@ -1,10 +1,12 @@
 //! Residual ratio tracking: ratio tracking of what a constant control leaves over.
 //!
+//! Unbiased for: every σ̂ > 0 where the residual is not 0.
+//!
 //! ```text
 //! X = T_c ∏ᵢ (1 − (σ_t(tᵢ) − σ_c)/σ̂(tᵢ)),  T_c = e^{−σ_c ℓ}
 //! ```
 //!
-//! Unbiased for every σ̂ that is positive wherever the residual is not zero, of either sign. The
+//! The residual may have either sign. The
 //! control must be constant (default: the mean of σ_t, the best constant by section 3.4 of
 //! Szirmay-Kalos et al. 2017); with any other control the algorithm is `double`, whose code it
 //! shares.

@@ -1,5 +1,7 @@
 //! The single particle model: at a collision the transmitted particle goes on with chance q_tran.
 //!
+//! Unbiased for: 0 ≤ r ≤ 2 by the rule `terminating`, refused elsewhere; every r by the other rules.
+//!
 //! ```text
 //! W = (1 − r)/q_tran with probability q_tran, else 0;  X = T_c ∏ᵢ W(tᵢ),  r = (σ_t − σ_c)/σ̂
 //! ```

@@ -1,11 +1,13 @@
 //! Unidirectional MIS: next-flight and the flight itself, weighted by the balance heuristic.
 //!
+//! Unbiased for: every constant σ̂ > 0.
+//!
 //! ```text
 //! F(x) = u(x)(1 + 1[x' ≥ ℓ]) + 1[x' < ℓ] ρ(x') F(x'),  u = v/(1 + v),  v(x) = e^{−σ̄(ℓ−x)}
 //! X = F(0),  ρ = 1 − σ_t/σ̄,  x' = x + flight of rate σ̄
 //! ```
 //!
-//! Unbiased for every constant `σ̄ > 0`; below the density the weights change sign.
+//! Below the density the weights change sign.
 //!
 //! ```text
 //! E[F^k] from the Volterra equations of theory::volterra with

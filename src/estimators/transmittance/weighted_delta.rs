@@ -1,11 +1,13 @@
 //! Weighted delta tracking: a σ̂ that is no majorant, paid for with signed weights.
 //!
+//! Unbiased for: every σ̂ > 0 where σ_t ≠ 0.
+//!
 //! ```text
 //! real with probability σ_t/(σ_t + |σ̂ − σ_t|), which ends the walk with X = 0;
 //! else null, with weight sgn(1 − r)(r + |1 − r|),  r = σ_t/σ̂
 //! ```
 //!
-//! Unbiased for every σ̂ that is positive wherever σ_t is. For `r ≤ 1` it is `woodcock`; beyond,
+//! For `r ≤ 1` it is `woodcock`; beyond,
 //! weights are negative and grow as 2r − 1. It is the non-terminating `single` with albedo 1, whose
 //! code and moments it shares.
 //!

@@ -1,10 +1,12 @@
 //! Woodcock (delta) tracking: fly through a majorant and stop at the first real collision.
 //!
+//! Unbiased for: σ̂ ≥ σ_t; refused elsewhere.
+//!
 //! ```text
 //! X = 1 if every tentative collision is null, each with probability 1 − σ_t(tᵢ)/σ̄(tᵢ); else 0
 //! ```
 //!
-//! Unbiased for `σ̄ ≥ σ_t`; draws are 0 or 1. It is the terminating single particle model for
+//! Draws are 0 or 1. It is the terminating single particle model for
 //! `0 ≤ r ≤ 1`. Refused where σ̂ is no majorant: there the chance of a null collision is negative.
 //!
 //! ```text

@@ -1,5 +1,7 @@
 //! The double particle model's continuous transmittance: one walk, many distances.
 //!
+//! Unbiased for: every σ̂ > 0 where the residual is not 0, at every distance.
+//!
 //! ```text
 //! T̂(s) = T_c(s) ∏_{tᵢ < s} (1 − r(tᵢ)),  r = (σ_t − σ_c)/σ̂,  tᵢ a Poisson process of rate σ̂
 //! ```

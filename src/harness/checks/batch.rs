@@ -26,7 +26,7 @@ pub struct Batch<'a> {
 }
 
 impl<'a> Batch<'a> {
-    /// Counts what can be batch.
+    /// Counts the values of each channel and the numbers of lookups, where they are few.
     pub fn new(draws: &'a DrawBuffer) -> Self {
         let values = draws.values.iter().map(|values| Census::<f64>::of(values)).collect();
         let lookups = Census::<u32>::of(&draws.lookups);
