@@ -55,10 +55,11 @@ impl Page {
         first.replace('\n', " ").trim_end_matches('.').to_owned()
     }
 
-    /// Where an estimator is unbiased: what stands in the paragraph `Unbiased for: …`, on one line; `None` without one.
+    /// Domain in which an estimator is unbiased: the paragraph `Unbiased for: …` on one line, `None` without one.
     pub fn unbiased_for(&self) -> Option<String> {
         let text = self.text();
-        let said = text.split("\n\n").find_map(|paragraph| paragraph.strip_prefix("Unbiased for: "))?;
+        let said =
+            text.split("\n\n").find_map(|paragraph| paragraph.strip_prefix("Unbiased for: "))?;
         Some(said.replace('\n', " ").trim_end_matches('.').to_owned())
     }
 }

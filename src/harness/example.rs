@@ -92,7 +92,7 @@ impl Wanted<'_> {
             }
     }
 
-    /// The same for an entry and all below it.
+    /// Whether an entry, or one below it, has this key and the page as its choice.
     fn stands_below(&self, own: &Entry, key: &str) -> bool {
         let below = |table: &Vec<Entry>| table.iter().any(|own| self.stands_below(own, key));
         self.names(own, &[key]) || matches!(&own.node.value, Value::Table(table) if below(table))

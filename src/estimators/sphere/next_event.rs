@@ -1,6 +1,6 @@
 //! Next-event estimation: a shadow ray to the light from every scattering of a walk.
 //!
-//! Unbiased for: σ̂ ≥ σ_t, and shadow rays whose σ̂ and σ_c are near σ_t; refused elsewhere.
+//! Unbiased for: σ̂ ≥ σ_t, and σ̂ and σ_c of shadow rays that are near σ_t; refused elsewhere.
 //!
 //! ```text
 //! X = [light met before the first scattering] + Σ w Ω/4π T̂ over the scatterings

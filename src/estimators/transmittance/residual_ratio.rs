@@ -8,8 +8,8 @@
 //!
 //! The residual may have either sign. The
 //! control must be constant (default: the mean of σ_t, the best constant by section 3.4 of
-//! Szirmay-Kalos et al. 2017); with any other control the algorithm is `double`, whose code it
-//! shares.
+//! Szirmay-Kalos et al. 2017); with any other control the algorithm is `double`, and
+//! both have the same code.
 //!
 //! ```text
 //! J_k = ∫ σ̂ r^k,  r = (σ_t − σ_c)/σ̂,  lookups Poisson(∫σ̂)

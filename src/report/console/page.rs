@@ -10,7 +10,7 @@ use super::layout::{Paint, Pen, width};
 const CODE: usize = 4;
 /// Spaces between the columns of a table.
 const GAP: usize = 2;
-/// The smallest width of a column of a table whose words are wrapped.
+/// Smallest width of a column with wrapped words.
 const NARROWEST: usize = 8;
 
 /// Letters without a space between them, in runs of one paint.
@@ -29,7 +29,7 @@ pub fn rendered(markdown: &str, pen: Pen) -> String {
     page.text
 }
 
-/// What has been read of a page, and its lines so far.
+/// State of reading: open lists, paints and words, and the lines so far.
 struct Page {
     pen: Pen,
     text: String,
@@ -40,7 +40,7 @@ struct Page {
     paints: Vec<Paint>,
     /// For each open list the number of its next item; `None` for bullets.
     lists: Vec<Option<u64>>,
-    /// What stands before the next line.
+    /// Bullet or number before the next line.
     bullet: String,
     in_code: bool,
     /// The rows of the table that is being read; the first one is its head.

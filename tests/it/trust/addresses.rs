@@ -15,7 +15,7 @@ const HOSTS: [&str; 8] = [
     "www.w3.org",
 ];
 
-/// What would install or fetch Trueflight from a registry or a repository.
+/// Texts that install or fetch Trueflight from a registry or a repository.
 const INVENTED: [&str; 10] = [
     "github.com/trueflight",
     "gitlab.com/trueflight",
@@ -52,7 +52,9 @@ fn no_address_is_invented() {
             for rest in line.split("http").skip(1) {
                 let rest = rest.strip_prefix('s').unwrap_or(rest);
                 let Some(address) = rest.strip_prefix("://") else { continue };
-                let host = address.split(|c: char| !(c.is_ascii_alphanumeric() || ".-".contains(c))).next();
+                let host = address
+                    .split(|c: char| !(c.is_ascii_alphanumeric() || ".-".contains(c)))
+                    .next();
                 let host = host.unwrap_or_default().trim_end_matches('.');
                 if !HOSTS.contains(&host) && !host.is_empty() {
                     wrong.push(format!("{place}: {host}"));

@@ -24,7 +24,8 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
     for row in listed() {
         let place = format!("{} ({})", row.name, row.part);
         let kind = row.part.split(' ').next().unwrap_or_default();
-        let is_used = ["media", "phases", "sampling", "controls", "estimators", "problems"].contains(&kind);
+        let is_used =
+            ["media", "phases", "sampling", "controls", "estimators", "problems"].contains(&kind);
         let Some(text) = example::of(&row.part, &row.name) else {
             if is_used && !row.part.contains("pictures") {
                 wrong.push(format!("{place}: no case"));
@@ -40,7 +41,8 @@ fn every_page_that_a_case_may_use_has_a_case_to_copy_that_is_planned() {
                 let plan = Plan::new(&cases, &options(1, 100_000));
                 planned += 1;
                 // A problem's case may show one that is refused beside others.
-                let refused = plan.experiments().filter(|(_, planned)| planned.outcome.is_err()).count();
+                let refused =
+                    plan.experiments().filter(|(_, planned)| planned.outcome.is_err()).count();
                 if plan.experiments().count() == refused || (refused > 0 && kind != "problems") {
                     wrong.push(format!("{place}: {refused} refused in\n{text}"));
                 }
@@ -118,7 +120,12 @@ fn a_wrong_name_has_a_suggestion() {
 fn names_and_kinds_may_be_written_as_people_write_them() {
     assert_eq!(stdout(&["explain", "residual_ratio"]), stdout(&["explain", "residual-ratio"]));
     assert_eq!(stdout(&["explain", "free", "flight"]), stdout(&["explain", "Free-Flight"]));
-    for (kind, part) in [("media", "media"), ("medium", "media"), ("Estimators", "estimators"), ("sampling", "sampling")] {
+    for (kind, part) in [
+        ("media", "media"),
+        ("medium", "media"),
+        ("Estimators", "estimators"),
+        ("sampling", "sampling"),
+    ] {
         assert_eq!(stdout(&["explain", kind]), stdout(&["list", part]));
         assert_eq!(stdout(&["list", &kind.to_lowercase()]), stdout(&["list", part]));
     }

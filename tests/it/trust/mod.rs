@@ -1,4 +1,4 @@
-//! What documents promise: addresses that exist, results that are shown, tables that agree with the catalogue, and
+//! Promises of documents: addresses that exist, results that are shown, tables that agree with the catalogue, and
 //! cases to copy that are valid.
 
 mod addresses;
@@ -22,9 +22,12 @@ fn files(below: &str) -> Vec<PathBuf> {
     let mut found = Vec::new();
     let mut folders = vec![root().join(below)];
     while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry")) {
+        for entry in
+            std::fs::read_dir(&folder).expect("a folder").map(|entry| entry.expect("an entry"))
+        {
             let (path, name) = (entry.path(), entry.file_name().to_string_lossy().into_owned());
-            let is_built = ["target", "out", "node_modules", "__pycache__", "corpus"].contains(&name.as_str());
+            let is_built =
+                ["target", "out", "node_modules", "__pycache__", "corpus"].contains(&name.as_str());
             if path.is_dir() && !is_built && (!name.starts_with('.') || name == ".ci") {
                 folders.push(path);
             } else if path.is_file() {
@@ -38,12 +41,17 @@ fn files(below: &str) -> Vec<PathBuf> {
 
 /// The pages of the manual and README, by their paths, with their texts.
 fn manual() -> Vec<(String, String)> {
-    let pages = files("docs").into_iter().chain(["README.md".into(), "CONTRIBUTING.md".into(), "ARCHITECTURE.md".into()]);
-    let pages = pages.map(|path| path.to_string_lossy().into_owned()).filter(|path| path.ends_with(".md"));
+    let pages = files("docs").into_iter().chain([
+        "README.md".into(),
+        "CONTRIBUTING.md".into(),
+        "ARCHITECTURE.md".into(),
+    ]);
+    let pages =
+        pages.map(|path| path.to_string_lossy().into_owned()).filter(|path| path.ends_with(".md"));
     pages.map(|path| (path.clone(), read(&path))).collect()
 }
 
-/// What the command prints.
+/// Output of the command.
 fn trueflight(arguments: &[&str]) -> Output {
     let mut command = Command::new(env!("CARGO_BIN_EXE_trueflight"));
     command.env_remove("NO_COLOR").env("COLUMNS", "80").args(arguments).output().expect("it runs")

@@ -34,7 +34,9 @@ fn nothing_else_is_in_the_repository() {
     let mut git = std::process::Command::new("git");
     let output = git.current_dir(root()).args(["ls-files", "-z", "results"]).output();
     // A copy of the sources without its history has nothing to compare.
-    let Some(output) = output.ok().filter(|output| output.status.success() && !output.stdout.is_empty()) else {
+    let Some(output) =
+        output.ok().filter(|output| output.status.success() && !output.stdout.is_empty())
+    else {
         return;
     };
     let text = String::from_utf8(output.stdout).expect("names");
@@ -54,19 +56,25 @@ fn every_result_is_shown_or_named() {
         let by_folder = ["bench", "stress", "bench/transmittance"].contains(&folder);
         notes.contains(file) || by_star || by_folder
     };
-    let is_linked = |name: &str| pages.iter().any(|(_, text)| text.contains(&format!("results/{name}")));
+    let is_linked =
+        |name: &str| pages.iter().any(|(_, text)| text.contains(&format!("results/{name}")));
     let kept = kept();
     let own = ["README.md", ".gitignore"];
-    let wrong = kept.iter().filter(|name| !own.contains(&name.as_str()) && !is_named(name) && !is_linked(name));
+    let wrong = kept
+        .iter()
+        .filter(|name| !own.contains(&name.as_str()) && !is_named(name) && !is_linked(name));
     none(&wrong.cloned().collect::<Vec<_>>());
     // A plot is there once.
-    let twins = kept.iter().filter(|name| kept.contains(&name.replace(".svg", ".png")) && name.ends_with(".svg"));
+    let twins = kept
+        .iter()
+        .filter(|name| kept.contains(&name.replace(".svg", ".png")) && name.ends_with(".svg"));
     none(&twins.cloned().collect::<Vec<_>>());
     // What notes and pages call by its path is there.
     for (page, text) in &pages {
         for name in text.split("../results/").skip(1) {
             let name = name.split([')', ']', '`', ' ', '\n']).next().unwrap_or_default();
-            let is_there = kept.contains(name) || kept.iter().any(|own| own.starts_with(name.trim_end_matches('/')));
+            let is_there = kept.contains(name)
+                || kept.iter().any(|own| own.starts_with(name.trim_end_matches('/')));
             assert!(is_there, "{page} names results/{name}");
         }
     }

@@ -15,7 +15,7 @@ fn cells(line: &str) -> Vec<String> {
     inside.split('|').map(|cell| cell.trim().replace('\u{1}', "|")).collect()
 }
 
-/// What stands between back ticks.
+/// Texts between back ticks.
 fn code(cell: &str) -> Vec<String> {
     cell.split('`').skip(1).step_by(2).map(str::to_owned).collect()
 }
@@ -32,19 +32,25 @@ fn rows() -> Vec<Row> {
             let marked = line.strip_prefix("<!-- list ").and_then(|rest| rest.strip_suffix(" -->"));
             let Some(part) = marked else { continue };
             let head = cells(lines.next().unwrap_or_default());
-            assert!(lines.next().is_some_and(|line| line.starts_with("|--")), "{page}: no table after {line}");
+            assert!(
+                lines.next().is_some_and(|line| line.starts_with("|--")),
+                "{page}: no table after {line}"
+            );
             while let Some(line) = lines.next_if(|line| line.starts_with('|')) {
                 let row = cells(line);
                 assert_eq!(row.len(), head.len(), "{page}: {line}");
-                let by_head: BTreeMap<_, _> = head.iter().cloned().zip(row.iter().cloned()).collect();
+                let by_head: BTreeMap<_, _> =
+                    head.iter().cloned().zip(row.iter().cloned()).collect();
                 let (parts, names) = if part == "estimators" {
-                    let problems = code(&row[0]).into_iter().map(|of| format!("estimators of {of}"));
+                    let problems =
+                        code(&row[0]).into_iter().map(|of| format!("estimators of {of}"));
                     (problems.collect(), code(&row[1]))
                 } else {
                     (vec![part.to_owned()], code(&row[0]))
                 };
                 for part in parts {
-                    let named = names.iter().map(|name| (part.clone(), name.clone(), by_head.clone()));
+                    let named =
+                        names.iter().map(|name| (part.clone(), name.clone(), by_head.clone()));
                     rows.extend(named);
                 }
             }
@@ -53,7 +59,7 @@ fn rows() -> Vec<Row> {
     rows
 }
 
-/// Parts whose names are files or commands of their own, and are told elsewhere.
+/// Parts of files and of built-in cases, for which the manual has no table.
 const UNLISTED: [&str; 3] = ["files", "cases", "pictures"];
 
 fn catalogue() -> Vec<Listed> {
@@ -65,7 +71,12 @@ fn tables_have_the_names_of_the_catalogue() {
     let known: BTreeSet<_> = catalogue().into_iter().map(|row| (row.part, row.name)).collect();
     let rows = rows();
     let shown: BTreeSet<_> = rows.iter().map(|row| (row.0.clone(), row.1.clone())).collect();
-    none(&known.difference(&shown).map(|(part, name)| format!("no row of {name} ({part})")).collect::<Vec<_>>());
+    none(
+        &known
+            .difference(&shown)
+            .map(|(part, name)| format!("no row of {name} ({part})"))
+            .collect::<Vec<_>>(),
+    );
     let strange = shown.difference(&known);
     none(&strange.map(|(part, name)| format!("{name} is not among {part}")).collect::<Vec<_>>());
     assert_eq!(rows.len(), shown.len(), "a name stands in two rows");
@@ -89,7 +100,8 @@ fn tables_say_what_the_catalogue_says() {
             compared += 1;
             let (own, text) = (format!("{name} ({part})\n"), stdout(&["explain", &name]));
             let page = text.split(&own).nth(1).unwrap_or_else(|| panic!("no page of {place}"));
-            let said = page.split("\n\n").find_map(|paragraph| paragraph.strip_prefix("Unbiased for: "));
+            let said =
+                page.split("\n\n").find_map(|paragraph| paragraph.strip_prefix("Unbiased for: "));
             let said = said.map(|said| said.replace('\n', " ").trim_end_matches('.').to_owned());
             let cell = cells.get("unbiased for").cloned();
             if said.is_none() || said != cell {
@@ -115,7 +127,9 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
     ];
     let (mut wrong, mut compared) = (Vec::new(), 0);
     for (problem, body) in cases {
-        for ((_, name), domain) in said.iter().filter(|((part, _), _)| *part == format!("estimators of {problem}")) {
+        for ((_, name), domain) in
+            said.iter().filter(|((part, _), _)| *part == format!("estimators of {problem}"))
+        {
             let settings = match name.as_str() {
                 "single" => "{ single = { rule = \"terminating\" } }".to_owned(),
                 "ray-marching" => "{ ray-marching = { steps = 3 } }".to_owned(),
@@ -132,11 +146,14 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
             let cases = [crate::common::case("test", &text)];
             let plan = trueflight::harness::Plan::new(&cases, &crate::common::options(1, 1000));
             let is_refused = plan.experiments().any(|(_, planned)| planned.outcome.is_err());
-            let is_exact = domain.contains("exactly") || domain.contains("the variance is infinite");
+            let is_exact =
+                domain.contains("exactly") || domain.contains("the variance is infinite");
             let should = domain.contains("refused") && !is_exact;
             compared += 1;
             if is_refused != should {
-                wrong.push(format!("{problem}: {name}: refused {is_refused}, but unbiased for {domain}"));
+                wrong.push(format!(
+                    "{problem}: {name}: refused {is_refused}, but unbiased for {domain}"
+                ));
             }
         }
     }
@@ -146,9 +163,18 @@ fn what_is_refused_below_the_density_is_what_the_manual_says() {
 
 #[test]
 fn counts_in_documents_are_those_of_the_repository() {
-    let cases = files("cases").iter().filter(|path| path.extension().is_some_and(|end| end == "toml")).count();
-    assert!(read("README.md").contains(&format!("; {cases} of them are in [cases/](cases)")), "{cases} cases");
-    assert!(read("docs/cases.md").contains(&format!("[cases/](../cases): {cases} files")), "{cases} cases");
+    let cases = files("cases")
+        .iter()
+        .filter(|path| path.extension().is_some_and(|end| end == "toml"))
+        .count();
+    assert!(
+        read("README.md").contains(&format!("; {cases} of them are in [cases/](cases)")),
+        "{cases} cases"
+    );
+    assert!(
+        read("docs/cases.md").contains(&format!("[cases/](../cases): {cases} files")),
+        "{cases} cases"
+    );
     let page = read("docs/self-test.md");
     let mutants = page.lines().filter(|line| line.starts_with("| `")).count();
     assert!(page.contains(&format!("All {mutants} mutants")), "{mutants} mutants are listed");
