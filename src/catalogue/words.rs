@@ -73,20 +73,25 @@ pub fn meant(written: &str, keys: &[&str], otherwise: &str) -> String {
     }
 }
 
-/// The number of letters to insert, delete or replace (V. Levenshtein, 1966).
+/// The number of letters to insert, delete or replace, or of neighbours to exchange (F. J. Damerau, *A technique for
+/// computer detection and correction of spelling errors*, 1964).
 fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replace = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replace.min(row[j] + 1).min(diagonal + 1);
+    let [a, b]: [Vec<char>; 2] = [a, b].map(|text| text.chars().collect());
+    let first: Vec<usize> = (0..=b.len()).collect();
+    let mut rows = vec![first];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let replace = rows[i - 1][j - 1] + usize::from(a[i - 1] != b[j - 1]);
+            let mut least = replace.min(row[j - 1] + 1).min(rows[i - 1][j] + 1);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                least = least.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(least);
         }
+        rows.push(row);
     }
-    row[b.len()]
+    rows[a.len()][b.len()]
 }
 
 /// The beginning of a text that is too long for a message.
@@ -100,6 +105,20 @@ pub fn brief(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn letters_that_changed_places_are_one_mistake() {
+        for (a, b, edits) in [
+            ("medai", "media", 1),
+            ("ratio", "rato", 1),
+            ("", "ab", 2),
+            ("eq12", "eq21", 1),
+            ("abc", "ca", 3),
+        ] {
+            assert_eq!((distance(a, b), distance(b, a)), (edits, edits), "{a} {b}");
+        }
+        assert_eq!(suggestion("medai", &["mean", "media"], "x"), "did you mean `media`? (x)");
+    }
 
     #[test]
     fn no_number_fills_a_line() {

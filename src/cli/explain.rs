@@ -78,11 +78,12 @@ fn unknown(written: &str, name: &str, catalogue: &Catalogue) -> anyhow::Error {
     let mut names: Vec<String> = pages.chain(kinds).chain(sources).collect();
     names.sort();
     names.dedup();
-    let near: Vec<&str> =
-        names.iter().map(String::as_str).filter(|known| known.contains(name)).collect();
-    let all = "`trueflight list` shows the names";
-    let otherwise =
-        if near.is_empty() { all.to_owned() } else { format!("{all}: {}", near.join(", ")) };
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    anyhow::anyhow!("nothing is called \"{written}\"; {}", suggestion(name, &names, &otherwise))
+    let all = "`trueflight list` shows the names";
+    let mut hint = suggestion(name, &names, all);
+    let near: Vec<&str> = names.into_iter().filter(|known| known.contains(name)).collect();
+    if hint == all && !near.is_empty() {
+        hint = format!("{all}: {}", near.join(", "));
+    }
+    anyhow::anyhow!("nothing is called \"{written}\"; {hint}")
 }

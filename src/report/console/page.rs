@@ -231,9 +231,26 @@ fn length(words: &[Word]) -> usize {
     letters + words.len().saturating_sub(1)
 }
 
+/// The words with a space between any two, which is painted as its neighbours are if these are alike.
 fn painted(words: &[Word], pen: Pen) -> String {
-    let word = |word: &Word| word.iter().map(|(paint, text)| pen.paint(*paint, text)).collect();
-    words.iter().map(word).collect::<Vec<String>>().join(" ")
+    let mut runs: Vec<(Paint, String)> = Vec::new();
+    for (i, word) in words.iter().enumerate() {
+        for (k, (paint, letters)) in word.iter().enumerate() {
+            let space = if i > 0 && k == 0 { " " } else { "" };
+            match runs.last_mut() {
+                Some((last, text)) if last == paint => *text += &format!("{space}{letters}"),
+                Some((Paint::Plain, text)) => {
+                    text.push_str(space);
+                    runs.push((*paint, letters.clone()));
+                }
+                Some(_) if *paint != Paint::Plain => {
+                    runs.extend([(Paint::Plain, space.to_owned()), (*paint, letters.clone())]);
+                }
+                _ => runs.push((*paint, format!("{space}{letters}"))),
+            }
+        }
+    }
+    runs.iter().map(|(paint, text)| pen.paint(*paint, text)).collect()
 }
 
 #[cfg(test)]
@@ -260,9 +277,7 @@ mod tests {
     #[test]
     fn colours_stand_for_the_signs_and_have_no_width() {
         let text = lines_of(24, true);
-        for painted in
-            ["\x1b[1mHead\x1b[0m", "\x1b[36mname\x1b[0m", "\x1b[3ma\x1b[0m \x1b[3mtitle\x1b[0m,"]
-        {
+        for painted in ["\x1b[1mHead\x1b[0m", "\x1b[36mname\x1b[0m", "\x1b[3ma title\x1b[0m,"] {
             assert!(text.contains(painted), "no {painted:?} in {text:?}");
         }
         let mut plain = text.clone();

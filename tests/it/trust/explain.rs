@@ -85,7 +85,8 @@ fn a_terminal_sees_no_signs_of_markdown() {
 fn pages_are_as_wide_as_the_terminal() {
     // util-linux's `script` lends a terminal; where it is missing, `--color always` above stands for one.
     let mut script = std::process::Command::new("script");
-    let command = format!("stty cols 50; {} explain woodcock", env!("CARGO_BIN_EXE_trueflight"));
+    let command =
+        format!("stty cols 50 rows 40; {} explain woodcock", env!("CARGO_BIN_EXE_trueflight"));
     let output = script.args(["-qec", &command, "/dev/null"]).env("NO_COLOR", "1").output();
     let Some(output) = output.ok().filter(|output| output.status.success()) else { return };
     let page = String::from_utf8(output.stdout).expect("text").replace('\r', "");
