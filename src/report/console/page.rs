@@ -19,8 +19,10 @@ type Word = Vec<(Paint, String)>;
 /// Returns the lines of a page without the signs of Markdown. Lines of code keep their length, all others fit.
 pub fn rendered(markdown: &str, pen: Pen) -> String {
     let mut page = Page::new(pen);
-    // Names in brackets are links of rustdoc.
-    let mut resolve = |_: BrokenLink| Some((CowStr::from(""), CowStr::from("")));
+    // Code in brackets is a link of rustdoc; other brackets are an interval, or a condition.
+    let mut resolve = |link: BrokenLink| {
+        link.reference.starts_with('`').then(|| (CowStr::from(""), CowStr::from("")))
+    };
     let options = Options::ENABLE_TABLES;
     let parser = Parser::new_with_broken_link_callback(markdown, options, Some(&mut resolve));
     for event in parser {
@@ -167,7 +169,7 @@ impl Page {
 
     fn code(&mut self, text: &str) {
         for line in text.lines() {
-            let line = format!("{}{line}", " ".repeat(CODE));
+            let line = format!("{}{}", " ".repeat(CODE), line.replace('`', ""));
             let _ = writeln!(self.text, "{}", line.trim_end());
         }
     }
@@ -257,8 +259,8 @@ fn painted(words: &[Word], pen: Pen) -> String {
 mod tests {
     use super::*;
 
-    const PAGE: &str = "# Head\n\nA `name` and *a title*, [`link`] and σ_t in two\nlines of words.\n\n\
-                        ```text\nX = 1   (code)\n```\n\n- one item that is long\n- two\n\n\
+    const PAGE: &str = "# Head\n\nA `name` and *a title*, [`link`] and σ_t in [0, 1]:\nlines of words.\n\n\
+                        ```text\nX = 1   (of `name`)\n```\n\n- one item that is long\n- two\n\n\
                         | setting | meaning |\n|---|---|\n| `rule` | which **rule** of several |\n";
 
     fn lines_of(width: usize, colour: bool) -> String {
@@ -268,7 +270,7 @@ mod tests {
     #[test]
     fn signs_of_markdown_are_gone_and_lines_fit() {
         let text = lines_of(24, false);
-        let expected = "Head\n\nA name and a title, link\nand σ_t in two lines of\nwords.\n\n    X = 1   (code)\n\n\
+        let expected = "Head\n\nA name and a title, link\nand σ_t in [0, 1]: lines\nof words.\n\n    X = 1   (of name)\n\n\
                         • one item that is long\n• two\n\nsetting  meaning\nrule     which rule of\n         several\n";
         assert_eq!(text, expected);
         assert!(text.lines().all(|line| width(line) <= 24));
