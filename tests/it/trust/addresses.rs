@@ -4,13 +4,16 @@ use super::files;
 use crate::common::none;
 
 /// Hosts that exist and that documents, licences or formats name.
-const HOSTS: [&str; 8] = [
+const HOSTS: [&str; 11] = [
+    "arxiv.org",
     "doi.org",
     "docs.rs",
     "mitsuba.readthedocs.io",
     "numpy.org",
+    "pbrt.org",
     "rustup.rs",
     "www.apache.org",
+    "www.mitsuba-renderer.org",
     "www.openvdb.org",
     "www.w3.org",
 ];
