@@ -9,6 +9,9 @@ use crate::judge::theory::{Background, Theory, Whole};
 use crate::judge::trial::{Trial, Wanted};
 use crate::rng::Stream;
 
+/// More values of a draw than this are not judged together: each has lost its share of α.
+pub const MAX_VALUES: usize = 1 << 16;
+
 /// How many draws are made at most where [`Check::draws`] does not say.
 pub const MOST: u64 = 1 << 24;
 
@@ -242,6 +245,9 @@ impl<S> Check<S> {
         if values == 0 {
             return Err(CheckError::NoValues { name: self.name.clone() });
         }
+        if values > MAX_VALUES {
+            return Err(CheckError::TooManyValues { name: self.name.clone(), values, most: MAX_VALUES });
+        }
         let claims = self.said.claims(&self.name, values, has_lookups)?;
         let alpha = self.said.alpha;
         if !(alpha > 0.0 && alpha < 1.0) {
@@ -273,7 +279,7 @@ impl Said {
     pub(super) fn values(&self) -> usize {
         let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
         let known = self.known().map_or(truths, |theory| theory.channels.len());
-        self.values.unwrap_or(known).max(1)
+        self.values.unwrap_or(known.max(1))
     }
 
     /// What theory says, where it says something.

@@ -42,6 +42,16 @@ pub enum CheckError {
         /// The check.
         name: String,
     },
+    /// A draw with more values than are judged together.
+    #[error("check `{name}`: a draw has {values} values; {most} are judged together at most")]
+    TooManyValues {
+        /// The check.
+        name: String,
+        /// How many values a draw has.
+        values: usize,
+        /// How many it may have.
+        most: usize,
+    },
     /// Numbers for another number of values than a draw has.
     #[error(
         "check `{name}`: {} for the {what}, but a draw has {}; give one for each value, or one for all",

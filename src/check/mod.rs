@@ -28,7 +28,7 @@ mod sample;
 #[cfg(feature = "library")]
 mod theory;
 
-pub use builder::{Check, MOST, Values, check, check_with, claim};
+pub use builder::{Check, MAX_VALUES, MOST, Values, check, check_with, claim};
 pub use error::CheckError;
 pub use gate::{Gate, Planned};
 pub use made::{Closure, Factory};

@@ -48,7 +48,7 @@ impl Check<()> {
 
     fn opened(self, numbers: Option<usize>) -> Result<Pushed, CheckError> {
         let values = self.said.values();
-        let length = numbers.map(|numbers| (numbers / values) as u64).or(self.said.draws);
+        let length = numbers.map(|numbers| (numbers / values.max(1)) as u64).or(self.said.draws);
         let has_lookups = self.said.has_lookups();
         let readings = self.readings(values, has_lookups, length)?;
         let columns = vec![Vec::with_capacity(BUFFER); values];

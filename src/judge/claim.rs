@@ -173,7 +173,7 @@ pub enum ClaimError {
     },
     /// A value that the swept thing cannot have.
     #[error(
-        "{case}: {what} = {} of `{estimator}` is not {wanted}{}",
+        "{case}: `{estimator}`: {what} = {} is not {wanted}{}",
         number(*value),
         near(*nearest)
     )]

@@ -42,7 +42,11 @@ pub(crate) trait Distribution:
     fmt::Debug + Send + Sync + UnwindSafe + RefUnwindSafe
 {
     /// Its tests, before the first draw.
-    fn tests(&self, asked: Asked) -> Box<dyn Tests>;
+    ///
+    /// # Errors
+    ///
+    /// A sentence on why there are none.
+    fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String>;
 }
 
 /// Tests of a distribution that draws are pushed to.
@@ -131,7 +135,10 @@ impl Theory {
             let Whole { length, has_lookups, rounding, values, .. } = asked;
             let alpha = DISTRIBUTION * wanted.alpha;
             let asked = Asked { alpha, length, has_lookups, rounding, values };
-            background.tests = Some(self.distribution.tests(asked));
+            match self.distribution.tests(asked) {
+                Ok(tests) => background.tests = Some(tests),
+                Err(why) => background.notes.push(why),
+            }
         }
         background
     }

@@ -8,6 +8,7 @@
 //! ε         as asked; else √(27 V/n) for n draws, at most 5 % for the mean, 20 % for the variance and
 //!           2 % for the lookups; else 1 % for the mean, and for the others what as many draws see
 //! levels    fail at ln E ≥ ln(K/0.8α), K the first three as far as they are asked; drift at ln(1/0.2α);
+//!           with the theory of a case ln(K/0.6α), and the p-values of the distribution (`theory`) share 0.2α;
 //!           pass at both ln P ≥ ln(1/β), β = 0.01;  dependence has an α of its own
 //! ```
 //!

@@ -44,9 +44,16 @@ const HARMLESS: f64 = 0.05;
 pub(super) struct Known(pub Arc<Prediction>);
 
 impl Distribution for Known {
-    fn tests(&self, asked: Asked) -> Box<dyn Tests> {
+    fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String> {
+        let Prediction { law, increments, channels, .. } = &*self.0;
+        let has_values = law.is_some() || !increments.is_empty();
+        let is_known = has_values && asked.values == channels.len();
+        let has_counts = asked.has_lookups && checks::counts::of(&self.0).is_some();
+        if let (false, false, Some(why)) = (is_known, has_counts, unknown(&self.0, asked)) {
+            return Err(why);
+        }
         let next = asked.length.unwrap_or(FIRST);
-        Box::new(Whole {
+        Ok(Box::new(Whole {
             prediction: Arc::clone(&self.0),
             asked,
             laws: None,
@@ -56,7 +63,7 @@ impl Distribution for Known {
             next,
             looks: 0,
             buffer: DrawBuffer::new(asked.values),
-        })
+        }))
     }
 }
 
@@ -185,7 +192,7 @@ impl Tests for Whole {
             };
             self.untested.push(format!("{} not tested: {why}", listed(&few)));
         }
-        if let Some(why) = self.unknown() {
+        if let Some(why) = unknown(&self.prediction, self.asked) {
             self.untested.push(why);
         }
         Tested { findings, untested: self.untested }
@@ -316,26 +323,21 @@ impl Whole {
             self.next = self.next.saturating_mul(2);
         }
     }
+}
 
-    /// What theory does not know.
-    fn unknown(&self) -> Option<String> {
-        let Prediction { law, increments, channels, .. } = &*self.prediction;
-        if self.asked.values != channels.len() && !increments.is_empty() {
-            let why = "it takes all channels of a draw";
-            return Some(format!("the distribution along the curve is not tested: {why}"));
-        }
-        if law.is_some() || !increments.is_empty() {
-            return None;
-        }
-        let known = if channels.iter().any(|channel| channel.moments.is_some()) {
-            "mean and variance"
-        } else {
-            "the mean"
-        };
-        Some(format!(
-            "the distribution of the draws is not tested: theory knows {known} of it alone"
-        ))
+/// What theory does not know of the distribution of the values.
+fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
+    let Prediction { law, increments, channels, .. } = prediction;
+    if asked.values != channels.len() && !increments.is_empty() {
+        let why = "it takes all channels of a draw";
+        return Some(format!("the distribution along the curve is not tested: {why}"));
     }
+    if law.is_some() || !increments.is_empty() {
+        return None;
+    }
+    let has_moments = channels.iter().any(|channel| channel.moments.is_some());
+    let known = if has_moments { "mean and variance" } else { "the mean" };
+    Some(format!("the distribution of the draws is not tested: theory knows {known} of it alone"))
 }
 
 /// How many draws of distances that are rounded to `rounding`, relative to their positions, may be tested: rounding moves

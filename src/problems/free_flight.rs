@@ -6,7 +6,11 @@
 //! ```
 //!
 //! Settings are those of `transmittance`. A draw is the distance from the ray's beginning. The
-//! whole distribution is tested, not only its mean.
+//! whole distribution is tested, not only its mean, by `run` and, of another program's draws, by
+//! `judge`.
+//!
+//! Another program may write a flight that leaves as S, as any larger number, as `inf` or as `-1`.
+//! NaN and other negative numbers are no distances; `judge` names them.
 
 use std::sync::OnceLock;
 

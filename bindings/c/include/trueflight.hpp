@@ -145,6 +145,7 @@ template <class Self> class setup {
     Self &draws(std::uint64_t count) { return said(tf_check_draws(get(), count)); }
     Self &seed(std::uint64_t value) { return said(tf_check_seed(get(), value)); }
     Self &batch(std::uint64_t count) { return said(tf_check_batch(get(), count)); }
+    Self &values(std::size_t count) { return said(tf_check_set_values(get(), count)); }
     Self &mean_only() { return said(tf_check_mean_only(get())); }
     /** Without a value of what the case sweeps, the case's own. */
     Self &of(const std::string &name, const std::string &estimator,

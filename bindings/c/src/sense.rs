@@ -1,5 +1,6 @@
 //! Whether what a setter is given makes sense by itself. What does not go together is told before the first draw.
 
+use trueflight::check::MAX_VALUES;
 use trueflight::judge::claim::{Claim, Given};
 use trueflight::judge::trial::{Trial, Wanted};
 
@@ -22,6 +23,14 @@ pub(crate) fn range(low: f64, high: f64) -> Result<(), String> {
         return Ok(());
     }
     Err(format!("a range of {low} to {high} has nothing inside; give a lower and a higher end"))
+}
+
+/// Looks at a number of values of a draw.
+pub(crate) fn values(values: usize) -> Result<(), String> {
+    if (1..=MAX_VALUES).contains(&values) {
+        return Ok(());
+    }
+    Err(format!("a draw has {values} values; give a number from 1 to {MAX_VALUES}"))
 }
 
 /// Looks at what is wanted of the verdict, as if the draws had mean and variance 1.

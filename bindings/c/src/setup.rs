@@ -146,6 +146,16 @@ pub unsafe extern "C" fn tf_check_rounding(check: *mut Check, rounding: f64) -> 
     }
 }
 
+/// How many values a draw has that is pushed, where that is not the number of truths, or of channels in the case: the
+/// luminance of a chromatic medium, which follows from the other channels, may be left out.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn tf_check_set_values(check: *mut Check, values: usize) -> Status {
+    // SAFETY: C's promise of checks.
+    unsafe {
+        change(check, |check| check.say(sense::values(values), |said| said.values(values)))
+    }
+}
+
 /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_mean_only(check: *mut Check) -> Status {
@@ -229,9 +239,10 @@ pub unsafe extern "C" fn tf_check_seed(check: *mut Check, seed: u64) -> Status {
     }
 }
 
-/// Takes mean, variance and kurtosis from theory: for an estimator of a case, by its name in tables or in the
-/// catalogue, at a value of what the case sweeps, or a constant σ̂ where it sweeps nothing; NAN takes the case's own. The
-/// case is a built-in one or a file. Every channel of the case is a value of the draw.
+/// Takes mean, variance, kurtosis, lookups and, where it is known, the whole distribution from theory: for an estimator of
+/// a case, by its name in tables or in the catalogue, at any value of what the case sweeps, or a constant σ̂ where it
+/// sweeps nothing; NAN takes the case's own. The case is a built-in one or a file. Every channel of the case is a value of
+/// the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_of(
     check: *mut Check,

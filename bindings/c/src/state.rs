@@ -175,13 +175,14 @@ impl State {
             }
             _ => {}
         }
-        let is_first = matches!(self.stage, Stage::SetUp(_));
+        if matches!(self.stage, Stage::SetUp(_)) {
+            self.say(Ok(()), |said| said.values(values))?;
+        }
         let found = self.open()?.values();
         if found == values {
             return Ok(());
         }
-        let what = if is_first { "channels of the case" } else { "values of the draws before" };
-        Err(self.error(Status::Claim, &wrong(format!("{found} {what}"))))
+        Err(self.error(Status::Claim, &wrong(format!("{found} values of the draws before"))))
     }
 
     /// Whether more draws may change what is said.

@@ -54,11 +54,14 @@ impl From<CheckError> for Error {
             CheckError::NoTruth { .. }
             | CheckError::Claim { .. }
             | CheckError::Values { .. }
+            | CheckError::Channels { .. }
             | CheckError::Twice { .. } => Status::Claim,
             CheckError::NoLookups { .. }
             | CheckError::NoLookupsWanted { .. }
             | CheckError::Lookups { .. }
             | CheckError::Ragged { .. }
+            | CheckError::NoValues { .. }
+            | CheckError::TooManyValues { .. }
             | CheckError::NoDraws { .. } => Status::Draws,
             _ => Status::Internal,
         };

@@ -4,9 +4,8 @@ use pyo3::buffer::PyBuffer;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use trueflight::check::{Check, CheckError, Outcome, Pushed};
-use trueflight::harness::sweep::What;
 use trueflight::judge::Choice;
-use trueflight::judge::claim::{Claim, ROUNDING};
+use trueflight::judge::claim::ROUNDING;
 use trueflight::judge::trial::BUFFER;
 
 use crate::background::work;
@@ -34,6 +33,7 @@ struct Asked {
     case: Option<cases::Asked>,
     estimator: String,
     sampling: Option<f64>,
+    nearest: bool,
     mean_only: bool,
     tolerance: Option<f64>,
     variance_tolerance: Option<f64>,
@@ -48,6 +48,7 @@ impl Asked {
     fn check(&self) -> Check<()> {
         let mut check = trueflight::claim(&self.name).batch(self.batch).alpha(self.alpha);
         check = check.seed(self.seed).rounding(self.rounding.unwrap_or(ROUNDING));
+        check = check.values(self.values);
         if let Some(truth) = &self.truth {
             // The number of truths tells how many values a draw has.
             let all = if truth.len() == 1 { vec![truth[0]; self.values] } else { truth.clone() };
@@ -80,29 +81,9 @@ impl Asked {
     /// The same with what theory says.
     fn with_theory(&self, case: &cases::Asked) -> Result<Check<()>, Trouble> {
         let case = case.read_one()?;
-        let (estimator, swept) = (self.estimator.as_str(), self.sampling);
-        // Of what else is swept, the case says which numbers there are.
-        let is_sampling = case.sweep.as_ref().is_none_or(|axis| axis.what == What::Sampling);
-        let is_wrong = |x: &f64| !x.is_finite() || (is_sampling && *x <= 0.0);
-        if let Some(x) = swept.filter(is_wrong) {
-            let wanted = if is_sampling { "a finite number above 0" } else { "a finite number" };
-            let text = format!("check `{}`: sampling = {x} is not {wanted}", self.name);
-            return Err(Trouble::Wrong(text));
-        }
-        let choice =
-            Choice { estimator, swept, is_exact: true, seed: self.seed, ..Choice::default() };
-        let wrong = |error: &dyn std::fmt::Display| {
-            Trouble::Wrong(format!("check `{}`: {error}", self.name))
-        };
-        let claims = Claim::of_channels(&case, &choice, ROUNDING).map_err(|error| wrong(&error))?;
-        self.is_wide("channels of the case", claims.len())?;
-        let mut check = self.check().of_case(&case, &choice);
-        // Only for draws that tell their lookups.
-        let told = claims[0].1.lookups.filter(|_| self.counts && !self.mean_only);
-        if let (Some(law), None) = (told, self.lookups) {
-            check = check.lookups(law.mean, law.variance.unwrap_or_default());
-        }
-        Ok(check)
+        let (estimator, swept, nearest) = (self.estimator.as_str(), self.sampling, self.nearest);
+        let choice = Choice { estimator, swept, nearest, seed: self.seed, channel: None };
+        Ok(self.check().of_case(&case, &choice))
     }
 
     /// Whether there is a number for each value of a draw.

@@ -36,6 +36,7 @@ def check(
     case: str | os.PathLike[str] | dict[str, Any] | None = None,
     estimator: str | None = None,
     sampling: float | None = None,
+    nearest: bool = False,
     mean_only: bool = False,
     tolerance: float | None = None,
     variance_tolerance: float | None = None,
@@ -70,8 +71,12 @@ def check(
     ``lookups``
         Mean and variance of its number of lookups of the extinction.
     ``case``, ``estimator``, ``sampling``
-        An experiment whose theory has all of that: a case as in ``predict``, the estimator's name in it, and the value of what
-        the case sweeps, or a constant sampling extinction in 1/length. Every channel of the case is a value of the draw.
+        An experiment whose theory has all of that, and the whole distribution where it is known: a case as in ``predict``,
+        the estimator's name in it, and any value of what the case sweeps, or a constant sampling extinction in 1/length.
+        Every channel of the case is a value of the draw; a luminance may be left out. A free flight that leaves the ray is
+        its length, any larger number, infinity or -1.
+    ``nearest``
+        Takes the nearest value of the case's sweep in place of ``sampling``.
     ``mean_only``
         Of theory only the mean, for an estimator that the case does not have.
 
@@ -108,8 +113,9 @@ def check(
         "lookups": _pair("lookups", lookups, "(mean, variance)"),
         "rounding": _number("rounding", rounding),
         "case": None if case is None else as_case(case),
-        "estimator": _estimator(case, estimator, sampling),
+        "estimator": _estimator(case, estimator, sampling, nearest),
         "sampling": _number("sampling", sampling),
+        "nearest": bool(nearest),
         "mean_only": bool(mean_only),
         "tolerance": _number("tolerance", tolerance),
         "variance_tolerance": _number("variance_tolerance", variance_tolerance),
@@ -245,7 +251,9 @@ def _pair(what: str, given: tuple[float, float] | None, form: str) -> tuple[floa
     return pair[0], pair[1]
 
 
-def _estimator(case: Any, estimator: str | None, sampling: float | None) -> str:
+def _estimator(case: Any, estimator: str | None, sampling: float | None, nearest: bool) -> str:
+    if nearest and sampling is None:
+        raise Error("nearest without a value; give sampling=… too")
     if case is None and (estimator is not None or sampling is not None):
         raise Error("an estimator or a sampling extinction without a case; give case=… too")
     if case is not None and not isinstance(estimator, str):

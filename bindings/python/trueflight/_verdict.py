@@ -29,6 +29,8 @@ class Verdict:
     """The chance that a correct estimator fails, all values together."""
     seed: int
     """Where the random numbers began that callables were given."""
+    channels: list[str]
+    """The names of the values, where they are channels of a case; empty otherwise."""
     values: list[dict[str, Any]]
     """What was found of each value of a draw, by the names of ``record.json``."""
 
@@ -36,6 +38,7 @@ class Verdict:
         self.verdict, self.reason, self._text, numbers = found
         outcome = json.loads(numbers)
         self.name, self.alpha, self.values = outcome["name"], outcome["alpha"], outcome["values"]
+        self.channels = outcome["channels"]
         self.seed = seed
 
     @property
@@ -88,6 +91,11 @@ class Verdict:
         """The mean number of lookups, where draws tell it; of the first value only."""
         return self._number("lookups")
 
+    @property
+    def p_values(self) -> dict[str, float]:
+        """The p-values of tests of the whole distribution, by test, where theory knows it; empty otherwise."""
+        return {found["check"]: float(found["p"]) for found in self.values[0]["distribution"]}
+
     def assert_pass(self) -> "Verdict":
         """Raises ``AssertionError`` with the lines of the verdict unless it is a pass; answers itself."""
         __tracebackhide__ = True
@@ -98,7 +106,7 @@ class Verdict:
     def to_dict(self) -> dict[str, Any]:
         """Everything, as JSON has it: texts, numbers, lists and dicts."""
         own = {"name": self.name, "verdict": self.verdict, "reason": self.reason}
-        return own | {"alpha": self.alpha, "seed": self.seed, "values": self.values}
+        return own | {"alpha": self.alpha, "seed": self.seed, "channels": self.channels, "values": self.values}
 
     def _number(self, key: str) -> Number:
         found = [value[key] for value in self.values]

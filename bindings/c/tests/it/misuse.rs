@@ -80,7 +80,7 @@ fn a_lambda_says_how_many_values_a_draw_has() {
         "two variances: 2 values, passed: 1",
         "three variances: 3 check `a`: 3 numbers for the variance, but a draw has 2 values",
         if cfg!(feature = "theory") {
-            "a case: 3 check `a`: 5 channels of the case, but a draw has 1 value"
+            "a case: 3 check `a`: a draw has 1 value, but the case has 5 channels"
         } else {
             "a case: 4 check `a`: nothing is known of `common-ratio`"
         },
