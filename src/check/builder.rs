@@ -57,9 +57,9 @@ pub(super) struct Said {
     range: Option<[f64; 2]>,
     lookups: Option<Lookups>,
     pub(super) rounding: f64,
-    /// What theory says of the draw, or why it says nothing.
+    /// Theory of the draw, or the reason why it is missing.
     pub(super) theory: Option<Result<Theory, String>>,
-    /// How many values a draw has, where that is said.
+    /// Number of values of a draw, where the caller gave it.
     values: Option<usize>,
     mean_only: bool,
     tolerance: Option<f64>,
@@ -246,7 +246,11 @@ impl<S> Check<S> {
             return Err(CheckError::NoValues { name: self.name.clone() });
         }
         if values > MAX_VALUES {
-            return Err(CheckError::TooManyValues { name: self.name.clone(), values, most: MAX_VALUES });
+            return Err(CheckError::TooManyValues {
+                name: self.name.clone(),
+                values,
+                most: MAX_VALUES,
+            });
         }
         let claims = self.said.claims(&self.name, values, has_lookups)?;
         let alpha = self.said.alpha;
@@ -282,12 +286,12 @@ impl Said {
         self.values.unwrap_or(known.max(1))
     }
 
-    /// What theory says, where it says something.
+    /// The theory of the draw.
     fn known(&self) -> Option<&Theory> {
         self.theory.as_ref().and_then(|theory| theory.as_ref().ok())
     }
 
-    /// What theory knows of a draw is not so of averages, but for the mean.
+    /// Whether only the mean comes from theory: averages of draws have another variance and distribution.
     fn is_mean_only(&self) -> bool {
         self.mean_only || self.batch > 1
     }
@@ -305,7 +309,7 @@ impl Said {
         if values > 1 { names.collect() } else { Vec::new() }
     }
 
-    /// What belongs to the draw as a whole.
+    /// Theory of the draw as a whole: the tests of its distribution.
     fn background(
         &self,
         claims: &[Claim],

@@ -47,9 +47,9 @@ pub enum CheckError {
     TooManyValues {
         /// The check.
         name: String,
-        /// How many values a draw has.
+        /// Number of values of a draw.
         values: usize,
-        /// How many it may have.
+        /// Largest number of values.
         most: usize,
     },
     /// Numbers for another number of values than a draw has.
@@ -78,11 +78,11 @@ pub enum CheckError {
     Channels {
         /// The check.
         name: String,
-        /// How many values a draw has.
+        /// Number of values of a draw.
         found: usize,
         /// The names of the case's channels.
         channels: Vec<String>,
-        /// How many values a draw may have, in words.
+        /// Numbers of values that are possible, in words.
         wanted: String,
     },
     /// What theory says was given beside numbers.

@@ -59,7 +59,7 @@ impl Check<()> {
 /// A check that waits for draws.
 pub struct Pushed {
     check: Check<()>,
-    /// How many draws there will be, where that is known.
+    /// Number of draws, where it is known.
     length: Option<u64>,
     /// Whether each draw comes with its lookups.
     has_lookups: bool,
@@ -83,8 +83,8 @@ impl Pushed {
         self.push(draws, &[])
     }
 
-    /// The same with the number of lookups of each draw, which a case has the distribution of; without a case
-    /// [`Check::lookups`] says what they should be. All draws come with them, or none.
+    /// Adds draws with the number of lookups of each. They are judged by the case, or without one by [`Check::lookups`]. All
+    /// draws come with lookups, or no draw does.
     ///
     /// # Errors
     ///

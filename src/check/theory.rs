@@ -8,9 +8,10 @@ use crate::judge::Choice;
 use crate::judge::theory::Theory;
 
 impl<S> Check<S> {
-    /// Takes mean, variance, kurtosis, lookups and, where it is known, the whole distribution from theory: for an
-    /// estimator of a case, by its name in tables or in the catalogue, at any value of what the case sweeps, or a
-    /// constant σ̂ where it sweeps nothing (`None` takes the case's own). The case is a built-in one or a file. Every
+    /// Takes mean, variance, kurtosis and lookups from theory and, where theory knows it, the whole distribution.
+    ///
+    /// The estimator has its name in tables or in the catalogue. It is taken at any value of what the case sweeps, or at a
+    /// constant σ̂ where the case sweeps nothing; `None` takes the case's own σ̂. The case is a built-in one or a file. Every
     /// channel of the case is a value of the draw; a luminance may be left out.
     ///
     /// A free flight that leaves the ray is written as the ray's length, as any larger number, as infinity or as −1.

@@ -201,7 +201,7 @@ struct Judged {
 }
 
 impl Judged {
-    /// What it is called in a report.
+    /// Name in a report.
     fn name(&self) -> String {
         let Self { file, channel, .. } = self;
         if channel.is_empty() { file.clone() } else { format!("{channel} of {file}") }

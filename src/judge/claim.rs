@@ -237,7 +237,7 @@ pub enum ClaimError {
     },
 }
 
-/// So many values of a sweep are listed; of more the ends.
+/// Largest number of values that are listed; longer lists are cut in the middle.
 const LISTED: usize = 8;
 
 /// Values as tables print them; of many the first and the last.

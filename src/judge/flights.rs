@@ -11,9 +11,9 @@
 use crate::catalogue::digits::short;
 use crate::stats::ties;
 
-/// How a program that has no other way may write a flight that leaves.
+/// A flight that leaves, as a program may write it without another way to mark it.
 const LEFT: f64 = -1.0;
-/// What single precision may do to a distance, relative to the positions that it is the difference of: four roundings.
+/// Error of a distance in single precision, relative to the positions that it is the difference of: four roundings.
 const SINGLE: f64 = 2.4e-7;
 /// Fewer flights than this are no evidence of a wrong convention.
 const FEWEST: f64 = 20.0;
@@ -31,9 +31,9 @@ pub struct Flights {
 
 /// Flights of which those that leave are marked.
 pub(super) struct Marked {
-    /// By the length of the ray.
+    /// Marked by the length of the ray.
     pub at_end: Vec<f64>,
-    /// By infinity.
+    /// Marked by infinity.
     pub beyond: Vec<f64>,
 }
 
@@ -99,7 +99,7 @@ impl Ends {
         ))
     }
 
-    /// How a flight that leaves is to be written.
+    /// The ways to write a flight that leaves.
     pub(super) fn cure(&self) -> String {
         format!(
             "write a flight that leaves as {}, the length of the ray, as a larger number, inf or -1",
@@ -113,7 +113,7 @@ fn is_left(x: f64) -> bool {
     x == LEFT
 }
 
-/// The number that comes ten times as often as any other, and how often; 0 times if there is none.
+/// The number that comes ten times as often as any other, and its count; a count of 0 without such a number.
 fn most_frequent(mut values: Vec<f64>) -> (f64, usize) {
     values.sort_unstable_by(f64::total_cmp);
     let mut groups: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();

@@ -65,9 +65,9 @@ pub struct Judgement {
     pub drift: Option<DriftFinding>,
     /// Whether the draws depend on each other.
     pub independence: IndependenceFinding,
-    /// The experiment whose theory the claim is, in words.
+    /// The experiment of the case, in words.
     pub theory: Option<String>,
-    /// What was found of the distribution of the draws and of their lookups, where theory knows it.
+    /// Tests of the distribution of the draws and of their lookups, where theory knows it.
     pub distribution: Vec<DistributionFinding>,
 }
 
@@ -85,7 +85,7 @@ pub struct DistributionFinding {
     pub reason: String,
     /// The p-value of the last look, or of the one that refuted it.
     pub p: f64,
-    /// How many of the first draws that look had.
+    /// Number of draws at that look.
     pub draws: u64,
 }
 

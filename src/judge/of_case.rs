@@ -13,9 +13,9 @@ use crate::harness::ready::Ready;
 use crate::harness::sweep::{SweepAxis, Variation, What};
 use crate::theory::{Law, Prediction};
 
-/// The problem whose draws are distances.
+/// The problem with distances as draws.
 const FLIGHTS: &str = "free-flight";
-/// So many values of a sweep are tried where a value beside them is refused.
+/// Largest number of values of a sweep that are tried where a value beside them is refused.
 const TRIED: usize = 8;
 
 /// Which experiment of a case.
@@ -68,7 +68,7 @@ impl Claim {
 }
 
 impl Theory {
-    /// What theory says of one experiment of a case; the choice of a channel does not matter.
+    /// Theory of one experiment of a case; the choice of a channel does not matter.
     ///
     /// # Errors
     ///

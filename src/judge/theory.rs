@@ -1,4 +1,4 @@
-//! What theory says of an experiment, and the tests of a draw's whole distribution.
+//! Theory of an experiment, and the tests of a draw's whole distribution.
 //!
 //! ```text
 //! α    3/5 to the scalars, 1/5 to the drift, 1/5 to the distribution where it is tested; else 4/5 and 1/5
@@ -24,16 +24,17 @@ const DERIVED: &str = "luminance";
 
 /// What is asked of the tests of a distribution.
 #[derive(Debug, Clone, Copy)]
+#[cfg_attr(not(feature = "library"), allow(dead_code))] // what reads it is of the library
 pub(crate) struct Asked {
     /// The level that they share.
     pub alpha: f64,
-    /// How many draws there will be, where no decision ends them earlier.
+    /// Number of draws, where it is known and no decision ends them earlier.
     pub length: Option<u64>,
     /// Whether draws come with their number of lookups.
     pub has_lookups: bool,
     /// The rounding of a draw, relative to its size.
     pub rounding: f64,
-    /// How many values of a draw there are.
+    /// Number of values of a draw.
     pub values: usize,
 }
 
@@ -45,12 +46,12 @@ pub(crate) trait Distribution:
     ///
     /// # Errors
     ///
-    /// A sentence on why there are none.
+    /// The reason why nothing is tested, as a sentence.
     fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String>;
 }
 
 /// Tests of a distribution that draws are pushed to.
-pub(crate) trait Tests: Send {
+pub(crate) trait Tests: Send + Sync + UnwindSafe + RefUnwindSafe {
     /// Adds draws, a list for each value, and their lookups, where they have any.
     fn absorb(&mut self, columns: &[&[f64]], lookups: &[f64]);
 
@@ -63,11 +64,11 @@ pub(crate) trait Tests: Send {
 pub(crate) struct Tested {
     /// A finding for each test.
     pub findings: Vec<DistributionFinding>,
-    /// What was not tested, and why.
+    /// Tests that were not made, with the reasons.
     pub untested: Vec<String>,
 }
 
-/// What a reading of draws is given beside its claim.
+/// Input of a reading of draws beside its claim.
 #[derive(Default)]
 pub(crate) struct Background {
     /// The experiment that the claim comes from, in words.
@@ -78,7 +79,7 @@ pub(crate) struct Background {
     pub notes: Vec<String>,
 }
 
-/// What theory says of one experiment of a case: a claim for each channel, and the distribution of the draw.
+/// Theory of one experiment of a case: a claim for each channel, and the distribution of the draw.
 #[derive(Debug, Clone)]
 pub struct Theory {
     /// The claims with the names of their channels; the name is empty where there is one channel only.
@@ -89,7 +90,7 @@ pub struct Theory {
 }
 
 impl Theory {
-    /// The channels of draws of so many values: all of them, or all but a luminance; `None` for other numbers.
+    /// Channels of draws of `values` values: all of them, or all but a luminance; `None` for other numbers.
     pub fn channels_of(&self, values: usize) -> Option<&[(String, Claim)]> {
         let all = &self.channels[..];
         match all.split_last() {
@@ -117,8 +118,7 @@ impl Theory {
         self.channels.iter().map(|(name, _)| name.clone()).collect()
     }
 
-    /// The background of the first of the readings of draws of so many values, which tests what belongs to the draw as a
-    /// whole. `length` is how many draws there will be, where no decision ends them earlier.
+    /// Background of the first of the readings of a draw's values: it tests the draw as a whole.
     pub(crate) fn background(&self, wanted: &Wanted, asked: Whole) -> Background {
         let mut background =
             Background { theory: Some(self.about.clone()), ..Background::default() };
@@ -147,13 +147,13 @@ impl Theory {
 /// The draws as a whole, for the tests of their distribution.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Whole {
-    /// How many draws there will be, where no decision ends them earlier.
+    /// Number of draws, where it is known and no decision ends them earlier.
     pub length: Option<u64>,
     /// Whether theory is to judge their lookups.
     pub has_lookups: bool,
     /// The rounding of a draw, relative to its size.
     pub rounding: f64,
-    /// How many values a draw has.
+    /// Number of values of a draw.
     pub values: usize,
     /// Whether only the mean is taken from theory.
     pub is_mean_only: bool,

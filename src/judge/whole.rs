@@ -9,9 +9,9 @@
 //! curve       the steps of one walk, where a draw has all its channels    harness::checks::curve
 //! ```
 //!
-//! Foreign draws may be rounded. Values are matched as closely as rounding lets them be, distances are not tested where
-//! rounding moves as many across the ends of classes as would count, and resolutions of 22 bits or of single precision
-//! count as fine: finer ones than that the verdict only tells.
+//! Foreign draws may be rounded. Values are matched within their rounding. Distances are not tested where rounding moves as
+//! many of them across the ends of classes as would count. Resolutions of 22 bits or of single precision count as fine; finer
+//! ones are reported, not judged.
 
 use std::sync::Arc;
 
@@ -28,13 +28,13 @@ use crate::theory::{self, Prediction};
 
 /// The first look, where the number of draws is not known.
 const FIRST: u64 = 1 << 11;
-/// What rounding to single precision does to a draw that is a product, relative to it.
+/// Relative error of a product in single precision.
 const SINGLE_PRODUCT: f64 = 1e-5;
-/// The same for a distance, relative to its position.
+/// Error of a distance in single precision, relative to its position.
 const SINGLE_POSITION: f64 = 1.2e-7;
 /// Coarser rounding than this leaves the resolution untested.
 const COARSE: f64 = 1e-6;
-/// Random numbers of so many bits are fine enough.
+/// Bits of random numbers that are fine enough.
 const BITS: i32 = 22;
 /// Largest shift of a class's share by rounding, in standard errors.
 const HARMLESS: f64 = 0.05;
@@ -78,7 +78,7 @@ struct Test {
     found: Found,
 }
 
-/// What the last look found, or the one that refuted it.
+/// Result of the last look, or of the one that refuted the distribution.
 #[derive(Default)]
 struct Found {
     p: Option<(f64, u64)>,
@@ -199,7 +199,7 @@ impl Tests for Whole {
     }
 }
 
-/// What the ties are about.
+/// The quantity that ties are about.
 const RESOLUTION: &str = "the resolution of the distances";
 
 /// Things in a sentence.
@@ -325,7 +325,7 @@ impl Whole {
     }
 }
 
-/// What theory does not know of the distribution of the values.
+/// The part of the values' distribution that theory does not know, as a sentence.
 fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
     let Prediction { law, increments, channels, .. } = prediction;
     if asked.values != channels.len() && !increments.is_empty() {
@@ -340,8 +340,8 @@ fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
     Some(format!("the distribution of the draws is not tested: theory knows {known} of it alone"))
 }
 
-/// How many draws of distances that are rounded to `rounding`, relative to their positions, may be tested: rounding moves
-/// no end of a class by more than a twentieth of its standard error. `None` where theory has no distances.
+/// Largest number of distances that may be tested if they are rounded to `rounding`, relative to their positions: rounding
+/// moves no end of a class by more than a twentieth of its standard error. `None` where theory has no distances.
 fn most_draws(prediction: &Prediction, rounding: f64) -> Option<f64> {
     let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else { return None };
     let classes = (bins.len() + 1) as f64;
@@ -355,7 +355,7 @@ fn most_draws(prediction: &Prediction, rounding: f64) -> Option<f64> {
     Some((0..bins.len()).map(most).fold(f64::INFINITY, f64::min))
 }
 
-/// A number of lookups; what is none is a fault that is named elsewhere.
+/// A number of lookups. NaN and negative numbers become 0; they are faults that are named elsewhere.
 #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // saturates
 fn whole(count: f64) -> u32 {
     count.round() as u32

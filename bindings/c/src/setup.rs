@@ -146,14 +146,12 @@ pub unsafe extern "C" fn tf_check_rounding(check: *mut Check, rounding: f64) -> 
     }
 }
 
-/// How many values a draw has that is pushed, where that is not the number of truths, or of channels in the case: the
-/// luminance of a chromatic medium, which follows from the other channels, may be left out.
+/// Number of values of a pushed draw, where it differs from the number of truths or of channels in the case: the luminance
+/// of a chromatic medium, which follows from the other channels, may be left out.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_set_values(check: *mut Check, values: usize) -> Status {
     // SAFETY: C's promise of checks.
-    unsafe {
-        change(check, |check| check.say(sense::values(values), |said| said.values(values)))
-    }
+    unsafe { change(check, |check| check.say(sense::values(values), |said| said.values(values))) }
 }
 
 /// Of what theory says, only the mean: for an estimator of one's own that the case does not have.

@@ -1,4 +1,4 @@
-//! How verdicts on draws are printed.
+//! Verdicts on draws, as they are printed.
 
 use super::{Arguments, Judged, Shown, worst};
 use crate::cli::{Console, output};
@@ -29,7 +29,7 @@ impl Arguments {
             .collect()
     }
 
-    /// What several verdicts come to.
+    /// Summary of several verdicts.
     fn together(&self, judged: &[Judged]) -> String {
         let verdicts = judged.iter().map(|found| &found.judgement);
         let files = Self::by_file(judged);

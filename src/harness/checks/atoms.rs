@@ -37,7 +37,7 @@ impl Values {
         gaps.zip(sizes).any(|(gap, size)| gap < 4.0 * self.same * size)
     }
 
-    /// Expected number of draws that are none of the values.
+    /// Expected number of draws beside all listed values.
     fn left_out(&self, draws: f64) -> f64 {
         (1.0 - self.probability.iter().sum::<f64>()).max(0.0) * draws
     }

@@ -100,8 +100,8 @@ pub fn needed(prediction: &Prediction) -> Option<f64> {
     is_sharp.then(|| (100.0 * kurtosis).max(10.0 * rare))
 }
 
-/// The test for so many draws, or more, that rounding moves by `rounding`, relative to their size; `None` where theory
-/// has no steps that are larger.
+/// Test of the steps for at least `draws` draws with a relative rounding error of `rounding`; `None` where theory has no
+/// steps that are larger than rounding.
 pub fn of(prediction: &Prediction, draws: u64, rounding: f64) -> Option<impl Law + use<>> {
     Increments::of(prediction, draws, rounding)
 }

@@ -1,5 +1,7 @@
 //! Questions about draws, and what a check knows when it asks them.
 
+use std::panic::{RefUnwindSafe, UnwindSafe};
+
 use super::batch::Batch;
 use super::observe::Observe;
 use crate::estimators::{DrawBuffer, Experiment};
@@ -172,7 +174,7 @@ impl Scalar {
 }
 
 /// A test of a whole law by sums over the first draws.
-pub trait Law: Send + Sync {
+pub trait Law: Send + Sync + UnwindSafe + RefUnwindSafe {
     /// How many sums.
     fn size(&self) -> usize;
 
@@ -188,7 +190,7 @@ pub trait Law: Send + Sync {
     /// The p-value of the sums over `draws` draws; `None` where they test nothing.
     fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64>;
 
-    /// What the sums show beside the p-value, in words; empty where there is nothing to add.
+    /// Details beside the p-value, in words; empty where there is nothing to add.
     fn details(&self, sums: &[f64], draws: f64) -> String {
         let _ = (sums, draws);
         String::new()

@@ -26,7 +26,7 @@ pub fn questions(subject: &Subject) -> Vec<Question> {
     vec![Question::whole("the resolution of the distances", kind)]
 }
 
-/// What theory says of ties among distances.
+/// Ties among distances, in theory.
 #[derive(Debug, Clone, Copy)]
 pub struct Resolution {
     /// The distance of the rays that escape.
@@ -47,8 +47,8 @@ impl Resolution {
         distances.retain(|&s| s < self.end);
     }
 
-    /// Expected number of ties among n distances whose random numbers have so many bits and that are rounded to
-    /// `spacing`, relative to their positions.
+    /// Expected number of ties among n distances with random numbers of `bits` bits and positions that are rounded to
+    /// `spacing`, relative.
     pub fn expected(&self, n: f64, bits: i32, spacing: f64) -> f64 {
         0.5 * n * n * (2f64.powi(-bits) + self.grain * (spacing / f64::EPSILON))
     }

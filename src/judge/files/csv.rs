@@ -77,7 +77,7 @@ impl Table {
         Ok(table)
     }
 
-    /// How many values a draw has.
+    /// Number of values of a draw.
     pub(super) fn values(&self) -> usize {
         self.places.len()
     }

@@ -99,11 +99,11 @@ pub enum ForeignError {
     Channels {
         /// The file.
         file: String,
-        /// How many values a draw has.
+        /// Number of values of a draw.
         found: usize,
         /// The names of the channels.
         channels: String,
-        /// How many values a draw may have, in words.
+        /// Numbers of values that are possible, in words.
         wanted: String,
     },
     /// Numbers without a shape, of which nothing says how many a draw has.
@@ -132,9 +132,9 @@ pub enum ForeignError {
     PartialRow {
         /// The file.
         file: String,
-        /// How many numbers there are.
+        /// Number of numbers in the file.
         numbers: u64,
-        /// How many values a draw has.
+        /// Number of values of a draw.
         values: usize,
     },
     /// A table of several columns, and none was chosen.

@@ -9,14 +9,14 @@
 
 use super::{Column, ForeignError};
 
-/// What a draw is.
+/// Columns of a draw.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Layout {
     /// The one column that is read.
     pub column: Option<Column>,
     /// The names of a draw's channels, where it has several.
     pub channels: Vec<String>,
-    /// How many of the last channels may be missing.
+    /// Number of the last channels that may be missing.
     pub derived: usize,
     /// The one of these channels that is read.
     pub channel: Option<usize>,
@@ -33,7 +33,7 @@ impl Layout {
         self.channels.len() > 1 && self.channel.is_none() && self.column.is_none()
     }
 
-    /// Whether so many columns are the channels of a draw.
+    /// Whether the number of columns is that of a draw's channels.
     fn fits(&self, width: usize) -> bool {
         let all = self.channels.len();
         all > 1 && (all - self.derived..=all).contains(&width)
@@ -50,7 +50,7 @@ impl Layout {
         }
     }
 
-    /// The places in a row of so many numbers, which have no names; `none` is the error where nothing says which to read.
+    /// Places of a draw's values in a row of `width` numbers without names; `none` is the error where the choice is open.
     pub(super) fn places(
         &self,
         file: &str,

@@ -188,7 +188,7 @@ impl Draws {
         }
     }
 
-    /// How many values a draw has.
+    /// Number of values of a draw.
     pub fn values(&self) -> usize {
         match &self.source {
             Source::Csv(table) => table.values(),
@@ -211,7 +211,7 @@ impl Draws {
         read
     }
 
-    /// The same of all values of the draws: a column for each of them.
+    /// Reads all values of the next draws: a column for each value.
     ///
     /// # Errors
     ///

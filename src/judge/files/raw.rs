@@ -16,7 +16,7 @@ pub(super) struct Words {
     announced: Option<u64>,
     /// How many there are, where it is known.
     length: Option<u64>,
-    /// How many of them are a draw, for messages.
+    /// Number of numbers of a draw, for messages.
     pub(super) width: u64,
     given: u64,
     chunk: Vec<u8>,

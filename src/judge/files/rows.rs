@@ -6,17 +6,17 @@ use super::raw::Words;
 /// Rows of numbers.
 pub(super) struct Rows {
     words: Words,
-    /// How many numbers a row has.
+    /// Number of numbers in a row.
     width: usize,
     /// The columns that are read.
     places: Vec<usize>,
-    /// What was read and not yet given.
+    /// Numbers that were read and not yet given.
     row: Vec<f64>,
     /// Whether whole columns follow each other: then all numbers are read first.
     by_column: bool,
     /// All numbers, where whole columns follow each other, and how many rows of them were given.
     all: Option<(Vec<f64>, usize)>,
-    /// How many numbers were read.
+    /// Number of numbers that were read.
     numbers: u64,
 }
 
@@ -26,12 +26,12 @@ impl Rows {
         Self { words, width, places, row: Vec::new(), by_column, all: None, numbers: 0 }
     }
 
-    /// How many rows there are, where it is known.
+    /// Number of rows, where it is known.
     pub(super) fn known_length(&self) -> Option<u64> {
         self.words.known_length().map(|numbers| numbers / self.width as u64)
     }
 
-    /// How many values a draw has.
+    /// Number of values of a draw.
     pub(super) fn values(&self) -> usize {
         self.places.len()
     }

@@ -22,7 +22,7 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
     text
 }
 
-/// What several verdicts come to; `of` says what they are of.
+/// Summary of several verdicts; `of` names the draws in words.
 pub fn together<'a>(
     judged: impl Iterator<Item = &'a Judgement> + Clone,
     of: &str,

@@ -1,4 +1,4 @@
-//! Foreign draws whose mean and variance are right: their distribution is tested, too.
+//! Foreign draws with the right mean and variance: their distribution is tested, too.
 //!
 //! Draws are made here by inversion, in another arithmetic than the library's.
 
@@ -12,7 +12,7 @@ use super::{Place, npy, raw};
 const FIELD: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/field/13-free-flight-law");
 /// σ_t = 0.5 on [0, 1] and 2 on [1, 2]: T(2) = e^{−2.5}.
 const FLIGHTS: &str = include_str!("../../data/field/13-free-flight-law/ff.toml");
-/// A ray whose length 1.3 is no number of single precision, T = e^{−0.65}.
+/// A ray of length 1.3, which is no number of single precision; T = e^{−0.65}.
 const ODD: &str = "title = \"a ray of an odd length\"
 [problem.free-flight]
 medium.constant.extinction = 0.5

@@ -3,6 +3,7 @@
 
 mod border;
 mod build;
+mod distributions;
 mod examples;
 mod header;
 mod manual;
