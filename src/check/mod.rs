@@ -24,6 +24,7 @@ mod gate;
 mod made;
 mod outcome;
 mod pushed;
+mod said;
 mod sample;
 #[cfg(feature = "library")]
 mod theory;
