@@ -43,27 +43,62 @@ pub struct Estimate {
 
 impl Estimate {
     /// Returns ln E of the draws `y`, whose means are off by `floor` at most if all is well.
-    pub fn ln_e(&self, y: &[f64], floor: f64) -> f64 {
-        let n = y.len() as f64;
-        let slope = (PLANNED / n).sqrt().min(0.25) / self.variance.sqrt();
-        let mut sums = PsiSums::<3>::default();
-        sums.absorb(y, &SLOPES.map(|m| Argument { slope: m * slope, shift: 0.0 }));
-        let sums = sums.totals();
+    pub fn ln_e(self, y: &[f64], floor: f64) -> f64 {
+        let mut gathered = Gathered::new(self, y.len() as f64);
+        gathered.absorb(y);
+        gathered.ln_e(floor)
+    }
+
+    /// Returns a variance that the true one exceeds with probability `level` at most: V̂/(1 − √(2r ln(1/level))).
+    /// `None` where the estimate is too uncertain for any.
+    pub fn upper(self, level: f64) -> Option<f64> {
+        let share = (2.0 * self.error * -level.ln()).sqrt();
+        (share <= WIDEST).then(|| self.variance / (1.0 - share))
+    }
+}
+
+/// Evidence that is gathered from draws bit by bit.
+#[derive(Debug, Clone)]
+pub struct Gathered {
+    estimate: Estimate,
+    /// n: how many draws there will be.
+    draws: f64,
+    /// λ.
+    slope: f64,
+    sums: PsiSums<3>,
+}
+
+impl Gathered {
+    /// No evidence yet, of `draws` draws that will come.
+    pub fn new(estimate: Estimate, draws: f64) -> Self {
+        let slope = (PLANNED / draws).sqrt().min(0.25) / estimate.variance.sqrt();
+        Self { estimate, draws, slope, sums: PsiSums::default() }
+    }
+
+    /// Adds draws.
+    pub fn absorb(&mut self, y: &[f64]) {
+        self.sums.absorb(y, &SLOPES.map(|m| Argument { slope: m * self.slope, shift: 0.0 }));
+    }
+
+    /// Returns ln E of all draws, whose means are off by `floor` at most if all is well.
+    pub fn ln_e(&self, floor: f64) -> f64 {
+        let Estimate { variance, error } = self.estimate;
+        let sums = self.sums.totals();
         let of_mean = |excess: f64| {
-            let variance = self.variance * excess + floor * floor;
+            let variance = variance * excess + floor * floor;
             let mut gains = [0.0; 6];
             for (i, (m, sum)) in SLOPES.iter().zip(sums).enumerate() {
-                let t = m * slope;
-                let paid = n * ((0.5 * t * t * variance).ln_1p() + t * floor);
+                let t = m * self.slope;
+                let paid = self.draws * ((0.5 * t * t * variance).ln_1p() + t * floor);
                 (gains[2 * i], gains[2 * i + 1]) = (sum - paid, -sum - paid);
             }
             ln_mean_exp(&gains)
         };
-        if self.error <= 0.0 {
+        if error <= 0.0 {
             return of_mean(1.0);
         }
         let of_variance = |share: f64| {
-            let gain = |d: f64| (d * (1.0 - share) - 0.5 * d * d) / self.error;
+            let gain = |d: f64| (d * (1.0 - share) - 0.5 * d * d) / error;
             ln_mean_exp(&STAKES.map(gain))
         };
         let joined = |ln_l: f64, ln_m: f64| ln_m + ln_mean_exp(&[0.0, ln_l]);
@@ -75,13 +110,6 @@ impl Estimate {
             excess *= STEP;
         }
         least.min(joined(f64::NEG_INFINITY, of_variance(1.0 / excess)))
-    }
-
-    /// Returns a variance that the true one exceeds with probability `level` at most: V̂/(1 − √(2r ln(1/level))).
-    /// `None` where the estimate is too uncertain for any.
-    pub fn upper(&self, level: f64) -> Option<f64> {
-        let share = (2.0 * self.error * -level.ln()).sqrt();
-        (share <= WIDEST).then(|| self.variance / (1.0 - share))
     }
 }
 

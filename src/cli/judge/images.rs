@@ -51,7 +51,7 @@ pub struct Arguments {
     #[arg(long, requires = "against")]
     same_law: bool,
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
-    /// values of all passes]
+    /// values of all passes, 8192 where the variance comes from passes]
     #[arg(long, value_name = "N", requires = "images")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,

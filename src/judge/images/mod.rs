@@ -74,6 +74,8 @@ const LEAST: f64 = 1e-4;
 const LISTED: f64 = 0.05;
 /// A tile has so many values of all passes, unless its size is asked for: then all tiles can pass.
 const VALUES: usize = 2048;
+/// The same where they must show a variance, too.
+const NOISY_VALUES: usize = 8192;
 /// How many of the worst tiles are kept apart.
 const WORST: usize = 5;
 
@@ -111,13 +113,13 @@ impl Wanted {
     }
 
     /// N, at most the picture.
-    fn tile(&self, stack: &Stack) -> usize {
+    fn tile(&self, size: Size, passes: usize, values: usize) -> usize {
         let chosen = || {
             let sizes = std::iter::successors(Some(1_usize), |size| Some(2 * size));
-            let mut enough = sizes.filter(|size| size * size * stack.passes >= VALUES);
+            let mut enough = sizes.filter(|size| size * size * passes >= values);
             enough.next().unwrap_or(1)
         };
-        self.tile.unwrap_or_else(chosen).min(stack.size.rows.max(stack.size.columns))
+        self.tile.unwrap_or_else(chosen).min(size.rows.max(size.columns))
     }
 }
 
@@ -129,7 +131,11 @@ impl Wanted {
 pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement, ImageError> {
     wanted.check()?;
     let pixels = Pixels::new(claim, stack, wanted.tolerance)?;
-    let (size, alpha, tile) = (stack.size, wanted.alpha, wanted.tile(stack));
+    let (size, alpha) = (stack.size, wanted.alpha);
+    let tile = match &pixels.estimate {
+        Some(found) => wanted.tile(size, stack.passes.min(found.passes), NOISY_VALUES),
+        None => wanted.tile(size, stack.passes, VALUES),
+    };
     let (refuted_by, refuting) = refuted(stack, &pixels);
     let neighbours = neighbours_of(stack, alpha);
     let is_free = !neighbours.is_refuted();
@@ -139,7 +145,7 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     if let Some(reason) = own(stack, &pixels, claim) {
         order.reason = reason;
     }
-    let (parts, whole) = (tiles::parts(size, tile), tiles::wholes(size));
+    let (parts, whole) = (tiles::parts(size, tile, pixels.estimate.is_some()), tiles::wholes(size));
     let q = |parts: &[Part]| match pixels.estimate.as_ref().filter(|_| refuting == 0) {
         Some(found) => {
             let stacks: Vec<&Stack> = found.stack.iter().chain([stack]).collect();
@@ -175,8 +181,10 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     let whole_terms =
         Terms { is_capped: true, count: 1, levels: levels(SHARES[1], whole.len()), ..terms };
     let all = |parts: &[Part], terms: Terms, q: &[f64]| {
-        let is_noisy = is_noisy && (is_free || pixels.truth_share > 0.0 || tile == 1);
-        let one = |i: usize| match is_noisy {
+        // Averages of pixels that depend on each other have a range alone.
+        let is_possible =
+            |part: &Part| is_free || pixels.truth_share > 0.0 || part.height * part.width == 1;
+        let one = |i: usize| match is_noisy && is_possible(&parts[i]) {
             true => noisy::tile(stack, &pixels, parts[i], terms, q[i]),
             false => tiles::tile(stack, &pixels, parts[i], terms),
         };

@@ -19,7 +19,7 @@ use super::tiles::{self, AT_THE_END, Part, Terms};
 use crate::judge::scalar::{Ask, Scalar};
 use crate::judge::trial::MEAN_CAP;
 use crate::stats::capital::ln_mean_exp;
-use crate::stats::estimated_variance::Estimate;
+use crate::stats::estimated_variance::{Estimate, Gathered};
 use crate::stats::normal::{upper_quantile, upper_tail};
 use crate::stats::verdict::MISS;
 
@@ -49,12 +49,15 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
     }
     let floor = mean_of(&|i| pixels.floor(i)) / unit;
     let is_exact = pixels.truth_share == 0.0;
-    let y: Vec<f64> = if is_exact {
-        let of = |pass| places.iter().map(move |&i| (stack.pass(pass)[i] - pixels.truth[i]) / unit);
-        (0..stack.passes).flat_map(of).collect()
-    } else {
+    let of_pass = |pass: usize| -> Vec<f64> {
+        places.iter().map(|&i| (stack.pass(pass)[i] - pixels.truth[i]) / unit).collect()
+    };
+    let of_averages = || -> Vec<f64> {
         places.iter().zip(&averages).map(|(&i, x)| (x - pixels.truth[i]) / unit).collect()
     };
+    // All y by blocks: a pass each, or the averages alone.
+    let blocks = if is_exact { stack.passes } else { 1 };
+    let block = |k: usize| if is_exact { of_pass(k) } else { of_averages() };
     let variance = variance.filter(|_| terms.has_variance && is_free);
     let mut ln_e = Vec::new();
     if let Some(variance) = variance {
@@ -64,13 +67,21 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: 
             None => Estimate { variance: variance * scale, error: 0.0 },
         };
         if variance > 0.0 {
-            ln_e.push(estimate.ln_e(&y, floor));
+            if estimate.error.is_finite() {
+                let mut gathered = Gathered::new(estimate, blocks as f64 * count);
+                (0..blocks).for_each(|k| gathered.absorb(&block(k)));
+                ln_e.push(gathered.ln_e(floor));
+            }
             by_normal(&mut found, estimate, (share / count) / (unit * unit) / scale, unit, terms);
         } else {
+            let y: Vec<f64> = (0..blocks).flat_map(block).collect();
             ln_e.push(without_spread(&mut found, &y, floor, is_exact));
         }
     }
-    if let Some(bets) = by_range(pixels, &places, &y, [is_free, is_exact], terms, floor, unit) {
+    let range = pixels.range.filter(|_| is_free);
+    let y = range.map(|_| (0..blocks).flat_map(block).collect::<Vec<f64>>());
+    let bets = y.and_then(|y| by_range(pixels, &places, &y, is_exact, terms, floor, unit));
+    if let Some(bets) = bets {
         ln_e.push(bets.evidence.ln_e);
         let sides = bets.evidence.ln_pass;
         if let (None, Some(design)) = (found.tolerance, bets.design) {
@@ -110,12 +121,12 @@ fn by_range(
     pixels: &Pixels,
     places: &[usize],
     y: &[f64],
-    [is_free, is_exact]: [bool; 2],
+    is_exact: bool,
     terms: Terms,
     floor: f64,
     unit: f64,
 ) -> Option<Scalar> {
-    let [low, high] = pixels.widened().filter(|_| is_free)?;
+    let [low, high] = pixels.widened()?;
     let range = if is_exact {
         let of = |x: f64, pick: fn(f64, f64) -> f64| {
             places.iter().map(|&i| pixels.truth[i]).fold(x, pick)

@@ -178,19 +178,36 @@ pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms) -> 
 }
 
 /// The tiles, the smallest first, row after row, each with all its channels. Larger ones find what is spread out.
-pub(super) fn parts(Size { rows, columns, channels }: Size, tile: usize) -> Vec<Part> {
+/// `is_joined`: what is left at the right and at the foot is a part of the last tile where it is less than half of one.
+pub(super) fn parts(
+    Size { rows, columns, channels }: Size,
+    tile: usize,
+    is_joined: bool,
+) -> Vec<Part> {
     let sizes = std::iter::successors(Some(tile), |size| Some(2 * size));
     let mut parts = Vec::new();
     for size in sizes.take_while(|&size| size == tile || size < rows.max(columns)) {
-        for row in (0..rows).step_by(size) {
-            for column in (0..columns).step_by(size) {
-                let (height, width) = (size.min(rows - row), size.min(columns - column));
+        for (row, height) in spans(rows, size, is_joined) {
+            for (column, width) in spans(columns, size, is_joined) {
                 let part = |channel| Part { size, row, column, height, width, channel };
                 parts.extend((0..channels).map(part));
             }
         }
     }
     parts
+}
+
+/// Where tiles of that size begin, and how long they are.
+fn spans(length: usize, size: usize, is_joined: bool) -> Vec<(usize, usize)> {
+    let mut spans: Vec<(usize, usize)> =
+        (0..length).step_by(size).map(|first| (first, size.min(length - first))).collect();
+    if let (true, [.., last, rest]) = (is_joined, &mut *spans)
+        && 2 * rest.1 < size
+    {
+        last.1 += rest.1;
+        spans.pop();
+    }
+    spans
 }
 
 /// The whole picture, each channel.
@@ -230,6 +247,14 @@ mod tests {
             assert!((0.402 * found * found - 0.6 * z * found - 4.605_17).abs() < 1e-4);
             assert!((found - s).abs() < 1e-3, "{count}: {found}");
         }
+    }
+
+    #[test]
+    fn small_rests_are_joined_where_asked() {
+        assert_eq!(spans(18, 8, false), [(0, 8), (8, 8), (16, 2)]);
+        assert_eq!(spans(18, 8, true), [(0, 8), (8, 10)]);
+        assert_eq!(spans(20, 8, true), [(0, 8), (8, 8), (16, 4)]);
+        assert_eq!(spans(3, 8, true), [(0, 3)]);
     }
 
     #[test]

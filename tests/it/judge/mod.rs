@@ -2,6 +2,7 @@
 
 mod channels;
 mod distributions;
+mod estimated;
 mod grounds;
 mod image_files;
 mod images;

@@ -24,7 +24,7 @@ mod verdict;
 
 use self::evidence::Evidence;
 use super::judgement::{Comparison, Counts, Dependence, Judgement, Tile};
-use super::{ImageError, LISTED, Stack, Wanted, claim, estimate, same, tiles};
+use super::{ImageError, LISTED, NOISY_VALUES, Stack, Wanted, claim, estimate, same, tiles};
 use super::{neighbours_of, not_finite, order_of, worst};
 use crate::judge::claim::ROUNDING;
 use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
@@ -84,7 +84,8 @@ pub fn compare(
 ) -> Result<Judgement, ImageError> {
     wanted.check()?;
     check(stack, reference, terms)?;
-    let (size, alpha, tile) = (stack.size, wanted.alpha, wanted.tile(stack));
+    let (size, alpha) = (stack.size, wanted.alpha);
+    let tile = wanted.tile(size, stack.passes.min(reference.passes), NOISY_VALUES);
     let (refuted_by, refuting) = not_finite(stack);
     let neighbours = either([stack, reference].map(|stack| neighbours_of(stack, alpha)));
     let is_free = !neighbours.is_refuted();
@@ -101,7 +102,7 @@ pub fn compare(
              nothing; give each stack seeds of its own"
         );
     }
-    let (mut parts, whole) = (tiles::parts(size, tile), tiles::wholes(size));
+    let (mut parts, whole) = (tiles::parts(size, tile, true), tiles::wholes(size));
     let count = parts.len();
     parts.extend(whole);
     let is_judged = refuting == 0 && !order.is_refuted();

@@ -5,6 +5,7 @@
 //! stacks are compared, which are exact for equal laws; else those of z by the normal law.
 
 use super::z_map::{FRAMES, GAP, HEAD, LONGEST, border, dot};
+use crate::catalogue::digits::short;
 use crate::harness::record::Verdict;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
@@ -14,8 +15,8 @@ use crate::report::plots::sheet::{Align, Image, Sheet};
 use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
 use crate::report::render::palette;
 
-/// The bins of the histogram.
-const BINS: usize = 20;
+/// The fewest and the most bins of the histogram; between them a bin for every ten tiles.
+const BINS: [usize; 2] = [4, 20];
 /// The width of the histogram with its numbers, and the height of its panel.
 const WIDTH: f64 = 420.0;
 const HEIGHT: f64 = 260.0;
@@ -110,13 +111,15 @@ fn colour(p: f64) -> [u8; 3] {
     if p <= SMALL { RED } else { [grey; 3] }
 }
 
-/// How many tiles have a p in each of 20 bins.
-fn counts(judgement: &Judgement) -> [usize; BINS] {
-    let mut counts = [0; BINS];
-    for p in smallest(judgement).filter_map(|tile| tile.p) {
+/// How many tiles have a p in each bin.
+fn counts(judgement: &Judgement) -> Vec<usize> {
+    let values: Vec<f64> = smallest(judgement).filter_map(|tile| tile.p).collect();
+    let bins = (values.len() / 10).clamp(BINS[0], BINS[1]);
+    let mut counts = vec![0; bins];
+    for p in values {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // from 0 to 20
-        let bin = (p * BINS as f64) as usize;
-        counts[bin.min(BINS - 1)] += 1;
+        let bin = (p * bins as f64) as usize;
+        counts[bin.min(bins - 1)] += 1;
     }
     counts
 }
@@ -124,9 +127,10 @@ fn counts(judgement: &Judgement) -> [usize; BINS] {
 fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f64) {
     let counts = counts(judgement);
     let all: usize = counts.iter().sum();
-    let expected = all as f64 / BINS as f64;
+    let bins = counts.len() as f64;
+    let expected = all as f64 / bins;
     // Three standard deviations of a binomial count.
-    let band = 3.0 * (expected * (1.0 - 1.0 / BINS as f64)).sqrt();
+    let band = 3.0 * (expected * (1.0 - 1.0 / bins)).sqrt();
     let most = counts.iter().map(|&n| n as f64).fold(expected + band, f64::max).max(1.0);
     let (x0, width, low) = (left + 44.0, WIDTH - 56.0, HEAD + HEIGHT);
     let x = |share: f64| x0 + share * width;
@@ -135,7 +139,7 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     let shade = area([x(0.0), x(1.0)], [y((expected - band).max(0.0)), y(expected + band)]);
     sheet.area(shade, ink(0xE0, 0xE0, 0xE0));
     for (bin, &count) in counts.iter().enumerate() {
-        let ends = [bin, bin + 1].map(|k| x(k as f64 / BINS as f64));
+        let ends = [bin, bin + 1].map(|k| x(k as f64 / bins));
         let corners = area([ends[0] + 1.0, ends[1] - 1.0], [y(0.0), y(count as f64)]);
         sheet.area(corners, COLOURS[0]);
     }
@@ -146,7 +150,7 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
     }
     sheet.text([x(0.5), low + 28.0], "p-value", 11.5, DARK, Align::Middle);
     for n in [0.0, expected, most] {
-        let text = format!("{n:.0}");
+        let text = short(n, 3);
         sheet.text([x0 - 6.0, y(n)], text, 10.5, DARK, Align::End);
     }
     for (line, text) in [
