@@ -39,7 +39,8 @@ pub struct Arguments {
     /// The variance of one draw, or of one average with --batch; without it, it is not tested
     #[arg(long, value_name = "V", allow_hyphen_values = true, value_parser = numbers::number)]
     variance: Option<f64>,
-    /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it
+    /// The kurtosis of one draw (3 for the normal law); without --variance, an upper bound of it. With --images an
+    /// upper bound of that of all values of a tile about their truths
     #[arg(long, value_name = "K", allow_hyphen_values = true, value_parser = numbers::number)]
     kurtosis: Option<f64>,
     /// Where all correct draws lie, as in 0,1 or 0,inf: a ground for a verdict without a variance

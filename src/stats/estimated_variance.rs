@@ -1,4 +1,4 @@
-//! Evidence on a mean whose variance was estimated from draws of limited number.
+//! Evidence on a mean of draws with an estimated variance.
 //!
 //! ```text
 //! y₁ … yₙ   independent draws of mean 0, V the mean of their variances
@@ -42,7 +42,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Returns ln E of the draws `y`, whose means are off by `floor` at most if all is well.
+    /// Returns ln E of the draws `y`; correct draws have means that are off by `floor` at most.
     pub fn ln_e(self, y: &[f64], floor: f64) -> f64 {
         let mut gathered = Gathered::new(self, y.len() as f64);
         gathered.absorb(y);
@@ -80,7 +80,7 @@ impl Gathered {
         self.sums.absorb(y, &SLOPES.map(|m| Argument { slope: m * self.slope, shift: 0.0 }));
     }
 
-    /// Returns ln E of all draws, whose means are off by `floor` at most if all is well.
+    /// Returns ln E of all draws; correct draws have means that are off by `floor` at most.
     pub fn ln_e(&self, floor: f64) -> f64 {
         let Estimate { variance, error } = self.estimate;
         let sums = self.sums.totals();

@@ -20,11 +20,11 @@
 use crate::numeric::parallel;
 use crate::rng::{Address, unit};
 
-/// How many rows the prior variance counts as.
+/// Number of rows that the prior variance counts as.
 const PRIOR: f64 = 8.0;
-/// Dealing ends when so many deals have a largest |t| as large.
+/// Dealing ends when this number of deals has a largest |t| as large.
 const ENOUGH: u64 = 20;
-/// Deals are made in rounds of so many parts.
+/// Number of parts of a round of deals.
 const PARTS: u64 = 16;
 /// The least number of deals, and the most.
 const FEWEST: u64 = 1000;
@@ -50,11 +50,11 @@ pub struct Found {
     pub p: Vec<f64>,
     /// p̃: of all columns together.
     pub adjusted: Vec<f64>,
-    /// How many deals were compared.
+    /// Number of deals that were compared.
     pub deals: u64,
 }
 
-/// Returns how many deals of `first` and `second` rows have a |t| of their own.
+/// Returns the number of deals of `first` and `second` rows that have a |t| of their own.
 pub fn distinct(first: usize, second: usize) -> f64 {
     let ways = (1..=first).map(|k| (second + k) as f64 / k as f64).product::<f64>();
     if first == second { 0.5 * ways } else { ways }

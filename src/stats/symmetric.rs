@@ -4,7 +4,7 @@
 //! t = Σd/√(Σd²),   P(t ≥ x) ≤ min(e^{−x²/2}, 3.178 (1 − Φ(x)))      for independent symmetric d of any distributions
 //! ```
 //!
-//! Given the sizes |d| the signs are fair coins, so that the bound needs no moments and holds for any number of
+//! Given the sizes |d| the signs are independent and equally likely, so that the bound needs no moments and holds for any number of
 //! draws. The difference of two independent draws of one distribution is symmetric.
 //!
 //! Sources: W. Hoeffding, JASA 58 (1963); V. Bentkus, D. Dzindzalieta, *A tight Gaussian bound for weighted sums of

@@ -47,7 +47,7 @@ impl Level {
 pub struct Claim {
     /// Their means.
     pub truth: Level,
-    /// Number of independent passes whose mean the truth is; `None` for an exact truth. Needs a variance.
+    /// Number of independent passes that the truth is the mean of; `None` for an exact truth. Needs a variance.
     pub truth_passes: Option<usize>,
     /// The variance of a pixel of one pass, if it is known.
     pub variance: Option<Level>,
@@ -158,7 +158,7 @@ impl Pixels {
         self.rounding * self.truth[index].abs()
     }
 
-    /// Whether the truth is an end of the range; the mean of some passes may be one by chance.
+    /// Whether the truth is an end of the range; the mean of a few passes may equal it without being exact.
     fn is_end(&self, index: usize) -> bool {
         let is_end = self.range.is_some_and(|range| range.contains(&self.truth[index]));
         is_end && self.truth_share == 0.0
@@ -194,7 +194,7 @@ impl Pixels {
     }
 }
 
-/// What an exact variance must be.
+/// Description of a valid exact variance.
 const EXACT: &str = "a finite number, 0 or more (if the variance was estimated from passes, say from how many by \
                      --variance-passes N: then such values are allowed)";
 

@@ -24,7 +24,7 @@ use crate::stats::estimated_variance::Estimate;
 pub(super) struct Estimated {
     /// Q.
     pub passes: usize,
-    /// Values whose variance is no number.
+    /// `true` for values with a variance that is NaN or infinite.
     pub is_unknown: Vec<bool>,
     pub negative: u64,
     pub unknown: u64,
@@ -167,7 +167,7 @@ pub(super) fn kurtosis(q: f64) -> f64 {
     (2.0 * q - 3.0).max(1.0)
 }
 
-/// The estimate of the variance of a tile of so many pixels, V̂ above 0, from Q passes.
+/// The estimate of the variance of a tile of `pixels` pixels, V̂ above 0, from Q passes.
 pub(super) fn of_tile(variance: f64, q: f64, passes: usize, pixels: f64) -> Estimate {
     Estimate { variance, error: q / ((passes / 2) as f64 * pixels) }
 }

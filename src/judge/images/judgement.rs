@@ -38,7 +38,7 @@ pub struct Judgement {
     pub variance: Option<Variance>,
     /// What is known of a variance that was estimated; `None` for an exact one, or none.
     pub estimate: Option<Estimate>,
-    /// Number of passes whose mean the truth image is; `None` for an exact truth.
+    /// Number of passes that the truth image is the mean of; `None` for an exact truth.
     pub truth_passes: Option<usize>,
     /// Comparison with a second stack; `None` where the truth is given.
     pub comparison: Option<Comparison>,

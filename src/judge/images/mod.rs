@@ -74,7 +74,7 @@ const LEAST: f64 = 1e-4;
 const LISTED: f64 = 0.05;
 /// A tile has so many values of all passes, unless its size is asked for: then all tiles can pass.
 const VALUES: usize = 2048;
-/// The same where they must show a variance, too.
+/// Number of values of a tile where the passes must show a variance, too.
 const NOISY_VALUES: usize = 8192;
 /// How many of the worst tiles are kept apart.
 const WORST: usize = 5;
@@ -275,7 +275,7 @@ fn refuted(stack: &Stack, pixels: &Pixels) -> (Option<Refuted>, u64) {
     (first, count)
 }
 
-/// The first value that is no number, and how many are none.
+/// The first value that is NaN or infinite, and the number of such values.
 fn not_finite(stack: &Stack) -> (Option<Refuted>, u64) {
     let (mut first, mut count) = (None, 0);
     for pass in 0..stack.passes {

@@ -1,4 +1,4 @@
-//! The evidence on a tile whose variance was estimated, or whose truth is a mean of passes.
+//! The evidence on a tile with an estimated variance, or with a truth that is a mean of passes.
 //!
 //! ```text
 //! y     (x − T)/u for every pixel of every pass; where T is a mean of R passes: (x̄ − T)/u for every pixel
@@ -23,7 +23,7 @@ use crate::stats::estimated_variance::{Estimate, Gathered};
 use crate::stats::normal::{upper_quantile, upper_tail};
 use crate::stats::verdict::MISS;
 
-/// What the passes say of a part; q as of `estimate`, 0 for an exact variance.
+/// Evidence of the passes on a part; q as of `estimate`, 0 for an exact variance.
 pub(super) fn tile(stack: &Stack, pixels: &Pixels, part: Part, terms: Terms, q: f64) -> Tile {
     let is_known = |i: &usize| pixels.estimate.as_ref().is_none_or(|found| !found.is_unknown[*i]);
     let places: Vec<usize> = part.places(stack).filter(is_known).collect();
@@ -104,8 +104,8 @@ fn by_normal(found: &mut Tile, estimate: Estimate, scale: f64, unit: f64, terms:
     found.ln_p = [tolerance - off, tolerance + off].map(|room| -upper_tail(room / error).ln());
 }
 
-/// ln E where the estimated variance is 0: no value varied. Rare bright values that nobody saw make a tile too dark,
-/// but not too bright.
+/// ln E where the estimated variance is 0: no value varied. Rare bright values that were not drawn make a tile too
+/// dark, but not too bright.
 fn without_spread(found: &mut Tile, y: &[f64], floor: f64, is_exact: bool) -> f64 {
     let slack = 4.0 * floor + 1e-15;
     if y.iter().all(|y| y.abs() <= slack) {

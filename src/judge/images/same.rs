@@ -15,7 +15,7 @@ use super::claim::Pixels;
 use super::estimate;
 use super::picture::Stack;
 
-/// So many values must be compared before an agreement says something.
+/// Least number of compared values.
 const FEWEST: usize = 32;
 /// About how many pixels are looked at.
 const PIXELS: usize = 1 << 16;

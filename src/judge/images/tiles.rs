@@ -197,7 +197,7 @@ pub(super) fn parts(
     parts
 }
 
-/// Where tiles of that size begin, and how long they are.
+/// First row or column and length of each tile of that size.
 fn spans(length: usize, size: usize, is_joined: bool) -> Vec<(usize, usize)> {
     let mut spans: Vec<(usize, usize)> =
         (0..length).step_by(size).map(|first| (first, size.min(length - first))).collect();

@@ -67,7 +67,7 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
 /// The widest ε, in units of the picture's mean, that a pass needs no words for.
 const WIDE: f64 = 0.05;
 
-/// What a pass excludes, where that is little: the widest ε of all tiles and of the whole.
+/// The bias that a pass excludes, in words, where it is large: the widest ε of all tiles and of the whole.
 pub(super) fn excluded(judgement: &Judgement) -> String {
     let widest =
         |tiles: &[Tile]| tiles.iter().filter_map(|tile| tile.tolerance).fold(0.0, f64::max);
@@ -209,7 +209,7 @@ fn has_variance(claim: &Claim) -> bool {
     claim.variance.is_some() || claim.variance_stack.is_some()
 }
 
-/// What the promises assume of a variance, and of a truth, that are not exact.
+/// Assumptions of the promises about a variance, and about a truth, that are not exact.
 fn estimated(judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
     if let Some(found) = judgement.estimate {

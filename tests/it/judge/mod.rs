@@ -2,10 +2,10 @@
 
 mod channels;
 mod distributions;
-mod estimated;
 mod grounds;
 mod image_files;
 mod images;
+mod noisy;
 mod order;
 mod swept;
 

@@ -1,4 +1,4 @@
-//! What two stacks show of a tile.
+//! Evidence of two stacks on a tile.
 //!
 //! ```text
 //! rows      the averages of a tile in every pass, of both stacks
@@ -95,7 +95,7 @@ impl<'a> Evidence<'a> {
         (values.collect(), columns.iter().map(|(_, prior)| *prior).collect())
     }
 
-    /// How wide each pass of both stacks spreads about the mean of all, and the prior variance of that.
+    /// Sum of squares of each pass about the mean of all passes, in units of the variance, and the prior variance of that.
     pub(super) fn spreads(&self) -> (Vec<f64>, f64) {
         let [mean, variance] = &self.together;
         let of = |x: &[f64]| {

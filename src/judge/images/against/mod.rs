@@ -36,7 +36,7 @@ use crate::stats::verdict::{MISS, Verdict};
 pub struct Terms {
     /// Whether both have one distribution in each pixel, and not only one mean.
     pub is_same_law: bool,
-    /// What rounding may add to a value, relative to its mean; at least that of the files.
+    /// Rounding error of a value relative to its mean, at most; at least that of the files.
     pub rounding: f64,
 }
 

@@ -74,7 +74,7 @@ fn channel(judgement: &Judgement, tile: &Tile) -> String {
     if judgement.size.channels > 1 { format!("channel {}: ", tile.channel) } else { String::new() }
 }
 
-/// What was compared, and how.
+/// The comparison of two stacks and its method.
 fn against_line(found: &Comparison) -> String {
     let method = match found.method {
         "permutation" => format!("{} permutations of passes", found.permutations),

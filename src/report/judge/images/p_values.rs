@@ -111,7 +111,7 @@ fn colour(p: f64) -> [u8; 3] {
     if p <= SMALL { RED } else { [grey; 3] }
 }
 
-/// How many tiles have a p in each bin.
+/// Number of tiles in each bin.
 fn counts(judgement: &Judgement) -> Vec<usize> {
     let values: Vec<f64> = smallest(judgement).filter_map(|tile| tile.p).collect();
     let bins = (values.len() / 10).clamp(BINS[0], BINS[1]);

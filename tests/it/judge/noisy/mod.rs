@@ -1,14 +1,13 @@
 //! `judge --images` where variances, truths or references are noisy themselves.
 
-use std::path::Path;
+mod command;
+mod references;
 
 use trueflight::judge::images::against::{Terms, compare};
 use trueflight::judge::images::{Claim, Judgement, Level, Picture, Size, Stack, Wanted, judge};
 use trueflight::rng::{Address, unit};
 use trueflight::stats::normal::upper_quantile;
 use trueflight::stats::verdict::Verdict;
-
-use super::{Place, npy, raw};
 
 const SIZE: Size = Size { rows: 24, columns: 24, channels: 1 };
 const PIXELS: usize = 24 * 24;
@@ -132,34 +131,6 @@ fn correct_stacks_keep_the_level_by_an_estimated_variance() {
 }
 
 #[test]
-fn correct_stacks_keep_the_level_against_a_reference() {
-    let mut failed = Vec::new();
-    let others = [
-        (Law::FourFireflies(1.0), Law::Fireflies(1.0)),
-        (Law::Normal, Law::Fireflies(1.5)),
-        (Law::Normal, Law::Rare(0.002)),
-        (Law::Rare(0.05), Law::Normal),
-    ];
-    for (one, other) in LAWS.map(|law| (law, law)).into_iter().chain(others) {
-        for (n, m) in [(2, 4), (9, 9), (8, 24)] {
-            for seed in 0..8 {
-                let (stack, reference) = (honest(seed, n, one), honest(20_000 + seed, m, other));
-                let wanted = Wanted { alpha: 0.05, ..Wanted::default() };
-                for is_same_law in [false, true] {
-                    let terms = Terms { is_same_law, ..Terms::default() };
-                    let found = compare(&stack, &reference, terms, &wanted).expect("a judgement");
-                    if found.verdict == Verdict::Fail && (one == other || !is_same_law) {
-                        failed.push((one, other, n, m, is_same_law, found.reason));
-                    }
-                }
-            }
-        }
-    }
-    // 216 comparisons for means, 120 for laws: Binomial(336, 0.05) exceeds 30 with chance 1e-3.
-    assert!(failed.len() <= 12, "{failed:#?}");
-}
-
-#[test]
 fn wrong_renderers_are_found_by_an_estimated_variance() {
     let is_bad = |pixel: usize| (8..16).contains(&(pixel / 24)) && (8..16).contains(&(pixel % 24));
     let tile = |pixel| if is_bad(pixel) { 1.2 } else { 1.0 };
@@ -184,32 +155,6 @@ fn wrong_renderers_are_found_by_an_estimated_variance() {
         let found = judged(&wide, &claim, 1e-3);
         assert!(found.reason.contains("the variance is too small"), "{law:?}: {}", found.reason);
     }
-}
-
-#[test]
-fn wrong_renderers_are_found_against_a_reference() {
-    let is_bad = |pixel: usize| (8..16).contains(&(pixel / 24)) && (8..16).contains(&(pixel % 24));
-    let wanted = Wanted { tile: Some(8), ..Wanted::default() };
-    for (law, passes) in [(Law::Normal, 4), (Law::Normal, 32), (Law::Fireflies(1.0), 256)] {
-        let bad = stack(1, passes, law, |p| if is_bad(p) { 1.3 } else { 1.0 });
-        let reference = honest(2, passes, law);
-        let found = compare(&bad, &reference, Terms::default(), &wanted).expect("a judgement");
-        assert_eq!(found.verdict, Verdict::Fail, "{law:?} {passes}: {}", found.reason);
-        let expected = if passes < 8 { "signs" } else { "permutation" };
-        assert_eq!(found.comparison.expect("one").method, expected);
-        assert!(found.reason.contains("rows 8 to 15, columns 8 to 15"), "{}", found.reason);
-    }
-    // The mean of a fourth of the samples has four times the variance: no fault, but for --same-law.
-    let (many, one) = (honest(3, 24, Law::FourFireflies(1.0)), honest(4, 24, Law::Fireflies(1.0)));
-    let found = compare(&one, &many, Terms::default(), &wanted).expect("a judgement");
-    assert_ne!(found.verdict, Verdict::Fail, "{}", found.reason);
-    // 4, in error by √(κ/n), κ about 450, n = 24 · 576.
-    let ratio = found.comparison.and_then(|found| found.spread).expect("a ratio");
-    assert!((2.6..5.5).contains(&ratio), "{ratio}");
-    let terms = Terms { is_same_law: true, ..Terms::default() };
-    let found = compare(&one, &many, terms, &wanted).expect("a judgement");
-    assert_eq!(found.verdict, Verdict::Fail);
-    assert!(found.reason.contains("the variance is off"), "{}", found.reason);
 }
 
 #[test]
@@ -336,115 +281,4 @@ fn a_pass_by_a_wide_tolerance_says_so() {
     let wanted = Wanted { tolerance: Some(0.05), tile: Some(24), ..Wanted::default() };
     let found = judge(&honest(1, 64, law), &claim, &wanted).expect("a judgement");
     assert_eq!((found.verdict, &*found.reason), (Verdict::Pass, ""));
-}
-
-/// The passes of the field: fails as an exact variance, passes as what it is.
-#[test]
-fn the_command_takes_estimated_variances_and_references() {
-    let field =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/field/08-estimated-variance");
-    let file = |name: &str| field.join(name).display().to_string();
-    let place = Place::new(&[]);
-    let known = format!("--images --truth-image {}", file("truth.npy"));
-    let estimated = format!("{known} --variance-image {}", file("variance-estimated.npy"));
-    let passes = file("passes.npy");
-    place.expect(1, &format!("{estimated} {passes}"), &["--variance-passes N"]);
-    let (code, text) = place.says(&format!("{estimated} --variance-passes 64 {passes}"), &[]);
-    assert!(code == 0 || code == 3, "{text}");
-    assert!(text.contains("estimate of 64 passes"), "{text}");
-    place.expect(2, &format!("{known} --variance-passes 64 {passes}"), &["--variance-image"]);
-    place.expect(2, &format!("{estimated} --variance-passes 1 {passes}"), &["--variance-passes"]);
-    place.expect(2, &format!("{estimated} --truth-passes 0 {passes}"), &["--truth-passes"]);
-    place.expect(2, &format!("--images --same-law --truth 1 {passes}"), &["--against"]);
-    place.expect(
-        2,
-        &format!("--images --against {passes} --truth 1 {passes}"),
-        &["cannot be used"],
-    );
-    place.expect(2, &format!("--images --against nowhere.npy {passes}"), &["nowhere.npy"]);
-    place.expect(3, &format!("--images --against {passes} {passes}"), &["share values"]);
-    place.expect(2, &format!("{known} --kurtosis 0.5 {passes}"), &["kurtosis"]);
-}
-
-#[test]
-fn the_command_writes_the_p_values() {
-    let bytes = |seed, change: fn(usize) -> f64| {
-        npy("<f8", "(16, 24, 24)", &raw(&draws(seed, 16, Law::Normal, change)))
-    };
-    let dark = |pixel: usize| if pixel < 8 * 24 { 0.7 } else { 1.0 };
-    let one = |_: usize| 1.0;
-    let place = Place::new(&[
-        ("a.npy", &bytes(1, one)),
-        ("b.npy", &bytes(2, one)),
-        ("c.npy", &bytes(3, dark)),
-    ]);
-    place.expect(
-        0,
-        "--images --against a.npy --tile 8 b.npy",
-        &["permutations of passes", "but only"],
-    );
-    let out = "--images --against a.npy --tile 8 --out out --junit report.xml c.npy";
-    place.expect(1, out, &["tiles are off", "a.npy"]);
-    let png = std::fs::read(place.path().join("out/p-values.png")).expect("a picture");
-    assert!(png.starts_with(b"\x89PNG") && png.len() < 60_000, "{}", png.len());
-    let table = std::fs::read_to_string(place.path().join("out/tiles.csv")).expect("a table");
-    assert!(table.lines().next().is_some_and(|line| line.contains(",z,p,")), "{table}");
-    let json = place.json("--images --against a.npy --tile 8 b.npy", &[]);
-    assert!(json["reason"].as_str().is_some_and(|said| said.starts_with("but only a bias above")));
-    assert_eq!(json["comparison"]["method"], "permutation");
-    // A folder of passes is a stack; its files come in the order of their names.
-    let folder = place.path().join("reference");
-    std::fs::create_dir(&folder).expect("a folder");
-    for pass in 0..4 {
-        let bytes = npy("<f8", "(24, 24)", &raw(&values(4 + pass, 1, Law::Normal)));
-        std::fs::write(folder.join(format!("{pass}.npy")), bytes).expect("a file");
-    }
-    place.expect(
-        3,
-        "--images --against reference --tile 24 --tolerance 1e-3 b.npy",
-        &["4 passes of the reference"],
-    );
-    std::fs::create_dir(place.path().join("empty")).expect("a folder");
-    place.expect(2, "--images --against empty b.npy", &["without images"]);
-}
-
-/// How often correct stacks fail, by distribution, number of passes and ground: the table of the manual.
-#[test]
-#[ignore = "long: 200 stacks of each of 84 kinds, 6 minutes of two cores"]
-fn levels_of_correct_stacks() {
-    const STACKS: u64 = 200;
-    let mut total = [[0_u64; 2]; 4];
-    let mut table = String::new();
-    for law in LAWS {
-        for (n, q) in [(4, 4), (16, 16), (64, 64), (8, 64)] {
-            let mut failed = [0; 4];
-            for seed in 0..STACKS {
-                let (stack, other) = (honest(seed, n, law), honest(100_000 + seed, q, law));
-                let count = |verdict| u64::from(verdict == Verdict::Fail);
-                failed[0] += count(judged(&stack, &by_image(200_000 + seed, q, law), 1e-3).verdict);
-                let claim =
-                    Claim { variance_stack: Some(other.clone()), ..Claim::of_truth(image(truth)) };
-                failed[1] += count(judged(&stack, &claim, 1e-3).verdict);
-                let reference = values(300_000 + seed, q, law);
-                let mean = |i: usize| {
-                    (0..q).map(|pass| reference[pass * PIXELS + i]).sum::<f64>() / q as f64
-                };
-                let claim = Claim {
-                    truth: image(mean),
-                    truth_passes: Some(q),
-                    ..by_image(300_000 + seed, q, law)
-                };
-                failed[2] += count(judged(&stack, &claim, 1e-3).verdict);
-                let found = compare(&stack, &other, Terms::default(), &Wanted::default());
-                failed[3] += count(found.expect("a judgement").verdict);
-            }
-            table += &format!("{law:?}, {n} passes, {q} others: {failed:?} of {STACKS}\n");
-            for (total, failed) in total.iter_mut().zip(failed) {
-                *total = [total[0] + failed, total[1] + STACKS];
-            }
-        }
-    }
-    println!("{table}image, stack, truth of passes, against: {total:?}");
-    // 4,000 of each at α = 1e-3: 4 on average if the level were exhausted, above 12 with chance 3e-4.
-    assert!(total.iter().all(|[failed, _]| *failed <= 12), "{table}");
 }
