@@ -135,7 +135,9 @@ pub fn remark(scene: &Scene, folder: &Path) -> Option<String> {
     let source = Source { name: scene.case.clone(), path: folder.join(FILE), text };
     let case = Case::read(&source).ok()?;
     let refusal = case.scenario.prepare(0, None, case.pilots(1, 0)).err()?;
-    Some(format!("tracking for one channel, without multiple importance sampling of the others, {refusal}"))
+    Some(format!(
+        "tracking for one channel, without multiple importance sampling of the others, {refusal}"
+    ))
 }
 
 /// What theory predicts of the case file in a folder.

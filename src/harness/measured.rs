@@ -17,7 +17,8 @@ pub fn measure(row: &mut Row, channel: &Channel, tally: &Tally) {
     row.mean = finite(moments.map(|m| channel.mean.value + m.mean * unit));
     row.variance = finite(moments.and_then(|m| m.variance).map(|v| v * unit * unit));
     row.standard_error = row.variance.map(|v| (v / n).sqrt());
-    let Some(predicted) = channel.moments.filter(|m| m.relative[0] > CERTAIN) else { return };
+    let predicted = channel.resolved_moments().filter(|m| m.relative[0] > CERTAIN);
+    let Some(predicted) = predicted else { return };
     row.variance_deviation = finite(
         predicted.spread_of_sample_variance(n).map(|s| s.max(0.0).sqrt() * predicted.variance()),
     );

@@ -126,7 +126,8 @@ impl Writer<'_> {
             node.value = Value::Number(x);
             return self.constant(node, [key, setting], path);
         }
-        if setting == "extinction" && matches!(&node.value, Value::Text(name) if name.contains('.')) {
+        if setting == "extinction" && matches!(&node.value, Value::Text(name) if name.contains('.'))
+        {
             wrap(node, keyed("file"));
             wrap(node, keyed("grid"));
             return;

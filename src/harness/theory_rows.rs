@@ -38,7 +38,8 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
     let kernel = ready.experiment.order().word();
     let same_as = twin(case, planned).unwrap_or_default();
     let rows = prediction.channels.iter().map(|channel| {
-        let variance = channel.moments.map(|moments| moments.variance());
+        let moments = channel.resolved_moments();
+        let variance = moments.map(|moments| moments.variance());
         let fom = variance.zip(cost).map(|(v, m)| 1.0 / (v * m));
         Row {
             kernel: kernel.to_owned(),
@@ -51,21 +52,20 @@ pub fn theory_rows(case: &PlannedCase, planned: &Planned) -> Vec<Row> {
             predicted_variance: finite(variance),
             predicted_lookups: lookups,
             setup_lookups: Some(prediction.setup_lookups),
-            predicted_skewness: finite(channel.moments.and_then(|m| m.skewness())),
-            predicted_kurtosis: finite(channel.moments.and_then(|m| m.kurtosis())),
+            predicted_skewness: finite(moments.and_then(|m| m.skewness())),
+            predicted_kurtosis: finite(moments.and_then(|m| m.kurtosis())),
             predicted_fom: finite(fom),
             stable_share: prediction.stable_share,
             losses: channel.losses,
-            relative_moments: channel
-                .moments
+            relative_moments: moments
                 .map_or([None; 3], |moments| moments.relative.map(|m| finite(Some(m)))),
             lookups_variance: law.map(|law| law.variance),
             lookups_pmf: law
                 .filter(|law| law.pmf.len() <= LONGEST_LAW)
                 .map_or_else(Vec::new, |law| law.pmf.clone()),
             moments_error: finite(channel.moments_error()),
-            rare_event_size: finite(channel.moments.map(|_| channel.tails.rare_event_size)),
-            eighth_moment_ratio: finite(channel.moments.map(|_| channel.tails.eighth_moment_ratio)),
+            rare_event_size: finite(moments.map(|_| channel.tails.rare_event_size)),
+            eighth_moment_ratio: finite(moments.map(|_| channel.tails.eighth_moment_ratio)),
             log_unit: Some(channel.log_unit).filter(|&unit| unit != 0.0),
             ..blank.clone()
         }

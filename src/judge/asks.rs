@@ -3,7 +3,7 @@
 use super::grounds::Spread;
 use super::scalar::Ask;
 use super::trial::{MEAN_CAP, Trial};
-use crate::stats::gate;
+use crate::stats::gate::Design;
 
 /// The widest ε of a variance that is chosen without being asked for.
 pub(super) const VARIANCE_CAP: f64 = 0.2;
@@ -86,16 +86,14 @@ pub(super) fn asks(trial: &Trial) -> Vec<Ask> {
 
 /// n: the draws that the tolerances asked for need, at most those that there are.
 pub(super) fn planned(asks: &[Ask], length: Option<u64>) -> Option<f64> {
-    let needs = |ask: &Ask, tolerance: Option<f64>| {
+    let needs = |ask: &Ask, design: fn(f64, f64, f64) -> Design, tolerance: f64| {
         let Some(Spread::Known(variance)) = ask.spread else { return None };
-        // A design never has a wider ε than a quarter of the spread.
-        let tolerance = tolerance?.min(0.25 * variance.sqrt());
-        (variance > 0.0).then(|| gate::draws_of(variance, tolerance))
+        (variance > 0.0).then(|| design(variance, tolerance, 0.0).draws())
     };
     let length = length.map(|length| length as f64);
-    let asked = asks.iter().filter_map(|ask| needs(ask, ask.tolerance));
+    let asked = asks.iter().filter_map(|ask| needs(ask, Design::asked, ask.tolerance?));
     match asked.reduce(f64::max) {
         Some(needed) => Some(length.map_or(needed, |length| needed.min(length))),
-        None => length.or_else(|| needs(asks.first()?, Some(USUAL))),
+        None => length.or_else(|| needs(asks.first()?, Design::new, USUAL)),
     }
 }

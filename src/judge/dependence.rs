@@ -2,32 +2,44 @@
 
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::{DRIFT, Reading};
-use crate::catalogue::deviation::Deviation;
 use crate::stats::verdict::Verdict;
 
-/// Whether the mean changes on the way: only where that says more than that it is off.
+/// Whether the mean changes on the way: only where later draws plainly differ from earlier ones, and from the truth.
 pub(super) fn drift(reading: &Reading) -> Option<DriftFinding> {
     // Without a ground to fail the mean there is none to say when it changes.
     let mean = reading.mean.as_ref().filter(|mean| mean.has_ground())?;
-    let change = mean.change();
-    let limit = -(DRIFT * reading.trial.wanted.alpha).ln();
-    let is_shown = change.ln_e >= limit && change.ln_e > mean.ln_e() && mean.is_founded();
-    let from = change.from * reading.trial.wanted.batch;
-    let verdict = if is_shown { Verdict::Fail } else { Verdict::Pass };
-    let reason = if is_shown {
-        let claim = &reading.trial.claim;
-        let draws = (reading.draws() / reading.trial.wanted.batch).saturating_sub(change.from);
-        let later = Deviation::new(claim.truth + claim.unit * change.off, claim.truth, draws);
-        format!(
-            "the mean changes: from draw {from} on it is off by {later} (ln E = {:.1} ≥ {limit:.1})",
-            change.ln_e
-        )
-    } else {
-        String::new()
+    let (ln_e, batch) = (mean.ln_change, reading.trial.wanted.batch);
+    let ln_e_limit = -(DRIFT * reading.trial.wanted.alpha).ln();
+    let is_refuted = (ln_e >= ln_e_limit || mean.has_failed()) && mean.is_founded();
+    let change = mean.obvious_change().filter(|_| is_refuted);
+    let Some(change) = change else {
+        let (verdict, reason) = (Verdict::Pass, String::new());
+        return Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from: None, off: 0.0 });
     };
-    let from = (change.ln_e > 0.0).then_some(from);
-    let (ln_e, off) = (change.ln_e, change.off);
-    Some(DriftFinding { verdict, reason, ln_e, ln_e_limit: limit, from, off })
+    let (from, off) = (change.from * batch, change.off);
+    let where_ = match change.to {
+        None => format!("from draw {from} on"),
+        Some(to) => format!("from draw {from} to draw {}", to * batch),
+    };
+    let inside = change.to.unwrap_or(mean.past.draws()) - change.from;
+    let told = mean.deviation(off, inside);
+    let reason = format!(
+        "the mean changes: {where_} it is off by {told}, {:+.1} standard errors from all other draws",
+        change.z
+    );
+    let (verdict, from) = (Verdict::Fail, Some(from));
+    Some(DriftFinding { verdict, reason, ln_e, ln_e_limit, from, off })
+}
+
+/// Why the mean fails where evidence from some draw on refutes it, and no change does.
+pub(super) fn off_without_change(reading: &Reading, drift: &DriftFinding) -> Option<String> {
+    let mean = reading.mean.as_ref()?;
+    let (ln_e, limit) = (drift.ln_e, drift.ln_e_limit);
+    let is_off = drift.verdict == Verdict::Pass && ln_e >= limit && mean.is_founded();
+    is_off.then(|| {
+        let told = mean.deviation(mean.past.mean(), mean.past.draws());
+        format!("the mean is off by {told} (ln E = {ln_e:.1} ≥ {limit:.1})")
+    })
 }
 
 /// Whether draws depend on each other: half of the level for neighbours, half for replays.
@@ -54,14 +66,33 @@ pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
             _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
         });
     }
-    if let Some(replay) = reading.replays.most_frequent()
-        && replay.ln_p <= -ln_e_limit
-    {
-        found.replay = Some(replay.distance);
-        found.reason = because(match replay.distance {
-            1 => "draws are written more than once".to_owned(),
-            distance => format!("the same draws come again {distance} draws later"),
-        });
+    // Three searches for replays share their half.
+    let limit = ln_e_limit + 3f64.ln();
+    let written = reading.runs.found().filter(|&(_, ln_p)| ln_p <= -limit);
+    let replays = [reading.replays.found(), reading.sequences.found()].into_iter().flatten();
+    let replays = replays.filter(|replay| replay.ln_p <= -limit);
+    let replay = replays.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let unit = if reading.trial.wanted.batch == 1 { "draws" } else { "averages" };
+    let said = if let Some((times, ln_p)) = written {
+        let what = format!("{unit} are written more than once: each {times} times");
+        Some((1, times, ln_p, what))
+    } else {
+        replay.map(|replay| {
+            let distance = replay.distance * reading.trial.wanted.batch;
+            let what = match replay.distance {
+                1 => format!("{unit} are written more than once"),
+                _ => format!(
+                    "the same {unit} come again {distance} draws later, {} times in all",
+                    replay.times
+                ),
+            };
+            (distance, replay.times, replay.ln_p, what)
+        })
+    };
+    if let Some((distance, times, ln_p, what)) = said {
+        found.replay = Some(distance);
+        (found.repeats, found.replay_ln_p) = (Some(times), Some(ln_p));
+        found.reason = because(what);
     }
     found
 }

@@ -5,7 +5,7 @@ use super::judgement::ScalarFinding;
 use super::scalar::Scalar;
 use super::trial::Trial;
 use crate::catalogue::deviation::Deviation;
-use crate::stats::gate::{self, Decision, Design};
+use crate::stats::gate::{Decision, Design, HORIZON, PLANNED};
 use crate::stats::verdict::BLOCK;
 use crate::stats::verdict::{GateFinding, Verdict};
 
@@ -27,13 +27,15 @@ impl Scalar {
     pub(super) fn finding(&self) -> ScalarFinding {
         let (verdict, reason) = self.verdict();
         // Bold bets may decide before ε is chosen.
-        let decided = (self.decision != Decision::Open)
-            .then(|| Design::new(self.past.mean_square(), self.ask.cap, self.ask.floor));
+        let decided = (self.decision != Decision::Open).then(|| match self.ask.tolerance {
+            Some(asked) => Design::asked(self.past.mean_square(), asked, self.ask.floor),
+            None => Design::new(self.past.mean_square(), self.ask.cap, self.ask.floor),
+        });
         let gate = self.design.or(decided).map(|design| GateFinding {
             tolerance: design.tolerance,
             variance: design.variance,
             mean: self.seen.0,
-            planned: gate::draws_of(design.variance, design.tolerance),
+            planned: design.draws(),
             draws: self.seen.1,
             ln_e: self.evidence.ln_e,
             ln_e_limit: self.levels.ln_fail,
@@ -64,6 +66,13 @@ impl Scalar {
 
     /// What is missing where the draws do not show their own spread.
     fn unknown(&self) -> String {
+        let unused = self.ask.tolerance.map_or(String::new(), |asked| {
+            format!("; the tolerance of {asked:.1e} is not tested without that")
+        });
+        self.missing() + &unused
+    }
+
+    fn missing(&self) -> String {
         let (n, what) = (self.past.draws(), self.ask.what);
         let cure = self.cure();
         let carry = self.past.effective_draws().floor().max(0.0);
@@ -90,9 +99,65 @@ impl Scalar {
     }
 
     /// How far the quantity is from what is claimed, where y is `off` on average.
-    fn deviation(&self, off: f64, draws: u64) -> Deviation {
+    pub(super) fn deviation(&self, off: f64, draws: u64) -> Deviation {
         let &Self { expected, scale, unit, .. } = self;
         Deviation { unit, ..Deviation::new(expected + scale * off, expected, draws) }
+    }
+
+    /// The draws that a pass is planned for; by a range alone, with the variance that the draws show.
+    fn planned_draws(&self, design: &Design) -> f64 {
+        let Some(ground) = self.of_range.as_ref().filter(|_| self.ask.spread.is_none()) else {
+            return design.draws();
+        };
+        let by_range = ground.finest() / design.tolerance;
+        let variance = ground.variance(&self.past);
+        variance.map_or(by_range, |v| design.with_variance(v).draws().max(by_range))
+    }
+
+    /// By how much y looks off.
+    fn looks_off(&self, z: f64) -> String {
+        let what = self.ask.what;
+        let told = self.deviation(self.past.mean(), self.past.draws()).with_z(z);
+        let alike = if z.is_finite() { "" } else { ", and all draws are alike" };
+        format!("the {what} looks off by {told}{alike}")
+    }
+
+    /// Why so much is not enough to fail, and what would be.
+    fn what_shows(&self) -> String {
+        let n = self.past.draws();
+        match self.ask.spread {
+            Some(Spread::Known(_)) => format!("{n} draws of the variance given do not show it"),
+            Some(Spread::Kurtosis(_)) => format!("{n} draws of the kurtosis given do not show it"),
+            Some(Spread::Shown) => format!("no number of draws shows it without {}", self.cure()),
+            None => {
+                format!("{n} draws of the range given do not show it: give more, or the variance")
+            }
+        }
+    }
+
+    /// A pass; taken back where the mean of all draws is plainly off, unless that is within a tolerance asked for.
+    fn passed(&self) -> (Verdict, String) {
+        let Some(z) = self.obvious_z() else { return (Verdict::Pass, String::new()) };
+        let off = self.past.mean();
+        match self.ask.tolerance {
+            Some(asked) if off.abs() < asked => {
+                let what = self.ask.what;
+                let told = self.deviation(off, self.past.draws()).with_z(z);
+                let reason = format!(
+                    "the {what} is off by {told}, within the tolerance of {asked:.1e} that was asked for"
+                );
+                (Verdict::Pass, reason)
+            }
+            _ => {
+                let tolerance = self.design.map_or(0.0, |design| design.tolerance);
+                let reason = format!(
+                    "{}, but {}; a bias of {tolerance:.2e} is excluded: give a tolerance to accept a smaller one",
+                    self.looks_off(z),
+                    self.what_shows(),
+                );
+                (Verdict::Inconclusive, reason)
+            }
+        }
     }
 
     fn verdict(&self) -> (Verdict, String) {
@@ -104,15 +169,20 @@ impl Scalar {
         let (off, n) = self.seen;
         if self.decision == Decision::Failed && is_founded {
             // Where V is only bounded, the draws' own spread says more.
-            let known = match self.ask.spread {
-                Some(Spread::Known(variance)) => variance,
-                _ => self.past.variance(),
-            };
+            let known = self.known_variance().unwrap_or(self.past.variance());
             let z = off / (known / n as f64).sqrt();
             let z = if self.past.kurtosis().is_finite() { z } else { f64::NAN };
             let (found, limit) = (self.evidence.ln_e, self.levels.ln_fail);
             let told = self.deviation(off, n).with_z(z);
-            let reason = format!("the {what} is off by {told} (ln E = {found:.1} ≥ {limit:.1})");
+            let below = match self.ask.tolerance {
+                Some(asked) if off.abs() < asked => format!(
+                    "; below the tolerance of {asked:.1e}, which is what a pass must exclude: a bias that is \
+                     shown fails"
+                ),
+                _ => String::new(),
+            };
+            let reason =
+                format!("the {what} is off by {told} (ln E = {found:.1} ≥ {limit:.1}){below}");
             return (Verdict::Fail, reason);
         }
         let looks_off = || {
@@ -134,13 +204,16 @@ impl Scalar {
         match self.decision {
             _ if self.is_doubted && !relies_on_shown => (Verdict::Inconclusive, looks_off()),
             Decision::Passed if relies_on_shown && !self.ask.is_hard => (weak, self.unknown()),
-            Decision::Passed => (Verdict::Pass, String::new()),
+            Decision::Passed => self.passed(),
             Decision::Open | Decision::Failed => {
-                let planned = gate::draws_of(design.variance, design.tolerance);
-                let longest = planned * gate::HORIZON / gate::PLANNED;
+                let planned = self.planned_draws(&design);
+                let longest = planned * HORIZON / PLANNED;
                 let needed = if planned > n as f64 { planned } else { longest };
+                let plain = self.obvious_z().map_or(String::new(), |z| {
+                    format!("{}, but {}; ", self.looks_off(z), self.what_shows())
+                });
                 let reason = format!(
-                    "the {what} is undecided after {n} draws; a tolerance of {:.2e} needs {needed:.1e}",
+                    "{plain}the {what} is undecided after {n} draws; a tolerance of {:.2e} needs {needed:.1e}",
                     design.tolerance
                 );
                 (weak, reason)

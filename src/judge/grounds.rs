@@ -29,6 +29,10 @@ pub(super) const EFFECTIVE: f64 = 1000.0;
 const ASSUMED: f64 = 200.0;
 /// How many draws must carry a variance that stakes and ε are chosen by.
 pub(super) const RELIABLE: f64 = 100.0;
+/// How many suffice where no more draws can be waited for.
+pub(super) const FAIRLY_RELIABLE: f64 = 20.0;
+/// n ε over the distance from the truth to the further end of a range, for a pass by bets of three quarters of that.
+const FINEST: f64 = 12.0;
 /// The widest t.
 const WIDEST: f64 = 0.5;
 
@@ -54,8 +58,6 @@ pub(super) struct OfVariance {
     /// Draws at the last bound, and how many bounds there were.
     bounded: (u64, i32),
     pub capital: Capital,
-    /// The block at which judging began.
-    pub begin: u64,
 }
 
 impl OfVariance {
@@ -65,7 +67,7 @@ impl OfVariance {
             Spread::Known(_) | Spread::Shown => None,
         };
         let capital = Capital::default();
-        Self { spread, is_hard, kurtosis, design: None, bounded: (0, 0), capital, begin: 0 }
+        Self { spread, is_hard, kurtosis, design: None, bounded: (0, 0), capital }
     }
 
     /// V for the next block, from the draws before it; `None` while there is none. `ln_fail` is the
@@ -104,11 +106,8 @@ impl OfVariance {
         })
     }
 
-    /// Bets on a block, whose number is `block`.
-    pub(super) fn absorb(&mut self, y: &[f64], design: Design, block: u64) {
-        if self.design.is_none() {
-            self.begin = block;
-        }
+    /// Bets on a block.
+    pub(super) fn absorb(&mut self, y: &[f64], design: Design) {
         self.design = Some(design);
         let mut sums = GateSums::default();
         sums.absorb(y, &design.arguments());
@@ -147,6 +146,12 @@ impl OfRange {
     /// The largest variance of a law of mean 0 in the range: −ab (Bhatia and Davis 2000).
     pub(super) fn widest(&self) -> f64 {
         -self.range[0] * self.range[1]
+    }
+
+    /// n ε of the smallest ε that bets can exclude: no draw may be worth more than the range allows.
+    pub(super) fn finest(&self) -> f64 {
+        let reach = self.range[1].max(-self.range[0]);
+        if reach.is_finite() { FINEST * reach } else { 0.0 }
     }
 
     /// The evidence for a pass; a mean that the range makes impossible needs none.

@@ -8,7 +8,7 @@ use crate::stats::verdict::{GateFinding, Verdict};
 pub struct Judgement {
     /// `pass`, `fail` or `inconclusive`.
     pub verdict: Verdict,
-    /// Why, in words; empty for a plain pass.
+    /// Why, in words; empty for a plain pass. A pass with words has a mean that is off within the tolerance.
     pub reason: String,
     /// What the verdict promises, and what it does not.
     pub guarantees: Vec<String>,
@@ -128,13 +128,13 @@ pub struct DriftFinding {
     pub verdict: Verdict,
     /// Why.
     pub reason: String,
-    /// ln E against draws that have the claimed mean throughout.
+    /// ln E against draws that have the claimed mean throughout, from any later block on.
     pub ln_e: f64,
     /// The ln E at which it fails.
     pub ln_e_limit: f64,
-    /// The draw from which on the mean most likely differs; `None` without evidence.
+    /// The draw from which on the mean differs; `None` where no change is shown.
     pub from: Option<u64>,
-    /// By how much, in units of the truth.
+    /// By how much from the truth, in units of it.
     pub off: f64,
 }
 
@@ -156,6 +156,10 @@ pub struct IndependenceFinding {
     pub correlation: Option<f64>,
     /// After how many draws the same ones come again.
     pub replay: Option<u64>,
+    /// How often they come in all.
+    pub repeats: Option<u64>,
+    /// ln of a bound on the probability that independent draws come again like that.
+    pub replay_ln_p: Option<f64>,
     /// From how many averaged draws on no dependence shows.
     pub batch: Option<u64>,
 }

@@ -35,6 +35,7 @@ mod grounds;
 pub mod images;
 pub mod judgement;
 mod likely;
+mod obvious;
 #[cfg(feature = "library")]
 mod of_case;
 pub mod reading;

@@ -10,6 +10,8 @@ use super::{dependence, verdict};
 use crate::numeric::sum::Sum;
 use crate::stats::independence::Independence;
 use crate::stats::replays::Replays;
+use crate::stats::runs::Runs;
+use crate::stats::sequences::Sequences;
 use crate::stats::verdict::MISS;
 use crate::stats::verdict::Verdict;
 use crate::stats::{Powers, ties};
@@ -86,6 +88,8 @@ pub struct Reading {
     block: usize,
     pub(super) independence: Independence,
     pub(super) replays: Replays,
+    pub(super) sequences: Sequences,
+    pub(super) runs: Runs,
     lookup_sum: Sum,
     is_single: bool,
     is_varied: bool,
@@ -138,6 +142,8 @@ impl Reading {
             block,
             independence: Independence::default(),
             replays: Replays::default(),
+            sequences: Sequences::default(),
+            runs: Runs::default(),
             lookup_sum: Sum::default(),
             is_single: true,
             is_varied: false,
@@ -268,6 +274,8 @@ impl Reading {
         }
         self.independence.absorb(&self.y);
         self.replays.absorb(block);
+        self.sequences.absorb(block);
+        self.runs.absorb(block);
         self.powers.absorb(&self.y);
         if let Some(mean) = &mut self.mean {
             mean.absorb(&self.y);

@@ -9,8 +9,7 @@
 //! Looks come at block ends, growing by 1.15, and where the draws end. A pass is not the end: a
 //! scalar that has passed may still fail on what comes later.
 
-use super::grounds::{OfRange, OfVariance, RELIABLE, Spread};
-use crate::numeric::sum::Sum;
+use super::grounds::{FAIRLY_RELIABLE, OfRange, OfVariance, RELIABLE, Spread};
 use crate::stats::Powers;
 use crate::stats::betting::Aim;
 use crate::stats::capital::ln_mean_exp;
@@ -18,6 +17,8 @@ use crate::stats::gate::{self, Decision, Design, Evidence};
 
 /// How many draws a question without a promise takes where no number of draws is planned.
 const UNPLANNED: f64 = 67_108_864.0;
+/// Twice as many draws as show their variance where no number of draws is planned.
+const UNPLANNED_PILOT: f64 = 131_072.0;
 
 /// What is asked of a scalar.
 #[derive(Debug, Clone, Copy)]
@@ -53,16 +54,6 @@ pub(super) struct Levels {
     pub ln_pass: f64,
 }
 
-/// A change of the mean.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Change {
-    /// ln `E_c`.
-    pub ln_e: f64,
-    /// The draw from which on the mean differs, and by how much.
-    pub from: u64,
-    pub off: f64,
-}
-
 /// A scalar on its way.
 pub(super) struct Scalar {
     pub ask: Ask,
@@ -82,16 +73,16 @@ pub(super) struct Scalar {
     pub(super) design: Option<Design>,
     /// Whether n draws suffice for a pass.
     pub(super) is_promised: bool,
-    /// The sum of y in each block, and how many draws a whole block has.
-    pub(super) sums: Vec<f64>,
-    pub(super) block: u64,
+    /// The sum of y in each block, and how many draws there are at its end.
+    pub(super) sums: Vec<(f64, u64)>,
     pub(super) look: u64,
     /// The decision, and the evidence it was made on.
     pub(super) decision: Decision,
     pub(super) evidence: Evidence,
     /// Whether what may not fail would have.
     pub(super) is_doubted: bool,
-    pub(super) change: Change,
+    /// ln `E_c`.
+    pub(super) ln_change: f64,
     /// Mean of y and number of draws at the last look before the decision.
     pub(super) seen: (f64, u64),
 }
@@ -107,12 +98,11 @@ impl Scalar {
             design: None,
             is_promised: ask.must_pass,
             sums: Vec::new(),
-            block: 0,
             look: 1,
             decision: Decision::Open,
             evidence: Evidence::NONE,
             is_doubted: false,
-            change: Change { ln_e: 0.0, from: 0, off: 0.0 },
+            ln_change: 0.0,
             seen: (0.0, 0),
             expected: 0.0,
             scale: 1.0,
@@ -129,25 +119,37 @@ impl Scalar {
     fn start(&mut self, variance: f64) {
         let skipped = self.past.draws() as f64;
         let left = self.planned.map(|all| (all - skipped).max(1.0));
-        let chosen = left.map_or(self.ask.usual, |n| gate::tolerance_of(variance, n));
-        let tolerance = self.ask.tolerance.unwrap_or(chosen.min(self.ask.cap));
-        let design = Design::new(variance, tolerance, self.ask.floor);
-        let suffices = |n| gate::draws_of(variance, design.tolerance) <= n * (1.0 + 1e-6);
+        let by_range = self.of_range.as_ref().filter(|_| self.ask.spread.is_none());
+        let finest = by_range.map_or(0.0, OfRange::finest);
+        let chosen = |n: f64| gate::tolerance_of(variance, n).max(finest / n);
+        let chosen = left.map_or(self.ask.usual, chosen).min(self.ask.cap);
+        let design = match self.ask.tolerance {
+            Some(asked) => Design::asked(variance, asked, self.ask.floor),
+            None => Design::new(variance, chosen, self.ask.floor),
+        };
+        let suffices = |n| design.draws() <= n * (1.0 + 1e-6);
         let can_promise = self.ask.is_hard && left.is_none_or(suffices);
         self.is_promised |= self.ask.tolerance.is_some() || can_promise;
         self.design = Some(design);
     }
 
-    /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range.
+    /// Fixes ε where only a range is known: by the variance of the first draws, at most that of the range. Half of
+    /// all draws may pass until the draws show their variance; an ε that was asked for need not wait.
     fn start_by_range(&mut self) {
         let Some(ground) = self.of_range.as_ref().filter(|_| self.design.is_none()) else { return };
-        let is_reliable = self.past.effective_draws() >= RELIABLE;
+        let (draws, carry) = (self.past.draws() as f64, self.past.effective_draws());
+        let is_asked = self.ask.tolerance.is_some();
+        let is_due = draws >= 0.5 * self.planned.unwrap_or(UNPLANNED_PILOT);
+        let is_reliable = carry >= RELIABLE || is_due && carry >= FAIRLY_RELIABLE;
+        if !is_asked && !is_reliable && !is_due {
+            return;
+        }
         let shown = if is_reliable { self.past.upper_square() } else { f64::INFINITY };
         let variance = shown.min(ground.widest());
         // A range that leaves next to nothing narrows no tolerance.
         let asked = self.ask.tolerance.unwrap_or(self.ask.cap);
         let variance = if variance > 0.0 { variance } else { 16.0 * asked * asked };
-        if self.past.draws() > 0 && variance.is_finite() {
+        if (draws > 0.0 || is_asked) && variance.is_finite() {
             self.start(variance);
         }
     }
@@ -167,7 +169,7 @@ impl Scalar {
             if let (Some(ground), Some(variance), Some(first)) =
                 (&mut self.of_variance, bound, self.design)
             {
-                ground.absorb(y, Design::new(variance, first.tolerance, first.floor), block);
+                ground.absorb(y, first.with_variance(variance));
             }
             if let Some(ground) = &mut self.of_range {
                 let variance = bound.or(ground.variance(&self.past));
@@ -177,9 +179,8 @@ impl Scalar {
                 ground.absorb(y, aim, self.ask.floor);
             }
         }
-        self.sums.push(y.iter().sum());
-        self.block = self.block.max(y.len() as u64);
         self.past.absorb(y);
+        self.sums.push((y.iter().sum(), self.past.draws()));
         if block + 1 == self.look {
             self.decide();
             self.look = (self.look + 1).max(self.look * 115 / 100);
@@ -191,18 +192,17 @@ impl Scalar {
         if self.decision == Decision::Failed || self.past.draws() == 0 {
             return;
         }
-        let (mut ln_e, mut ln_change, mut change) = (Vec::new(), Vec::new(), (0.0, 0));
+        let (mut ln_e, mut ln_change) = (Vec::new(), Vec::new());
         let mut ln_pass: [Vec<f64>; 2] = Default::default();
         let mut soft = f64::NEG_INFINITY;
         // A bound on V takes its share of all evidence that it joins.
         let mut ln_share: f64 = 0.0;
         let tolerance = self.design.map_or(0.0, |design| design.tolerance);
         let of_variance = self.of_variance.as_ref();
-        let of_variance =
-            of_variance.map(|g| (&g.capital, g.capital.ln_pass(), g.begin, g.is_hard));
+        let of_variance = of_variance.map(|g| (&g.capital, g.capital.ln_pass(), g.is_hard));
         let of_range = self.of_range.as_ref();
-        let of_range = of_range.map(|g| (&g.capital, g.ln_pass(tolerance), 0, true));
-        for (capital, sides, begin, is_hard) in of_variance.into_iter().chain(of_range) {
+        let of_range = of_range.map(|g| (&g.capital, g.ln_pass(tolerance), true));
+        for (capital, sides, is_hard) in of_variance.into_iter().chain(of_range) {
             for (all, side) in ln_pass.iter_mut().zip(sides) {
                 all.push(side);
             }
@@ -212,9 +212,6 @@ impl Scalar {
             }
             ln_e.push(capital.ln_e());
             ln_change.push(capital.ln_change());
-            if capital.ln_change() > change.0 {
-                change = (capital.ln_change(), begin + capital.change());
-            }
         }
         if let Some(ground) = self.of_variance.as_ref() {
             ln_share = ground.ln_share();
@@ -228,14 +225,7 @@ impl Scalar {
         };
         let Levels { ln_fail, ln_pass } = self.levels;
         self.is_doubted |= soft >= ln_fail;
-        let ln_change = mean(&ln_change) + ln_share;
-        if ln_change > self.change.ln_e {
-            let first = usize::try_from(change.1).unwrap_or(usize::MAX).min(self.sums.len());
-            let later: Sum = self.sums[first..].iter().copied().collect();
-            let draws = self.past.draws().saturating_sub(change.1 * self.block).max(1);
-            let off = later.value() / draws as f64;
-            self.change = Change { ln_e: ln_change, from: change.1 * self.block, off };
-        }
+        self.ln_change = self.ln_change.max(mean(&ln_change) + ln_share);
         let decision = evidence.decision(ln_fail, ln_pass);
         if self.decision == Decision::Open || decision == Decision::Failed {
             (self.decision, self.evidence) = (decision, evidence);
@@ -247,9 +237,7 @@ impl Scalar {
     pub(super) fn is_open(&self) -> bool {
         let most = self.planned.unwrap_or(UNPLANNED);
         let limit = match &self.design {
-            Some(design) if self.is_promised => {
-                gate::draws_of(design.variance, design.tolerance) * gate::HORIZON / gate::PLANNED
-            }
+            Some(design) if self.is_promised => design.draws() * gate::HORIZON / gate::PLANNED,
             _ => most,
         };
         self.decision == Decision::Open && (self.past.draws() as f64) < limit
@@ -259,14 +247,12 @@ impl Scalar {
         self.decision == Decision::Failed
     }
 
-    /// The strongest sign of a change of the mean.
-    pub(super) fn change(&self) -> Change {
-        self.change
-    }
-
-    /// ln E at the last look.
-    pub(super) fn ln_e(&self) -> f64 {
-        self.evidence.ln_e
+    /// V, where the claim has it.
+    pub(super) fn known_variance(&self) -> Option<f64> {
+        match self.ask.spread {
+            Some(Spread::Known(variance)) => Some(variance),
+            _ => None,
+        }
     }
 
     /// Whether it can fail at all.

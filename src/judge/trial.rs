@@ -4,9 +4,10 @@
 //! mean      y = (X − T)/u,     variance V/u²   u = |T|; for T = 0 it is 1, and ε is absolute
 //! variance  y = (X − T)²/V − 1, variance κ − 1
 //! lookups   y = M/E[M] − 1,    variance Var[M]/E[M]²
-//! drift     the mean from any later block on, against T
+//! drift     the mean from any later block on, against T and against all other draws
 //! ε         as asked; else √(27 V/n) for n draws, at most 5 % for the mean, 20 % for the variance and
-//!           2 % for the lookups; else 1 % for the mean, and for the others what as many draws see
+//!           2 % for the lookups, by a range alone not below 12 R/n, R its further part; else 1 % for the mean, and
+//!           for the others what as many draws see
 //! levels    fail at ln E ≥ ln(K/0.8α), K the first three as far as they are asked; drift at ln(1/0.2α);
 //!           with the theory of a case ln(K/0.6α), and the p-values of the distribution (`theory`) share 0.2α;
 //!           pass at both ln P ≥ ln(1/β), β = 0.01;  dependence has an α of its own
@@ -15,8 +16,8 @@
 //! Draws are read block by block (2¹⁴ draws) in constant memory, to the end unless the caller wants
 //! less. A scalar fails only on grounds that hold (`grounds`): a known variance, a range, a bound on
 //! the kurtosis; without any of them it can pass, on an assumption that the verdict names, but not fail. All of it is for draws
-//! that are independent of each other: where `stats::independence` or `stats::replays` finds that they
-//! are not, the verdict says so, and nothing is said of the mean. Draws without spread must all be the
+//! that are independent of each other: where `stats::independence`, `stats::replays`, `stats::sequences` or `stats::runs` finds that they
+//! are not, the verdict says so, and nothing is said of the mean. No pass stands beside an obvious difference (`obvious`). Draws without spread must all be the
 //! truth to rounding. A draw that is not a finite number fails, and so does one whose distance from the
 //! truth overflows, or one out of the promised range.
 

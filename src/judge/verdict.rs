@@ -6,9 +6,10 @@
 //! variance, mean, lookups, drift            fail; inconclusive; else pass
 //! ```
 //!
-//! A variance that is refuted as too small is named before the mean, and a mean that is off only in
+//! A variance that is refuted only because the mean is off is not accused. One that is refuted as too small is named before the mean, and a mean that is off only in
 //! units of that variance is not accused: its evidence rests on what is refuted.
 
+use super::dependence::off_without_change;
 use super::flights::Ends;
 use super::judgement::{IndependenceFinding, Judgement, ScalarFinding, Stop};
 use super::reading::{Fault, Reading, Refuted};
@@ -18,16 +19,25 @@ use crate::stats::verdict::Verdict;
 
 /// The verdict of the whole, and what it promises.
 pub(super) fn decide(reading: &Reading, judgement: &mut Judgement) {
+    let off = judgement.drift.as_ref().and_then(|drift| off_without_change(reading, drift));
+    let mean = judgement.findings.iter_mut().find(|found| found.check == "mean");
+    if let (Some(reason), Some(mean)) = (off, mean.filter(|mean| mean.verdict != Verdict::Fail)) {
+        (mean.verdict, mean.reason) = (Verdict::Fail, reason);
+    }
     put_variance_first(reading, judgement);
     let is_dependent = judgement.independence.is_refuted();
     if is_dependent {
         withhold(judgement);
     }
-    let said = [Verdict::Fail, Verdict::Inconclusive].into_iter().find_map(|verdict| {
+    // A pass has words where the mean is off within the tolerance.
+    let order = [Verdict::Fail, Verdict::Inconclusive, Verdict::Pass];
+    let said = order.into_iter().find_map(|verdict| {
         let drift = judgement.drift.as_ref().map(|found| (found.verdict, &found.reason));
         let scalars = judgement.findings.iter().map(|found| (found.verdict, &found.reason));
         let tests = judgement.distribution.iter().map(|found| (found.verdict, &found.reason));
-        let alike = scalars.chain(drift).chain(tests).filter(|(found, _)| *found == verdict);
+        let has_words = |reason: &str| verdict != Verdict::Pass || !reason.is_empty();
+        let alike = scalars.chain(drift).chain(tests);
+        let alike = alike.filter(|(found, reason)| *found == verdict && has_words(reason));
         let reasons: Vec<&str> = alike.map(|(_, reason)| reason.as_str()).collect();
         (!reasons.is_empty()).then(|| (verdict, reasons.join("; ")))
     });
@@ -54,6 +64,19 @@ fn put_variance_first(reading: &Reading, judgement: &mut Judgement) {
     let is_larger = found.gate.is_some_and(|gate| gate.mean > 0.0);
     let is_off = reading.mean.as_ref().is_some_and(Scalar::is_off_by_itself);
     if found.verdict != Verdict::Fail {
+        return;
+    }
+    // Squares are taken about the truth: where that is not the mean, they are larger by the square of the bias.
+    let about_mean = judgement.variance_ratio.map_or(f64::INFINITY, |ratio| ratio - 1.0);
+    let is_by_mean = found.gate.is_some_and(|gate| about_mean <= gate.tolerance);
+    if is_larger && is_off && is_by_mean && judgement.findings[at].verdict == Verdict::Fail {
+        let off = found.gate.map_or(0.0, |gate| gate.mean);
+        let found = &mut judgement.findings[variance];
+        found.verdict = Verdict::Inconclusive;
+        found.reason = format!(
+            "squares about the truth are too large by {off:+.2e}, for the mean is off; about the mean of the draws \
+             by {about_mean:+.2e}"
+        );
         return;
     }
     if !is_larger || is_off {
@@ -122,7 +145,9 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
         }
         Fault::Spread => {
             let bound = reading.trial.bound() * claim.unit;
-            format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding")
+            let unused =
+                unused_tolerance(reading).map_or(String::new(), |said| format!("; {said}"));
+            format!("draw {index} is {value:e}, not {truth:e}; {bound:.1e} is rounding{unused}")
         }
         Fault::Lookups => {
             let wanted = claim.lookups.map_or(0.0, |lookups| lookups.mean);
@@ -136,13 +161,25 @@ fn fault(reading: &Reading, refuted: &Refuted, count: u64) -> String {
     if count > 1 { format!("{said}; {count} draws are like that") } else { said }
 }
 
+/// Why a tolerance of the mean is not used.
+fn unused_tolerance(reading: &Reading) -> Option<String> {
+    let asked = reading.trial.wanted.tolerance.filter(|_| reading.mean.is_none())?;
+    Some(format!(
+        "the tolerance of {asked:.1e} is not used: the variance given allows rounding alone; leave the variance \
+         out, or give a larger one"
+    ))
+}
+
 /// What the verdict promises, and what it does not.
 fn guarantees(reading: &Reading, judgement: &Judgement) -> Vec<String> {
     let mut said = Vec::new();
     match judgement.finding("mean") {
-        None => said.push(
-            "no spread: every draw read is the truth to rounding, or the verdict is fail".into(),
-        ),
+        None => {
+            let what =
+                "no spread: every draw read is the truth to rounding, or the verdict is fail";
+            said.push(what.into());
+            said.extend(unused_tolerance(reading));
+        }
         Some(mean) => {
             said.push(failing(reading, judgement, mean));
             said.extend(missing(judgement, mean));

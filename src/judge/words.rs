@@ -4,6 +4,7 @@ use std::fmt::{self, Write};
 
 use super::judgement::{DistributionFinding, IndependenceFinding, Judgement, ScalarFinding, Stop};
 use crate::catalogue::digits::{count, fixed, short, signed};
+use crate::stats::verdict::Verdict;
 
 impl Judgement {
     /// The lines on draws of that name: what each is about, and what it says.
@@ -16,7 +17,12 @@ impl Judgement {
         lines.extend(self.findings.iter().map(|finding| ("gate", gate(finding))));
         if let Some(drift) = &self.drift {
             let (word, found, limit) = (drift.verdict.word(), drift.ln_e, drift.ln_e_limit);
-            let text = format!("ln E = {found:.1} of {limit:.1} for a change of the mean: {word}");
+            let shown = match drift.verdict {
+                Verdict::Pass if found >= limit => ", but later draws are like earlier ones",
+                _ => "",
+            };
+            let text =
+                format!("ln E = {found:.1} of {limit:.1} for a change of the mean{shown}: {word}");
             lines.push(("drift", text));
         }
         lines.extend(self.distribution.iter().map(|found| ("p-value", p_value(found))));
@@ -61,7 +67,10 @@ fn lookups(judgement: &Judgement) -> Option<String> {
 
 /// Whether the draws depend on each other.
 fn order(found: &IndependenceFinding) -> String {
-    let evidence = format!("ln E = {:.1} of {:.1}", found.ln_e, found.ln_e_limit);
+    let evidence = match found.replay_ln_p {
+        Some(ln_p) => format!("probability e^{ln_p:.1} or less"),
+        None => format!("ln E = {:.1} of {:.1}", found.ln_e, found.ln_e_limit),
+    };
     if found.is_refuted() {
         format!("{evidence}: {}", found.reason)
     } else {

@@ -53,6 +53,8 @@ pub struct Design {
     pub tolerance: f64,
     /// δ, the bias that a correct y may have.
     pub floor: f64,
+    /// Whether ε is as the caller asked for, however wide: λ is then that of √V/4 at most.
+    pub is_asked: bool,
 }
 
 /// The evidence at a look.
@@ -92,11 +94,37 @@ impl Design {
     /// and widened to 4δ where it is narrower.
     pub fn new(variance: f64, tolerance: f64, floor: f64) -> Self {
         let tolerance = tolerance.min(WIDEST * variance.sqrt()).max(4.0 * floor);
-        Self { variance, tolerance, floor }
+        Self { variance, tolerance, floor, is_asked: false }
+    }
+
+    /// A question with an ε that the caller asked for. Beyond √V/4 evidence for a pass still grows with ε, and λ no more.
+    pub fn asked(variance: f64, tolerance: f64, floor: f64) -> Self {
+        Self { variance, tolerance: tolerance.max(4.0 * floor), floor, is_asked: true }
+    }
+
+    /// The same question with another V.
+    #[must_use]
+    pub fn with_variance(&self, variance: f64) -> Self {
+        let new = if self.is_asked { Self::asked } else { Self::new };
+        new(variance, self.tolerance, self.floor)
+    }
+
+    /// λV: ε, as far as bets go by it.
+    fn stake(&self) -> f64 {
+        if self.is_asked {
+            self.tolerance.min(WIDEST * self.variance.sqrt()).max(4.0 * self.floor)
+        } else {
+            self.tolerance
+        }
+    }
+
+    /// The draws that it is planned for: `27 V/ε²`; `27 V/(λVε)` where ε is wider than the bets.
+    pub fn draws(&self) -> f64 {
+        PLANNED * self.variance / (self.stake() * self.tolerance)
     }
 
     fn slope(&self) -> f64 {
-        self.tolerance / self.variance
+        self.stake() / self.variance
     }
 
     /// The arguments of the five sums: three of `fail`, two of `pass`.

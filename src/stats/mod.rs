@@ -18,6 +18,8 @@ pub mod permutation;
 pub mod powers;
 pub mod reflection;
 pub mod replays;
+pub mod runs;
+pub mod sequences;
 pub mod symmetric;
 pub mod tally;
 pub mod ties;

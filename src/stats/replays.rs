@@ -2,20 +2,17 @@
 //!
 //! ```text
 //! keep     draws whose bits have a certain hash, ever fewer of them, so that the memory is bounded
-//! pairs    t values that occur from 2 to 16 times; d the distance of their first two places
-//! replay   c of the d are the same:  p ≤ C(t, c) (16/n)^{c−1}
+//! pairs    t values that occur from 2 to m times; d the distance of their first two places
+//! replay   c of the d are the same:  p ≤ C(t, c) ∏_{i<c−1} m/(n − i m),  m = 2, 4, 8, …, each at its share 1/(k(k + 1))
 //! ```
 //!
-//! Of independent draws of one law all orders are equally likely, so that the first two of at most 16
-//! places of a value are d apart with chance 16/n at most, whatever the law. Values that occur more
-//! often, the atoms of discrete laws, say nothing. What is kept depends on a value alone, so that of
-//! two equal sequences the same draws are kept, however far apart they are.
+//! Of independent draws of one law all orders are equally probable, so that the first two of at most m
+//! places of a value among n are d apart with probability m/n at most, whatever the law; the places of other values
+//! leave n − i m. Values that occur very often, the atoms of discrete laws, say little: see [`super::sequences`]. What
+//! is kept depends on a value alone, so that of two equal sequences the same draws are kept, however far apart they are.
 
 /// The most draws that are kept.
 const MOST: usize = 1 << 16;
-/// The most places of a value.
-const PLACES: usize = 16;
-
 /// Draws that are kept for comparison.
 #[derive(Debug, Clone, Default)]
 pub struct Replays {
@@ -32,12 +29,14 @@ pub struct Replay {
     pub distance: u64,
     /// How many of the kept draws do.
     pub count: u64,
+    /// How often each of them comes.
+    pub times: u64,
     /// ln of a bound on the chance of that.
     pub ln_p: f64,
 }
 
 #[inline(always)]
-fn hash(bits: u64) -> u64 {
+pub(super) fn hash(bits: u64) -> u64 {
     // The upper bits of a product depend on all bits below them.
     (bits ^ (bits >> 32)).wrapping_mul(0xd6e8_feb8_6659_fd93)
 }
@@ -60,19 +59,39 @@ impl Replays {
         }
     }
 
-    /// The most frequent distance; `None` where no value occurs twice.
-    pub fn most_frequent(&self) -> Option<Replay> {
+    /// The most surprising of the most frequent distances; `None` where no value occurs twice.
+    pub fn found(&self) -> Option<Replay> {
         let mut kept = self.kept.clone();
         kept.sort_unstable();
-        let groups = kept.chunk_by(|a, b| a.0 == b.0).filter(|g| (2..=PLACES).contains(&g.len()));
-        let mut distances: Vec<u64> = groups.map(|group| group[1].1 - group[0].1).collect();
+        let mut groups: Vec<(usize, u64)> = kept
+            .chunk_by(|a, b| a.0 == b.0)
+            .filter(|group| group.len() > 1)
+            .map(|group| (group.len(), group[1].1 - group[0].1))
+            .collect();
+        groups.sort_unstable();
+        let most = groups.last()?.0.next_power_of_two().ilog2();
+        let of = (1..=most).filter_map(|k| self.most_frequent(&groups, k));
+        of.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+    }
+
+    /// The most frequent distance of values that occur up to 2ᵏ times, given how often each value occurs and its
+    /// first distance, in that order.
+    fn most_frequent(&self, groups: &[(usize, u64)], k: u32) -> Option<Replay> {
+        let known = &groups[..groups.partition_point(|group| group.0 <= 1 << k)];
+        let mut distances: Vec<(u64, usize)> = known.iter().map(|&(m, d)| (d, m)).collect();
         distances.sort_unstable();
-        let longest = distances.chunk_by(|a, b| a == b).max_by_key(|run| run.len())?;
+        let longest = distances.chunk_by(|a, b| a.0 == b.0).max_by_key(|run| run.len())?;
         let (t, c) = (distances.len() as f64, longest.len() as f64);
-        let chance = (PLACES as f64 / self.draws as f64).min(1.0).ln();
+        let places = f64::from(1 << k);
+        // m/(n − i m) is 1/(n/m − i), and no probability is above 1.
+        let room = self.draws as f64 / places;
+        let counted = (c - 1.0).min((room - 1.0).floor().max(0.0));
+        let ln_chance = libm::lgamma(room - counted + 1.0) - libm::lgamma(room + 1.0);
         let ways = libm::lgamma(t + 1.0) - libm::lgamma(c + 1.0) - libm::lgamma(t - c + 1.0);
-        let ln_p = (ways + (c - 1.0) * chance).min(0.0);
-        Some(Replay { distance: longest[0], count: longest.len() as u64, ln_p })
+        let share = f64::from(k) * f64::from(k + 1);
+        let ln_p = (ways + ln_chance + share.ln()).min(0.0);
+        let times = longest[longest.len() / 2].1 as u64;
+        Some(Replay { distance: longest[0].0, count: longest.len() as u64, times, ln_p })
     }
 }
 
@@ -85,7 +104,7 @@ mod tests {
         let mut replays = Replays::default();
         let draws: Vec<f64> = draws.collect();
         draws.chunks(10_000).for_each(|block| replays.absorb(block));
-        replays.most_frequent()
+        replays.found()
     }
 
     fn uniforms(n: usize) -> Vec<f64> {
@@ -100,6 +119,12 @@ mod tests {
             let replay = found(once.iter().copied().cycle().take(passes * 300_000)).expect("one");
             assert_eq!(replay.distance, 300_000);
             assert!(replay.ln_p < -1000.0, "{replay:?}");
+        }
+        for (draws, times) in [(500, 24), (1000, 17), (100, 1000), (20, 12), (5000, 200)] {
+            let replay = found(once[..draws].iter().copied().cycle().take(times * draws - 7));
+            let replay = replay.expect("one");
+            assert_eq!((replay.distance, replay.times), (draws as u64, times as u64));
+            assert!(replay.ln_p < -15.0, "{replay:?}");
         }
         // A short overlap between long streams.
         let overlap = once.iter().chain(&once[299_000..]).copied();

@@ -56,6 +56,8 @@ pub struct Channel {
     pub losses: Option<[f64; 4]>,
 }
 
+/// Relative error of moments from which on theory does not resolve them: no digit is known.
+pub const UNRESOLVED: f64 = 0.5;
 /// What rounding leaves of a sum, relative to it.
 const ROUNDING: f64 = 1e-14;
 /// A relative variance up to this is rounding.
@@ -100,6 +102,11 @@ impl Channel {
         let least = (truth.value - truth.error).max(0.0);
         let most_variance = Some((square - least * least).max(0.0));
         Self { most_variance, ..Self::unbiased(truth, None, Tails::LIGHT) }
+    }
+
+    /// The moments, where theory resolves them: with a smaller relative error than [`UNRESOLVED`].
+    pub fn resolved_moments(&self) -> Option<Moments> {
+        self.moments.filter(|moments| moments.error < UNRESOLVED)
     }
 
     /// A bound on the relative error of the variance and, where it is known, of the fourth central moment:

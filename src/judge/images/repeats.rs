@@ -3,15 +3,21 @@
 //! ```text
 //! places   of each pixel: the passes in which a value stands that 2 or more of the n passes have, but not all
 //! repeat   of t pixels with a value in k passes, c have it in the same k:   p ≤ C(t, c) C(n, k)^{1−c}
+//! alike    passes a and b, and another one c for each pixel: x_b = x_a ≠ x_c is as probable as x_b = x_c ≠ x_a
 //! ```
 //!
 //! Where passes are independent and of one law, any k passes are as likely to share a pixel's value as any
 //! others, whatever that law. The bound is for pixels of a pass that are independent of each other; all k from 2
-//! to n − 1 share the level. Zeros, the commonest atom, are left out.
+//! to n − 1 share the level. Zeros, the commonest atom, are left out. Pixels of few values, such as 0 and 1, have
+//! equal values in many passes by chance: for them two passes are compared with a third one, by signs that are fair coins
+//! for every law, in e-values whose mean is taken over all pairs (`stats::independence`).
 
 use std::collections::BTreeMap;
+use std::f64::consts::LN_2;
+use std::hash::{DefaultHasher, Hash, Hasher};
 
 use super::picture::Stack;
+use crate::stats::independence::Signs;
 
 /// About how many pixels are looked at.
 const PIXELS: usize = 1 << 16;
@@ -27,6 +33,14 @@ pub(super) struct Repeat {
 
 /// The most surprising repetition; `None` where no value comes twice.
 pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
+    // Two searches share the level.
+    let found = [by_values(stack), alike(stack)].into_iter().flatten();
+    let found = found.map(|found| Repeat { ln_p: (found.ln_p + LN_2).min(0.0), ..found });
+    found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+}
+
+/// The same by values that few passes share.
+fn by_values(stack: &Stack) -> Option<Repeat> {
     let (n, pixels) = (stack.passes, stack.size.pixels());
     let mut places: BTreeMap<Vec<u32>, u64> = BTreeMap::new();
     let mut values: Vec<(u64, u32)> = Vec::with_capacity(n);
@@ -51,6 +65,52 @@ pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
         Repeat { passes, ln_p }
     });
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
+}
+
+/// Parts of a pass of which one must be alike in two passes for these to be compared.
+const PARTS: usize = 8;
+/// Maximum number of pairs of passes that are compared.
+const MAX_PAIRS: usize = 1024;
+
+/// The two passes that are most surprisingly alike, with all others that are the same image.
+fn alike(stack: &Stack) -> Option<Repeat> {
+    let (n, pixels) = (stack.passes, stack.size.pixels());
+    if n < 3 {
+        return None;
+    }
+    let looked: Vec<usize> = (0..pixels).step_by(pixels.div_ceil(PIXELS)).collect();
+    let mut alike: BTreeMap<(usize, usize), usize> = BTreeMap::new();
+    for part in looked.chunks(looked.len().div_ceil(PARTS)) {
+        let mut last: BTreeMap<u64, usize> = BTreeMap::new();
+        for pass in 0..n {
+            let mut hasher = DefaultHasher::new();
+            part.iter().for_each(|&pixel| stack.grey(pass, pixel).to_bits().hash(&mut hasher));
+            if let Some(earlier) = last.insert(hasher.finish(), pass) {
+                *alike.entry((earlier, pass)).or_default() += 1;
+            }
+        }
+    }
+    let mut pairs: Vec<_> = alike.into_iter().collect();
+    pairs.sort_by_key(|&(_, parts)| std::cmp::Reverse(parts));
+    pairs.truncate(MAX_PAIRS);
+    let evidence = |a: usize, b: usize| {
+        let mut signs = Signs::default();
+        for (&pixel, turn) in looked.iter().zip(0..) {
+            // Another pass for each pixel in turn.
+            let c = (0..3).map(|k| (turn + k) % n).find(|c| ![a, b].contains(c)).unwrap_or(0);
+            let [x, y, z] = [a, b, c].map(|pass| stack.grey(pass, pixel));
+            if x != z && (x == y || y == z) {
+                signs.add(1.0, if x == y { 1.0 } else { -1.0 });
+            }
+        }
+        signs.ln_e()
+    };
+    let found = pairs.into_iter().map(|((a, b), _)| (evidence(a, b), a, b));
+    let (ln_e, a, b) = found.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let is_same = |pass: usize| looked.iter().all(|&p| stack.grey(pass, p) == stack.grey(a, p));
+    let named = (0_u32..).zip(0..n).filter(|&(_, pass)| pass == a || pass == b || is_same(pass));
+    let passes = named.map(|(pass, _)| pass).collect();
+    Some(Repeat { passes, ln_p: (ln_choose(n as f64, 2.0) - ln_e).min(0.0) })
 }
 
 /// So many different values no law without many of them gives to all passes alike.
@@ -113,9 +173,25 @@ mod tests {
     }
 
     #[test]
+    fn equal_passes_of_pixels_that_are_0_or_1_are_named() {
+        for p in [0.5, 0.1, 0.97] {
+            let mut passes = passes(3, 12, |u| f64::from(u8::from(u < p)));
+            passes[7] = passes[2].clone();
+            let repeat = found(&passes).expect("one");
+            assert!(repeat.passes == [2, 7] && repeat.ln_p < -20.0, "{p}: {repeat:?}");
+            // Three seeds in turn.
+            for pass in 3..12 {
+                passes[pass] = passes[pass % 3].clone();
+            }
+            let repeat = found(&passes).expect("one");
+            assert!(repeat.passes.len() == 4 && repeat.ln_p < -20.0, "{p}: {repeat:?}");
+        }
+    }
+
+    #[test]
     fn coarse_values_are_no_repetition() {
         for seed in 0..20 {
-            for steps in [1.0, 3.0, 30.0] {
+            for steps in [1.0, 2.0, 3.0, 30.0] {
                 let coarse = found(&passes(seed, 7, |u| (u * steps).ceil().min(steps) + 1.0));
                 assert!(coarse.is_none_or(|found| found.ln_p > -9.0), "{steps}");
             }

@@ -32,7 +32,7 @@ use crate::numeric::Known;
 use crate::problems::slab::Incidence;
 use crate::theory::moments::not_negative;
 use crate::theory::particle::{Odds, ParticleRule};
-use crate::theory::prediction::Covariance;
+use crate::theory::prediction::{Covariance, UNRESOLVED};
 use crate::theory::{Channel, CountLaw, Moments, Prediction, Tails};
 
 /// The channels of a draw, in their order.
@@ -198,7 +198,27 @@ impl Walk {
             return Some(truths.iter().map(|truth| [truth.reflected, truth.transmitted]).collect());
         }
         let infinite = Known::new(f64::INFINITY, f64::INFINITY);
-        Some(self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]))
+        let found = self.powers(k, lights).unwrap_or_else(|| vec![[infinite; 2]; lights.len()]);
+        if !self.is_share() {
+            return Some(found);
+        }
+        let both = |(found, truth): ([Known; 2], &Answer)| {
+            let [reflected, transmitted] = found;
+            [of_share(reflected, truth.reflected, k), of_share(transmitted, truth.transmitted, k)]
+        };
+        Some(found.into_iter().zip(truths).map(both).collect())
+    }
+
+    /// Whether draws lie in [0, 1]: all weights do.
+    fn is_share(&self) -> bool {
+        let is_share = |&[_, ratio]: &[f64; 2]| {
+            let odds = self.odds(ratio);
+            [odds.transmit_weight, odds.scatter_weight].iter().all(|w| (0.0..=1.0).contains(w))
+        };
+        let pieces = match &self.pieces {
+            Pieces::Exact(pieces) | Pieces::Graded([_, pieces]) => pieces,
+        };
+        pieces.iter().flat_map(|piece| &piece.ratios).all(is_share)
     }
 
     /// The law of the number of collisions in each light, without its probabilities; `None` where it is not
@@ -290,6 +310,17 @@ fn predicted(
     Prediction { channels, lookups, covariances, ..Prediction::default() }
 }
 
+/// `E[X^k]` of a draw in [0, 1] and mean T, where it is known to be between T^k and T: `Tᵏ ≤ E[X^k] ≤ T`, by Jensen's
+/// inequality and by `x^k ≤ x`. What theory finds beyond is its own error.
+fn of_share(found: Known, truth: Known, k: i32) -> Known {
+    let (least, most) = ((truth.value - truth.error).max(0.0).powi(k), truth.value + truth.error);
+    if (least..=most).contains(&found.value) && found.error <= most {
+        return found;
+    }
+    let value = found.value.max(least).min(most);
+    Known::new(value, found.error.min((value - least).max(most - value)))
+}
+
 /// What two cuts say together: the error of the finer one is a quarter of the other's, and what directions
 /// are missing is the same in both.
 fn extrapolated(coarse: Known, fine: f64) -> Known {
@@ -339,11 +370,17 @@ fn channel(name: &str, truth: Known, raw: [Option<Known>; 4]) -> Channel {
             return Moments { scale: t, relative: [variance, higher, higher], error };
         }
         let skew = b - 3.0 * a + 2.0;
-        let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
+        // Each difference rounds by its own terms: in units of a small truth the fourth moment is far above the second.
+        let rounding = 8.0 * f64::EPSILON * (a + 1.0);
         let [variance, of_variance] = not_negative(a - 1.0, off + rounding);
+        let rounding = 8.0 * f64::EPSILON * (c + 4.0 * b.abs() + 6.0 * a + 3.0);
         let off = fourth.error + 4.0 * third.error + 6.0 * second.error + 4.0 * blur * c + rounding;
         let peak = (c - 4.0 * b + 6.0 * a - 3.0).max(variance * variance);
         let [peak, of_peak] = not_negative(peak, off);
+        if of_peak >= UNRESOLVED {
+            let relative = [variance, f64::INFINITY, f64::INFINITY];
+            return Moments { scale: t, relative, error: of_variance };
+        }
         Moments { scale: t, relative: [variance, skew, peak], error: of_variance.max(of_peak) }
     });
     let tails = match (moments, fourth, eighth) {

@@ -2,6 +2,7 @@
 
 mod channels;
 mod distributions;
+mod field;
 mod grounds;
 mod image_files;
 mod images;
