@@ -36,6 +36,25 @@ pub fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
     }
 }
 
+/// Says of blocks and streams that differ from theory where that follows from a mean or a variance that fails: it is no
+/// sign of a dependence then.
+pub fn explain_blocks(findings: &mut [Finding]) {
+    let fails = |check: &str| {
+        findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)
+    };
+    let cause = match [fails("mean"), fails("variance")] {
+        [true, _] => "the mean is off",
+        [_, true] => "the variance is off",
+        _ => return,
+    };
+    let blocks = findings.iter_mut().filter(|found| {
+        ["dispersion", "streams"].contains(&found.check.as_str()) && found.verdict == Verdict::Fail
+    });
+    for found in blocks {
+        found.reason = format!("{}, which follows where {cause}", found.reason);
+    }
+}
+
 /// Whether a mean fails only by a variance that is refuted as too small.
 fn rests_on(plan: &Plan, mean: &Finding, variance: &Finding) -> bool {
     let (Some(gate), Some(excess)) = (mean.gate, variance.gate.map(|gate| gate.mean)) else {

@@ -5,6 +5,7 @@ use super::drawn::{Drawn, Draws};
 use super::foreseen::Foreseen;
 use super::measured::{measure, measure_lookups, not_normal};
 use super::plan::{MISS, Plan, Planned, PlannedCase};
+use super::qualify::explain_blocks;
 use super::record::{
     Anatomy, CaseRecord, Finding, Gate, Record, Results, Row, SCHEMA, Sweep, Timing, Verdict,
 };
@@ -198,6 +199,7 @@ fn drawn_rows(
         let about =
             |finding: &&Finding| finding.channel.is_empty() || finding.channel == channel.name;
         row.findings = findings.iter().filter(about).cloned().collect();
+        explain_blocks(&mut row.findings);
         for finding in &mut row.findings {
             finding.z = match finding.check.as_str() {
                 "mean" => row.z_mean,

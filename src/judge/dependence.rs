@@ -1,7 +1,9 @@
 //! What else must hold for the gate: draws that are independent, and of one mean from beginning to end.
 
+use super::contents::Contents;
 use super::judgement::{DriftFinding, IndependenceFinding};
 use super::reading::{DRIFT, Reading};
+use crate::stats::replays::Replay;
 use crate::stats::verdict::Verdict;
 
 /// Whether the mean changes on the way: only where later draws plainly differ from earlier ones, and from the truth.
@@ -66,33 +68,49 @@ pub(super) fn independence(reading: &Reading) -> IndependenceFinding {
             _ => format!("correlation between sums of {scale} consecutive draws is {r:.2}"),
         });
     }
-    // Three searches for replays share their half.
-    let limit = ln_e_limit + 3f64.ln();
-    let written = reading.runs.found().filter(|&(_, ln_p)| ln_p <= -limit);
-    let replays = [reading.replays.found(), reading.sequences.found()].into_iter().flatten();
-    let replays = replays.filter(|replay| replay.ln_p <= -limit);
-    let replay = replays.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
-    let unit = if reading.trial.wanted.batch == 1 { "draws" } else { "averages" };
-    let said = if let Some((times, ln_p)) = written {
-        let what = format!("{unit} are written more than once: each {times} times");
-        Some((1, times, ln_p, what))
-    } else {
-        replay.map(|replay| {
-            let distance = replay.distance * reading.trial.wanted.batch;
-            let what = match replay.distance {
-                1 => format!("{unit} are written more than once"),
-                _ => format!(
-                    "the same {unit} come again {distance} draws later, {} times in all",
-                    replay.times
-                ),
-            };
-            (distance, replay.times, replay.ln_p, what)
-        })
-    };
-    if let Some((distance, times, ln_p, what)) = said {
-        found.replay = Some(distance);
-        (found.repeats, found.replay_ln_p) = (Some(times), Some(ln_p));
+    if let Some(Again { distance, times, ln_p, what }) = again(reading, ln_e_limit) {
+        (found.replay, found.repeats, found.replay_ln_p) = (Some(distance), Some(times), ln_p);
         found.reason = because(what);
     }
     found
+}
+
+/// Draws that come again.
+struct Again {
+    distance: u64,
+    times: u64,
+    /// ln of a bound on the probability of that for independent draws.
+    ln_p: Option<f64>,
+    what: String,
+}
+
+/// Whether draws come again: three searches share their half of the level, and two behind averages.
+fn again(reading: &Reading, ln_e_limit: f64) -> Option<Again> {
+    let batch = reading.trial.wanted.batch;
+    let searches: f64 = if batch == 1 { 3.0 } else { 5.0 };
+    let limit = ln_e_limit + searches.ln();
+    let unit = if batch == 1 { "draws" } else { "averages" };
+    if let Some(times) = reading.contents.as_ref().and_then(Contents::alike) {
+        let what = format!("all {times} averages hold the same draws");
+        return Some(Again { distance: batch, times, ln_p: None, what });
+    }
+    let written = reading.runs.found().filter(|&(_, ln_p)| ln_p <= -limit);
+    if let Some((times, ln_p)) = written {
+        let what = format!("{unit} are written more than once: each {times} times");
+        return Some(Again { distance: batch, times, ln_p: Some(ln_p), what });
+    }
+    let said = |replay: Replay, batch: u64, unit: &str| {
+        let (distance, times, ln_p) = (replay.distance * batch, replay.times, Some(replay.ln_p));
+        let what = match replay.distance {
+            1 => format!("{unit} are written more than once"),
+            _ => format!("the same {unit} come again {distance} draws later, {times} times in all"),
+        };
+        Again { distance, times, ln_p, what }
+    };
+    let replays = [reading.replays.found(), reading.sequences.found()].into_iter().flatten();
+    let replays = replays.filter(|replay| replay.ln_p <= -limit);
+    let replay = replays.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    let behind = reading.contents.as_ref().and_then(Contents::replay);
+    let behind = behind.filter(|replay| replay.ln_p <= -limit);
+    replay.map(|found| said(found, batch, unit)).or(behind.map(|found| said(found, 1, "draws")))
 }

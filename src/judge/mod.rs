@@ -25,6 +25,7 @@
 
 mod asks;
 pub mod claim;
+mod contents;
 mod dependence;
 #[cfg(feature = "library")]
 pub mod files;

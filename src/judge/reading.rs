@@ -1,6 +1,7 @@
 //! Draws on their way through all questions, block by block.
 
 use super::asks::{asks, planned};
+use super::contents::Contents;
 use super::flights::Ends;
 use super::judgement::{Judgement, Stop};
 use super::scalar::{Levels, Scalar};
@@ -90,6 +91,8 @@ pub struct Reading {
     pub(super) replays: Replays,
     pub(super) sequences: Sequences,
     pub(super) runs: Runs,
+    /// The draws behind averages.
+    pub(super) contents: Option<Contents>,
     lookup_sum: Sum,
     is_single: bool,
     is_varied: bool,
@@ -144,6 +147,7 @@ impl Reading {
             replays: Replays::default(),
             sequences: Sequences::default(),
             runs: Runs::default(),
+            contents: (trial.wanted.batch > 1).then(|| Contents::new(trial.wanted.batch)),
             lookup_sum: Sum::default(),
             is_single: true,
             is_varied: false,
@@ -195,6 +199,9 @@ impl Reading {
                 self.judge(part, &lookups[first..last]);
             }
             return;
+        }
+        if let Some(contents) = &mut self.contents {
+            contents.absorb(block);
         }
         let [values, counts] = &mut self.averages;
         for &x in block {

@@ -36,7 +36,7 @@ pub struct Replay {
 }
 
 #[inline(always)]
-pub(super) fn hash(bits: u64) -> u64 {
+pub(crate) fn hash(bits: u64) -> u64 {
     // The upper bits of a product depend on all bits below them.
     (bits ^ (bits >> 32)).wrapping_mul(0xd6e8_feb8_6659_fd93)
 }

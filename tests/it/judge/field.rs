@@ -66,6 +66,24 @@ fn any_number_of_repetitions_is_found() {
     let place = Place::new(&[("x.f64", &raw(&times(&units(11, 500), 12_000)))]);
     let said = "the same averages come again 500 draws later, 24 times in all";
     place.expect(3, "--truth 0.5 --range 0,1 --batch 10 x.f64", &[said]);
+    let all = "all 24 averages hold the same draws";
+    place.expect(3, "--truth 0.5 --range 0,1 --batch 500 x.f64", &[all]);
+    for levels in [2.0, 1e9] {
+        let coarse: Vec<f64> =
+            units(12, 997).iter().map(|u| (u * levels).floor() / (levels - 1.0)).collect();
+        let place = Place::new(&[("x.f64", &raw(&times(&coarse, 24_000)))]);
+        let said = "the same draws come again 997 draws later";
+        place.expect(3, "--truth 0.5 --range 0,1 --batch 64 x.f64", &[said]);
+    }
+    // Passes of a hundred pixels, of which half have one value in all passes, and a quarter are 0 or 1.
+    let pass = |(i, u): (usize, &f64)| match i % 100 {
+        0..50 => (i % 100) as f64 / 50.0,
+        50..75 => u.round(),
+        _ => *u,
+    };
+    let passes: Vec<f64> = units(13, 500_000).iter().enumerate().map(pass).collect();
+    let place = Place::new(&[("x.f64", &raw(&passes))]);
+    place.expect(0, "--truth 0.495 --range 0,1 --batch 100 x.f64", &["nothing found"]);
 }
 
 #[test]
@@ -260,6 +278,63 @@ fn a_mean_that_changes_is_named_drift() {
                 let from = found["drift"]["from"].as_u64().expect("a draw");
                 assert!(from.abs_diff(start as u64) <= 16_384, "{from} for {start}");
             }
+        }
+    }
+}
+
+/// Rows of `trueflight predict`, by the names of columns.
+fn predicted(case: &str) -> Vec<std::collections::HashMap<String, String>> {
+    let place = Place::new(&[("x.toml", case.as_bytes())]);
+    let mut command = assert_cmd::Command::cargo_bin("trueflight").expect("the binary");
+    let output = command.current_dir(place.path()).args(["predict", "x.toml", "--format", "csv"]);
+    let output = output.output().expect("it runs");
+    let text = String::from_utf8(output.stdout).expect("text");
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned));
+    let names: Vec<String> = lines.next().expect("a header").collect();
+    lines.map(|row| names.iter().cloned().zip(row).collect()).collect()
+}
+
+#[test]
+fn a_draw_of_0_or_1_has_the_moments_of_a_coin_in_slabs_of_any_depth() {
+    let field = String::from_utf8(field("35-slab-variance/t40.toml")).expect("text");
+    for (depth, albedo) in [(100, 0.9), (50, 0.9), (30, 0.5), (250, 0.99), (40, 0.1), (10, 0.3)] {
+        for light in
+            ["collimated = { cosine = 1 }", "diffuse = {}", "collimated = { cosine = 0.2 }"]
+        {
+            let case = field
+                .replace("extinction = 100", &format!("extinction = {depth}"))
+                .replace("value = 100", &format!("value = {}", 1.5 * f64::from(depth)))
+                .replace("albedo = 0.9", &format!("albedo = {albedo}"))
+                .replace("collimated = { cosine = 1 }", light)
+                .replace(
+                    "[{ analog",
+                    "[{ weighted = { sampling.constant.value = 300 } }, { analog",
+                );
+            let rows = predicted(&case);
+            assert!(rows.len() == 4, "{case}");
+            for row in &rows {
+                let number = |column: &str| row[column].parse::<f64>().ok();
+                let truth = number("truth").expect("a truth");
+                let context = format!("{depth}, {albedo}, {light}: {row:?}");
+                let coin = truth * (1.0 - truth);
+                let error = number("moments_error").expect("an error");
+                let Some(variance) = number("predicted_variance") else {
+                    // What theory does not resolve is not shown.
+                    assert!(error >= 0.5 && row["predicted_kurtosis"].is_empty(), "{context}");
+                    continue;
+                };
+                assert!(error < 0.5, "{context}");
+                // No draw in [0, 1] has more.
+                assert!(variance <= coin * (1.0 + error + 1e-9), "{context}");
+                if row["estimator"] == "analog" {
+                    assert!((variance / coin - 1.0).abs() < 1e-9 + error, "{context}");
+                    let kurtosis = number("predicted_kurtosis").expect("a kurtosis");
+                    let expected = (1.0 - 3.0 * coin) / coin;
+                    assert!((kurtosis / expected - 1.0).abs() < 1e-6 + 3.0 * error, "{context}");
+                }
+            }
+            let resolved = rows.iter().filter(|row| row["estimator"] == "analog");
+            assert!(resolved.clone().all(|row| !row["predicted_variance"].is_empty()), "{rows:?}");
         }
     }
 }
