@@ -281,6 +281,8 @@ mod tests {
             size: [2, 2, 2],
             values: vec![1.0, 3.0, 1.0, 3.0, 1.0, 3.0, 1.0, 3.0],
             bounds: None,
+            turned: None,
+            remark: String::new(),
         };
         let cube = Aabb { low: Point([0.0; 3]), high: Point([4.0; 3]) };
         let grid = Voxels::new(&samples, 1.0, cube, interpolation, placement);
