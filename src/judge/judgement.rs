@@ -75,7 +75,7 @@ pub struct Judgement {
 #[derive(Debug, Clone)]
 #[cfg_attr(feature = "library", derive(serde::Serialize))]
 pub struct DistributionFinding {
-    /// `distances`, `depth`, `resolution`, `atoms`, `counts` or `curve`.
+    /// `distances`, `depth`, `resolution`, `atoms`, `counts`, `curve` or `covariance`.
     pub check: String,
     /// The distribution in words.
     pub what: String,

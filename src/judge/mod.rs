@@ -30,6 +30,8 @@ mod dependence;
 #[cfg(feature = "library")]
 pub mod files;
 mod finding;
+#[cfg(feature = "library")]
+mod fineness;
 mod flights;
 mod grounds;
 #[cfg(feature = "library")]

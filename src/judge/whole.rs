@@ -7,22 +7,24 @@
 //! atoms       the shares of the values of draws that take few             harness::checks::atoms
 //! counts      the number of lookups                                       harness::checks::counts
 //! curve       the steps of one walk, where a draw has all its channels    harness::checks::curve
+//! covariance  neighbouring channels of a draw                             harness::checks::covariance
 //! ```
 //!
 //! Foreign draws may be rounded. Values are matched within their rounding. Distances are not tested where rounding moves as
 //! many of them across the ends of classes as would count. Resolutions of 22 bits or of single precision count as fine; finer
 //! ones are reported, not judged.
 
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::fineness::{self, Fineness};
 use super::judgement::DistributionFinding;
 use super::theory::{Asked, Distribution, Tested, Tests};
 use crate::catalogue::digits::short;
 use crate::estimators::DrawBuffer;
 use crate::harness::checks::batch::Batch;
-use crate::harness::checks::resolution::{self, Resolution};
 use crate::harness::checks::{self, Law};
-use crate::stats::verdict::{BLOCK, Verdict};
+use crate::stats::verdict::Verdict;
 use crate::stats::{multiplicity, ties};
 use crate::theory::{self, Prediction};
 
@@ -32,10 +34,9 @@ const FIRST: u64 = 1 << 11;
 const SINGLE_PRODUCT: f64 = 1e-5;
 /// Error of a distance in single precision, relative to its position.
 const SINGLE_POSITION: f64 = 1.2e-7;
-/// Coarser rounding than this leaves the resolution untested.
-const COARSE: f64 = 1e-6;
-/// Bits of random numbers that are fine enough.
-const BITS: i32 = 22;
+/// Number of draws that covariances are tested for, and the largest, where the number is not known.
+const USUAL: u64 = 1 << 18;
+const MOST: u64 = 1 << 24;
 /// Largest shift of a class's share by rounding, in standard errors.
 const HARMLESS: f64 = 0.05;
 
@@ -47,7 +48,8 @@ impl Distribution for Known {
     fn tests(&self, asked: Asked) -> Result<Box<dyn Tests>, String> {
         let Prediction { law, increments, channels, .. } = &*self.0;
         let has_values = law.is_some() || !increments.is_empty();
-        let is_known = has_values && asked.values == channels.len();
+        let is_known =
+            (has_values && asked.values == channels.len()) || has_covariances(&self.0, asked);
         let has_counts = asked.has_lookups && checks::counts::of(&self.0).is_some();
         if let (false, false, Some(why)) = (is_known, has_counts, unknown(&self.0, asked)) {
             return Err(why);
@@ -58,6 +60,7 @@ impl Distribution for Known {
             asked,
             laws: None,
             fine: Fineness::of(&self.0),
+            ties: Found::default(),
             untested: Vec::new(),
             seen: 0,
             next,
@@ -70,12 +73,24 @@ impl Distribution for Known {
 /// A test by sums over draws.
 struct Test {
     check: &'static str,
-    what: &'static str,
+    what: Cow<'static, str>,
     law: Box<dyn Law>,
     sums: Vec<f64>,
     /// The numbers of draws between which it holds.
     between: [f64; 2],
     found: Found,
+}
+
+impl Test {
+    fn new(
+        check: &'static str,
+        what: impl Into<Cow<'static, str>>,
+        law: impl Law + 'static,
+        between: [f64; 2],
+    ) -> Self {
+        let (sums, found) = (vec![0.0; law.size()], Found::default());
+        Self { check, what: what.into(), law: Box::new(law), sums, between, found }
+    }
 }
 
 /// Result of the last look, or of the one that refuted the distribution.
@@ -86,43 +101,6 @@ struct Found {
     details: String,
 }
 
-/// The ties among the first flights.
-struct Fineness {
-    resolution: Resolution,
-    first: Vec<f64>,
-    is_single: bool,
-    found: Found,
-}
-
-impl Fineness {
-    fn of(prediction: &Prediction) -> Option<Self> {
-        let resolution = Resolution::of(prediction)?;
-        Some(Self { resolution, first: Vec::new(), is_single: true, found: Found::default() })
-    }
-
-    fn absorb(&mut self, flights: &[f64]) {
-        let room = usize::try_from(BLOCK).unwrap_or(usize::MAX).saturating_sub(self.first.len());
-        self.first.extend(flights.iter().take(room));
-    }
-
-    fn p_value(&mut self) -> Option<f64> {
-        let mut collisions = self.first.clone();
-        self.resolution.collisions(&mut collisions);
-        if collisions.len() < resolution::FEWEST {
-            return None;
-        }
-        let spacing = if self.is_single { 2.0 * SINGLE_POSITION } else { f64::EPSILON };
-        let expected = self.resolution.expected(collisions.len() as f64, BITS, spacing);
-        let all = collisions.len();
-        let found = ties::ties(&mut collisions);
-        self.found.details = format!(
-            "{found} of {all} flights have the length of an earlier one, {expected:.0} at most are \
-             expected of single precision"
-        );
-        Some(ties::p_value(found, expected))
-    }
-}
-
 /// All tests of a distribution.
 struct Whole {
     prediction: Arc<Prediction>,
@@ -130,6 +108,8 @@ struct Whole {
     /// Made with the first draws, which show their precision.
     laws: Option<Vec<Test>>,
     fine: Option<Fineness>,
+    /// The result of the test of ties.
+    ties: Found,
     untested: Vec<String>,
     seen: u64,
     /// The number of draws of the next look, and how many there were.
@@ -160,12 +140,13 @@ impl Tests for Whole {
 
     fn close(mut self: Box<Self>) -> Tested {
         let laws = self.laws.take().unwrap_or_default();
-        let fine = self.fine.take().map(|fine| ("resolution", RESOLUTION, fine.found));
+        let ties = std::mem::take(&mut self.ties);
+        let fine = self.fine.take().map(|_| ("resolution", Cow::Borrowed(RESOLUTION), ties));
         let n = self.seen as f64;
         let (rounded, laws): (Vec<_>, Vec<_>) =
             laws.into_iter().partition(|law| law.found.p.is_none() && n > law.between[1]);
         if !rounded.is_empty() {
-            let what: Vec<&str> = rounded.iter().map(|law| law.what).collect();
+            let what: Vec<Cow<str>> = rounded.into_iter().map(|law| law.what).collect();
             let why = "rounding of the draws moves as many of them as chance does";
             self.untested.push(format!("{} not tested: {why}", listed(&what)));
         }
@@ -180,7 +161,7 @@ impl Tests for Whole {
             let details = if details.is_empty() { details } else { format!(" ({details})") };
             let reason = format!("{what} differs from theory: p = {}{details}", short(p, 2));
             let reason = if is_refuted { reason } else { String::new() };
-            let (check, what) = (check.to_owned(), what.to_owned());
+            let (check, what) = (check.to_owned(), what.into_owned());
             findings.push(DistributionFinding { check, what, verdict, reason, p, draws });
         }
         if !few.is_empty() {
@@ -203,7 +184,7 @@ impl Tests for Whole {
 const RESOLUTION: &str = "the resolution of the distances";
 
 /// Things in a sentence.
-fn listed(things: &[&str]) -> String {
+fn listed(things: &[Cow<str>]) -> String {
     match things {
         [one] => format!("{one} is"),
         [rest @ .., last] => format!("{} and {last} are", rest.join(", ")),
@@ -217,50 +198,46 @@ impl Whole {
         let prediction = Arc::clone(&self.prediction);
         let Asked { rounding, has_lookups, length, values, .. } = self.asked;
         let mut tests = Vec::new();
-        let mut test = |check, what, law: Option<Box<dyn Law>>, between: [f64; 2]| {
-            let made = law.map(|law| Test {
-                check,
-                what,
-                sums: vec![0.0; law.size()],
-                law,
-                between,
-                found: Found::default(),
-            });
-            tests.extend(made);
-        };
         let always = [0.0, f64::INFINITY];
-        if has_lookups {
-            let law = checks::counts::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
-            test("counts", "the distribution of the lookups", law, always);
+        if let Some(law) = checks::counts::of(&prediction).filter(|_| has_lookups) {
+            tests.push(Test::new("counts", "the distribution of the lookups", law, always));
+        }
+        let draws = length.unwrap_or(USUAL);
+        for (what, law) in checks::covariance::of(&prediction, draws, values) {
+            tests.push(Test::new("covariance", what, law, always));
         }
         if values != prediction.channels.len() {
             return tests;
         }
         let product = if is_single { SINGLE_PRODUCT } else { 0.0 }.max(rounding);
         match checks::atoms::of(&prediction, product.max(checks::atoms::SAME)) {
-            Ok(law) => {
-                let law = law.map(|law| Box::new(law) as Box<dyn Law>);
-                test("atoms", "the distribution of the values", law, always);
+            Ok(Some(law)) => {
+                tests.push(Test::new("atoms", "the distribution of the values", law, always));
             }
+            Ok(None) => {}
             Err(why) => {
-                self.untested.push(format!("the distribution of the values is not tested: {why}"))
+                let what = "the distribution of the values is not tested";
+                self.untested.push(format!("{what}: {why}"));
             }
         }
         let position = if is_single { SINGLE_POSITION } else { 0.0 }.max(rounding);
-        if let Some(most) = most_draws(&prediction, position) {
-            let law = checks::distances::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
-            test("distances", "the distribution of the distances", law, [0.0, most]);
-            let law = checks::depth::of(&prediction).map(|law| Box::new(law) as Box<dyn Law>);
-            test("depth", "the distribution of the distances near both ends", law, [0.0, most]);
+        let between = [0.0, most_draws(&prediction, position)];
+        if let Some(law) = checks::distances::of(&prediction) {
+            let what = "the distribution of the distances";
+            tests.push(Test::new("distances", what, law, between));
+        }
+        if let Some(law) = checks::depth::of(&prediction) {
+            let what = "the distribution of the distances near both ends";
+            tests.push(Test::new("depth", what, law, between));
         }
         if let Some(least) = checks::curve::needed(&prediction) {
-            let most = length.unwrap_or(1 << 24);
+            let most = length.unwrap_or(MOST);
             let law = checks::curve::of(&prediction, most, product.max(16.0 * f64::EPSILON));
-            let law = law.map(|law| Box::new(law) as Box<dyn Law>);
-            test("curve", "the distribution along the curve", law, [least, f64::INFINITY]);
+            let what = "the distribution along the curve";
+            tests.extend(law.map(|law| Test::new("curve", what, law, [least, f64::INFINITY])));
         }
         match &mut self.fine {
-            Some(fine) if rounding <= COARSE => fine.is_single = is_single,
+            Some(fine) if rounding <= fineness::COARSE => fine.is_single = is_single,
             _ => self.fine = None,
         }
         tests
@@ -305,8 +282,12 @@ impl Whole {
             all.push((p, &mut test.found));
         }
         if let Some(fine) = &mut self.fine {
-            let p = if fine.found.is_refuted { None } else { fine.p_value() };
-            all.push((p, &mut fine.found));
+            let found = if self.ties.is_refuted { None } else { fine.p_value() };
+            let p = found.map(|(p, details)| {
+                self.ties.details = details;
+                p
+            });
+            all.push((p, &mut self.ties));
         }
         let p: Vec<f64> = all.iter().filter_map(|(p, _)| *p).collect();
         let rejected = multiplicity::holm(&p, all.len(), share * self.asked.alpha);
@@ -325,6 +306,11 @@ impl Whole {
     }
 }
 
+/// Whether theory knows covariances of the values.
+fn has_covariances(prediction: &Prediction, asked: Asked) -> bool {
+    prediction.covariances.iter().any(|covariance| covariance.pair[1] < asked.values)
+}
+
 /// The part of the values' distribution that theory does not know, as a sentence.
 fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
     let Prediction { law, increments, channels, .. } = prediction;
@@ -336,14 +322,20 @@ fn unknown(prediction: &Prediction, asked: Asked) -> Option<String> {
         return None;
     }
     let has_moments = channels.iter().any(|channel| channel.moments.is_some());
-    let known = if has_moments { "mean and variance" } else { "the mean" };
+    let known = match (has_covariances(prediction, asked), has_moments) {
+        (true, _) => "means, variances and covariances",
+        (false, true) => "mean and variance",
+        (false, false) => "the mean",
+    };
     Some(format!("the distribution of the draws is not tested: theory knows {known} of it alone"))
 }
 
 /// Largest number of distances that may be tested if they are rounded to `rounding`, relative to their positions: rounding
-/// moves no end of a class by more than a twentieth of its standard error. `None` where theory has no distances.
-fn most_draws(prediction: &Prediction, rounding: f64) -> Option<f64> {
-    let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else { return None };
+/// moves no end of a class by more than a twentieth of its standard error. Infinite where theory has no distances.
+fn most_draws(prediction: &Prediction, rounding: f64) -> f64 {
+    let Some(theory::Law::Distances { bins, from, .. }) = &prediction.law else {
+        return f64::INFINITY;
+    };
     let classes = (bins.len() + 1) as f64;
     let width = |k: usize| bins.get(k + 1).map_or(f64::INFINITY, |next| next - bins[k]);
     let most = |k: usize| {
@@ -352,7 +344,7 @@ fn most_draws(prediction: &Prediction, rounding: f64) -> Option<f64> {
         let moved = rounding * (from.abs() + bins[k]) / (narrow * classes);
         HARMLESS * HARMLESS * below * (1.0 - below) / (moved * moved)
     };
-    Some((0..bins.len()).map(most).fold(f64::INFINITY, f64::min))
+    (0..bins.len()).map(most).fold(f64::INFINITY, f64::min)
 }
 
 /// A number of lookups. NaN and negative numbers become 0; they are faults that are named elsewhere.

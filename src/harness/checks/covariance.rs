@@ -7,10 +7,16 @@
 //! It applies to problems with several channels, and is reported with the farther one. Neighbours
 //! are enough: increments over disjoint stretches are uncorrelated, so theirs determine the others.
 
+use std::panic::AssertUnwindSafe;
+
+use super::batch::Batch;
 use super::mean::is_faint;
 use super::observe::Observe;
-use super::question::{Kind, Known, Question, Scalar, Subject, Wanted};
+use super::question::{Kind, Known, Law, Question, Scalar, Subject, Wanted};
 use crate::estimators::DrawBuffer;
+use crate::harness::options::Tolerance;
+use crate::stats::gate::GateSums;
+use crate::theory::Prediction;
 use crate::theory::prediction::Covariance as Predicted;
 
 /// The largest error of a covariance, relative to the product of the standard deviations, that is
@@ -18,6 +24,53 @@ use crate::theory::prediction::Covariance as Predicted;
 const CAP: f64 = 0.2;
 /// The same of a prediction.
 const ERROR: f64 = 1e-10;
+
+/// A covariance as a test with a p-value: `min(1, 1/E)`, E the gate's e-value after a number of draws that is fixed
+/// beforehand. `P(E ≥ 1/p) ≤ p` by Markov's inequality.
+struct ByGate(AssertUnwindSafe<Scalar>);
+
+impl Law for ByGate {
+    fn size(&self) -> usize {
+        GateSums::default().totals().len()
+    }
+
+    fn add(&self, draws: &Batch, _: usize, sums: &mut [f64]) {
+        let arguments = self.0.design.arguments();
+        let mut found = GateSums::default();
+        draws.observe(&self.0.observe, &mut Vec::new(), |y, _| found.absorb(y, &arguments));
+        sums.iter_mut().zip(found.totals()).for_each(|(sum, x)| *sum += x);
+    }
+
+    fn p_value(&self, sums: &[f64], draws: f64) -> Option<f64> {
+        let sums = sums.try_into().ok()?;
+        Some((-self.0.design.evidence(sums, draws).ln_e).exp().min(1.0))
+    }
+}
+
+/// Tests of the covariances of neighbours among the first `values` channels, each with its name in words.
+pub fn of(prediction: &Prediction, draws: u64, values: usize) -> Vec<(String, impl Law + use<>)> {
+    let subject = Subject {
+        prediction,
+        draws,
+        most: draws,
+        fixed: draws,
+        tolerance: Tolerance::default(),
+        expect_biased: false,
+        has_invariant: false,
+        is_in_turn: true,
+        pilots: None,
+    };
+    let asked = questions(&subject).into_iter();
+    let among = asked.filter(|question| question.channel.is_some_and(|channel| channel < values));
+    let tests = among.filter_map(|question| match question.kind {
+        Kind::Scalar(scalar) => {
+            let name = &prediction.channels[question.channel?].name;
+            Some((format!("{} of {name}", question.what), ByGate(AssertUnwindSafe(scalar))))
+        }
+        _ => None,
+    });
+    tests.collect()
+}
 
 /// What is asked.
 pub fn questions(subject: &Subject) -> Vec<Question> {

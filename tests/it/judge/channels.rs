@@ -230,3 +230,25 @@ fn checks_in_memory_take_draws_without_their_luminance() {
                  of 4 values, or 3 without the luminance";
     assert!(error.contains(words), "{error}");
 }
+
+#[test]
+fn channels_that_are_right_by_themselves_fail_if_they_do_not_belong_together() {
+    let bytes = std::fs::read(format!("{FIELD}/draws.npy")).expect("an array");
+    let (head, body) = bytes.split_at(128);
+    let rows = body.len() / 24;
+    let value = |row: usize, k: usize| &body[24 * (row % rows) + 8 * k..][..8];
+    // The second channel is that of the draw before.
+    let moved: Vec<u8> =
+        (0..rows).flat_map(|i| [value(i, 0), value(i + 1, 1), value(i, 2)].concat()).collect();
+    let place = Place::new(&[("moved.npy", &[head, &moved].concat())]);
+    let judge = format!("--case {FIELD}/three.toml --estimator spectral-mis");
+    place.expect(
+        1,
+        &format!("{judge} moved.npy"),
+        &["the covariance with channel 1 of channel 2 differs from theory"],
+    );
+    let found = place.json(&format!("{judge} {FIELD}/draws.npy"), &[]);
+    for test in found["channels"][0]["judgement"]["distribution"].as_array().expect("a list") {
+        assert_eq!((&test["check"], &test["verdict"]), (&"covariance".into(), &"pass".into()));
+    }
+}
