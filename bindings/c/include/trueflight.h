@@ -134,6 +134,11 @@ tf_status tf_check_lookups(tf_check *check,
 tf_status tf_check_rounding(tf_check *check,
                             double rounding);
 
+// Number of values of a pushed draw, where it differs from the number of truths or of channels in the case: the luminance
+// of a chromatic medium, which follows from the other channels, may be left out.
+tf_status tf_check_set_values(tf_check *check,
+                              size_t values);
+
 // Of what theory says, only the mean: for an estimator of one's own that the case does not have.
 tf_status tf_check_mean_only(tf_check *check);
 
@@ -161,9 +166,10 @@ tf_status tf_check_draws(tf_check *check, uint64_t draws);
 // Where the random streams of callbacks begin; 1 without it.
 tf_status tf_check_seed(tf_check *check, uint64_t seed);
 
-// Takes mean, variance and kurtosis from theory: for an estimator of a case, by its name in tables or in the
-// catalogue, at a value of what the case sweeps, or a constant σ̂ where it sweeps nothing; NAN takes the case's own. The
-// case is a built-in one or a file. Every channel of the case is a value of the draw.
+// Takes mean, variance, kurtosis, lookups and, where it is known, the whole distribution from theory: for an estimator of
+// a case, by its name in tables or in the catalogue, at any value of what the case sweeps, or a constant σ̂ where it
+// sweeps nothing; NAN takes the case's own. The case is a built-in one or a file. Every channel of the case is a value of
+// the draw. A free flight that leaves the ray is its length, any larger number, INFINITY or −1.
 tf_status tf_check_of(tf_check *check,
                       const char *case_,
                       const char *estimator,
