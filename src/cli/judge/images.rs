@@ -24,7 +24,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FILE", requires = "images", conflicts_with = "truth")]
     truth_image: Option<PathBuf>,
     /// The truth image is the mean of N independent passes, and has their error; needs a variance of one pass
-    #[arg(long, value_name = "N", requires = "truth_image")]
+    #[arg(long, value_name = "N", requires = "truth_image", conflicts_with = "case")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     truth_passes: Option<u32>,
     /// The variance of each pixel of one pass: an image
@@ -32,23 +32,23 @@ pub struct Arguments {
     variance_image: Option<PathBuf>,
     /// The variance is no exact one but the sample variance of N passes other than those judged: its error counts, and
     /// zeros, negative values and NaN in it are allowed
-    #[arg(long, value_name = "N", requires = "images")]
+    #[arg(long, value_name = "N", requires = "images", conflicts_with = "case")]
     #[arg(value_parser = numbers::whole::<u32>(2..=u32::MAX), allow_negative_numbers = true)]
     variance_passes: Option<u32>,
     /// Estimate the variance from other passes of the same renderer: a stack (.npy), a folder with a pass in each file,
     /// or the option once for each file
     #[arg(long, value_name = "FILE", requires = "images")]
-    #[arg(conflicts_with_all = ["variance", "variance_image", "variance_passes"])]
+    #[arg(conflicts_with_all = ["case", "variance", "variance_image", "variance_passes"])]
     variance_stack: Vec<PathBuf>,
     /// Judge by a second stack instead of a truth: passes of a reference, noisy as they are; a stack (.npy), a folder,
     /// or the option once for each file
     #[arg(long, value_name = "FILE", requires = "images")]
-    #[arg(conflicts_with_all = ["truth", "truth_image", "truth_passes", "variance", "variance_image"])]
+    #[arg(conflicts_with_all = ["case", "truth", "truth_image", "truth_passes", "variance", "variance_image"])]
     #[arg(conflicts_with_all = ["variance_passes", "variance_stack", "kurtosis", "range"])]
     against: Vec<PathBuf>,
     /// Both stacks of --against have one law in each pixel, not only one mean: the exact test alone decides, and the
     /// variances must agree, too
-    #[arg(long, requires = "against")]
+    #[arg(long, requires = "against", conflicts_with = "case")]
     same_law: bool,
     /// Judge tiles of N × N pixels; 1 for single pixels [default: the least power of 2 with 2048
     /// values of all passes, 8192 where the variance comes from passes]

@@ -28,6 +28,9 @@ fn the_command_takes_estimated_variances_and_references() {
         &format!("--images --against {passes} --truth 1 {passes}"),
         &["cannot be used"],
     );
+    place.expect(2, &format!("{known} --truth 1 --truth-passes 3 {passes}"), &["--truth"]);
+    place.expect(2, &format!("--images --truth 1 --truth-passes 3 {passes}"), &["--truth-image"]);
+    place.expect(2, &format!("--against {passes} {passes}"), &["--images"]);
     place.expect(2, &format!("--images --against nowhere.npy {passes}"), &["nowhere.npy"]);
     place.expect(3, &format!("--images --against {passes} {passes}"), &["share values"]);
     place.expect(2, &format!("{known} --kurtosis 0.5 {passes}"), &["kurtosis"]);
