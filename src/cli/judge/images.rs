@@ -70,6 +70,13 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
     if arguments.files.iter().any(|file| super::is_pipe(file)) {
         bail!("images are not read of a pipe; give files");
     }
+    // Where an option that is required conflicts with another that is given, clap forgets the requirement.
+    if images.same_law && images.against.is_empty() {
+        bail!("--same-law says something of two stacks; give the second by --against");
+    }
+    if images.truth_passes.is_some() && images.truth_image.is_none() {
+        bail!("--truth-passes says where a truth image is from; give it by --truth-image");
+    }
     if images.variance_passes.is_some()
         && arguments.variance.is_none()
         && images.variance_image.is_none()
