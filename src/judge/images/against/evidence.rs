@@ -47,11 +47,16 @@ impl<'a> Evidence<'a> {
         let size = stack.size;
         let mut units = vec![0.0; size.channels];
         let means = [stack, reference].map(mean);
-        for pixel in means[1].chunks_exact(size.channels) {
-            units
-                .iter_mut()
-                .zip(pixel)
-                .for_each(|(unit, x)| *unit += x.abs() / size.pixels() as f64);
+        // A dark reference may have missed rare values: the other stack has a scale then.
+        for means in means.iter().rev() {
+            if units.iter().all(|&unit| unit == 0.0) {
+                for pixel in means.chunks_exact(size.channels) {
+                    units
+                        .iter_mut()
+                        .zip(pixel)
+                        .for_each(|(unit, x)| *unit += x.abs() / size.pixels() as f64);
+                }
+            }
         }
         if units.iter().all(|&unit| unit == 0.0) && wanted.tolerance.is_none() {
             return Err(ImageError::NoUnit);

@@ -57,7 +57,7 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
         None => "of z by the normal law: about uniform if all is well, with many values a tile",
     };
     let facts = format!("p-values of tiles of {0} × {0} pixels, {source}", judgement.tile);
-    let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a frame: it fails. No pattern should be seen";
+    let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a blue frame: it fails. No pattern should be seen";
     for (y, text, em, colour) in [
         (24.0, format!("{name}: {}", judgement.verdict.word()), 16.0, DARK),
         (46.0, facts, 11.5, GREY),
@@ -77,7 +77,7 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
         for tile in judgement.tiles.iter().filter(fails).take(FRAMES) {
             let at = [left + tile.column as f64 * scale, HEAD + tile.row as f64 * scale];
             let size = [tile.width, tile.height].map(|n| n as f64 * scale);
-            border(&mut sheet, at, size, ink(RED[0], RED[1], RED[2]));
+            border(&mut sheet, at, size, COLOURS[0]);
         }
     }
     histogram(&mut sheet, judgement, face, GAP + across * (width + GAP));

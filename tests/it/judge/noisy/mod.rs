@@ -134,7 +134,7 @@ fn correct_stacks_keep_the_level_by_an_estimated_variance() {
 fn wrong_renderers_are_found_by_an_estimated_variance() {
     let is_bad = |pixel: usize| (8..16).contains(&(pixel / 24)) && (8..16).contains(&(pixel % 24));
     let tile = |pixel| if is_bad(pixel) { 1.2 } else { 1.0 };
-    for law in [Law::Normal, Law::Fireflies(1.0)] {
+    for law in [Law::Normal, Law::Fireflies(0.6)] {
         let claim = by_image(1, 64, law);
         let found = judge(
             &stack(2, 512, law, tile),
@@ -147,8 +147,8 @@ fn wrong_renderers_are_found_by_an_estimated_variance() {
         let failing = small.filter(|tile| tile.verdict == Verdict::Fail);
         let places: Vec<_> = failing.map(|tile| (tile.row, tile.column)).collect();
         assert_eq!(places, [(8, 8)], "{law:?}");
-        // 2 % everywhere: 0.02 √(256 · 576)/0.5 = 15 standard errors of the normal law, 512 passes: 5.2 of the other.
-        let dark = stack(3, if law == Law::Normal { 256 } else { 2048 }, law, |_| 0.98);
+        // 2 % everywhere: 0.02 √(256 · 576)/0.5 = 15 standard errors of the normal law, 1024 passes: 11 of the other.
+        let dark = stack(3, if law == Law::Normal { 256 } else { 1024 }, law, |_| 0.98);
         let found = judged(&dark, &claim, 1e-3);
         assert_eq!(found.verdict, Verdict::Fail, "{law:?}: {}", found.reason);
         // Twice the variance.

@@ -39,7 +39,7 @@ fn wrong_renderers_are_found_against_a_reference() {
     let is_bad = |pixel: usize| (8..16).contains(&(pixel / 24)) && (8..16).contains(&(pixel % 24));
     let wanted = Wanted { tile: Some(8), ..Wanted::default() };
     for (law, passes, factor) in
-        [(Law::Normal, 4, 1.6), (Law::Normal, 32, 1.2), (Law::Fireflies(1.0), 256, 1.3)]
+        [(Law::Normal, 4, 1.6), (Law::Normal, 32, 1.2), (Law::Fireflies(0.6), 256, 1.3)]
     {
         let bad = stack(1, passes, law, |p| if is_bad(p) { factor } else { 1.0 });
         let reference = honest(2, passes, law);
