@@ -35,7 +35,7 @@ const LONGEST: usize = 48;
 /// Minimum of L.
 const SHORTEST_BET: usize = 12;
 /// With more bits a token, single values tell.
-const FINE: f64 = 18.0;
+const FINE: f64 = 22.0;
 /// Odd base of the polynomial that is the hash of a window, modulo 2⁶⁴.
 const BASE: u64 = 0x9e37_79b9_7f4a_7c15;
 
@@ -48,8 +48,8 @@ pub struct Sequences {
     /// Draws of the commonest value since the last token.
     gap: u64,
     tokens: u64,
-    ring: Vec<Token>,
-    kept: HashMap<u64, Window, BuildHasherDefault<AsItIs>>,
+    ring: Ring,
+    kept: HashMap<u64, Window, BuildHasherDefault<Spread>>,
     /// How many leading bits of a window's hash must be 0.
     bits: u32,
     pending: Option<Bet>,
@@ -70,6 +70,16 @@ struct Scheme {
     bet: usize,
     /// `BASE` to the power of the two.
     bases: [u64; 2],
+}
+
+/// The last tokens.
+#[derive(Debug, Clone)]
+struct Ring(Box<[Token; RING]>);
+
+impl Default for Ring {
+    fn default() -> Self {
+        Self(Box::new([Token::default(); RING]))
+    }
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -100,11 +110,11 @@ struct Bet {
     tokens: u64,
 }
 
-/// Hasher of keys that are hashes already.
+/// Hasher of keys that are nearly hashes: tables go by low bits, which the coarsest tokens leave at 0.
 #[derive(Debug, Clone, Copy, Default)]
-struct AsItIs(u64);
+struct Spread(u64);
 
-impl Hasher for AsItIs {
+impl Hasher for Spread {
     fn finish(&self) -> u64 {
         self.0
     }
@@ -116,7 +126,8 @@ impl Hasher for AsItIs {
     }
 
     fn write_u64(&mut self, key: u64) {
-        self.0 = key;
+        let product = key.wrapping_mul(BASE);
+        self.0 = product ^ (product >> 32);
     }
 }
 
@@ -163,7 +174,6 @@ impl Sequences {
         if !self.is_planned && !x.is_empty() {
             self.scheme = Scheme::new(x);
             self.is_planned = true;
-            self.ring = vec![Token::default(); RING];
         }
         let Some(scheme) = self.scheme else { return };
         let first = self.draws;
@@ -174,7 +184,7 @@ impl Sequences {
                 self.gap += 1;
                 continue;
             }
-            let token = hash(bits ^ self.gap.wrapping_mul(BASE)).wrapping_add(bits >> 32);
+            let token = hash(hash(bits ^ self.gap.wrapping_mul(BASE)));
             self.gap = 0;
             self.take(&scheme, token, draw);
         }
@@ -182,13 +192,13 @@ impl Sequences {
 
     #[allow(clippy::cast_possible_truncation)] // modulo 256
     fn at(&self, token: u64) -> &Token {
-        &self.ring[token as usize % RING]
+        &self.ring.0[token as usize % RING]
     }
 
     /// Hash of so many tokens, the last of which is the given one.
     fn hash_of(&self, last: u64, count: usize, base: u64) -> u64 {
-        let before = (last + 1).checked_sub(count as u64 + 1);
-        let before = before.map_or(0, |before| self.at(before).prefix);
+        // Before the first token the ring is 0.
+        let before = self.at(last.wrapping_sub(count as u64)).prefix;
         self.at(last).prefix.wrapping_sub(before.wrapping_mul(base))
     }
 
@@ -200,16 +210,15 @@ impl Sequences {
     fn take(&mut self, scheme: &Scheme, hash: u64, draw: u64) {
         let (token, [window, bet]) = (self.tokens, [scheme.window as u64, scheme.bet as u64]);
         self.tokens += 1;
-        let before = token.checked_sub(1).map_or(0, |before| self.at(before).prefix);
-        let prefix = before.wrapping_mul(BASE).wrapping_add(hash);
+        let prefix = self.at(token.wrapping_sub(1)).prefix.wrapping_mul(BASE).wrapping_add(hash);
         #[allow(clippy::cast_possible_truncation)] // modulo 256
         let place = token as usize % RING;
-        self.ring[place] = Token { hash, prefix, window: 0, draw };
+        self.ring.0[place] = Token { hash, prefix, window: 0, draw };
         if self.tokens < window {
             return;
         }
         let seen = self.hash_of(token, scheme.window, scheme.bases[0]);
-        self.ring[place].window = seen;
+        self.ring.0[place].window = seen;
         if self.pending.is_some_and(|pending| pending.end == token) {
             self.settle(scheme, token);
         }
@@ -390,8 +399,7 @@ mod tests {
     fn a_bet_pays_what_its_order_is_worth() {
         // Twelve tokens of a fair coin, six of each: 12!/(6! 6!) = 924.
         let scheme = Scheme { filler: None, window: 1, bet: 12, bases: [BASE; 2] };
-        let mut sequences =
-            Sequences { ring: vec![Token::default(); RING], ..Sequences::default() };
+        let mut sequences = Sequences::default();
         for token in 0..12 {
             sequences.take(&scheme, token % 2, token);
         }
