@@ -36,8 +36,8 @@ pub fn qualify_means(plan: &Plan, planned: &Planned, findings: &mut [Finding]) {
     }
 }
 
-/// Says of blocks and streams that differ from theory where that follows from a mean or a variance that fails: it is no
-/// sign of a dependence then.
+/// Adds the cause to blocks and streams that differ from theory where the mean or the variance fails: the difference is then
+/// no sign of a dependence.
 pub fn explain_blocks(findings: &mut [Finding]) {
     let fails = |check: &str| {
         findings.iter().any(|found| found.check == check && found.verdict == Verdict::Fail)

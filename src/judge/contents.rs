@@ -1,7 +1,7 @@
 //! Draws behind averages: whether all averages hold the same draws, and whether draws come again across them.
 //!
-//! Draws within an average may depend on each other in any way, and draws at one place of all averages may have a law of
-//! their own, such as a pixel that is black in every pass. So a distance that is shorter than an average, or a multiple of
+//! Draws within an average may depend on each other in any way, and each place of an average may have a distribution of
+//! its own, such as a pixel that is black in every pass. So a distance that is shorter than an average, or a multiple of
 //! its length, says nothing: equal averages betray the latter by themselves. What is left is a distance across
 //! averages that independent ones have only if values come in a fixed order of their own, and averages that all
 //! hold the same draws, which no independent ones do unless their draws have no chance in them.
@@ -12,7 +12,7 @@ use crate::stats::sequences::Sequences;
 /// Minimum number of averages that may be called alike.
 const FEWEST: u64 = 3;
 
-/// Draws behind averages of so many each.
+/// Draws behind averages of `batch` draws each.
 pub(super) struct Contents {
     batch: u64,
     replays: Replays,
@@ -62,7 +62,7 @@ impl Contents {
         }
     }
 
-    /// How many averages there are, where all hold the same draws, and these are not all alike.
+    /// Number of averages, if all hold the same draws, and these are not all alike.
     pub(super) fn alike(&self) -> Option<u64> {
         let is_shown = self.are_alike && self.is_varied && self.averages >= FEWEST;
         is_shown.then_some(self.averages)

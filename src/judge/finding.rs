@@ -122,7 +122,7 @@ impl Scalar {
         format!("the {what} looks off by {told}{alike}")
     }
 
-    /// Why so much is not enough to fail, and what would be.
+    /// Reason why an obvious difference does not fail, with what would let it.
     fn what_shows(&self) -> String {
         let n = self.past.draws();
         match self.ask.spread {

@@ -29,7 +29,7 @@ pub(super) const EFFECTIVE: f64 = 1000.0;
 const ASSUMED: f64 = 200.0;
 /// How many draws must carry a variance that stakes and ε are chosen by.
 pub(super) const RELIABLE: f64 = 100.0;
-/// How many suffice where no more draws can be waited for.
+/// Minimum where half of all draws have passed.
 pub(super) const FAIRLY_RELIABLE: f64 = 20.0;
 /// n ε over the distance from the truth to the further end of a range, for a pass by bets of three quarters of that.
 const FINEST: f64 = 12.0;

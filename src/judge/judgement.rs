@@ -156,7 +156,7 @@ pub struct IndependenceFinding {
     pub correlation: Option<f64>,
     /// After how many draws the same ones come again.
     pub replay: Option<u64>,
-    /// How often they come in all.
+    /// Number of times that the same draws come in all.
     pub repeats: Option<u64>,
     /// ln of a bound on the probability that independent draws come again like that.
     pub replay_ln_p: Option<f64>,

@@ -13,12 +13,12 @@
 
 use super::scalar::Scalar;
 
-/// Standard errors that are no chance where many draws carry the variance.
+/// Limit in standard errors where many draws carry the variance.
 const PLAIN: f64 = 6.0;
-/// How much more where few do.
+/// Coefficient of 1/√ν in that limit.
 const FEW: f64 = 3.0;
 
-/// Events of which none is no chance where so many are expected: e⁻²⁰.
+/// Expected number of events of which none comes with probability e⁻²⁰.
 const MISSED: f64 = 20.0;
 
 /// A change of the mean.
@@ -34,13 +34,13 @@ pub(super) struct Change {
     pub z: f64,
 }
 
-/// Standard errors beyond which a difference is no chance, where so many draws carry the variance.
+/// Limit in standard errors, given ν.
 fn limit(carry: f64) -> f64 {
     PLAIN * (1.0 + FEW / carry.sqrt())
 }
 
 impl Scalar {
-    /// By how many standard errors y is off, if no chance explains it; infinite for draws that are all alike, where the
+    /// Distance of the mean of y from 0 in standard errors, if it is beyond the limit; infinite for draws that are all alike, where the
     /// range or the variance leaves no room for what was not drawn.
     pub(super) fn obvious_z(&self) -> Option<f64> {
         let (n, off) = (self.past.draws() as f64, self.past.mean());
@@ -61,7 +61,7 @@ impl Scalar {
         (shown.max(known) > limit(carry)).then_some(shown.copysign(off))
     }
 
-    /// The most significant change of the mean, if no chance explains it: from a block on, else between two blocks.
+    /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two blocks.
     pub(super) fn obvious_change(&self) -> Option<Change> {
         let (n, mean) = (self.past.draws() as f64, self.past.mean());
         let (carry, variance) = (self.past.effective_draws(), self.past.variance());

@@ -102,7 +102,7 @@ impl Design {
         Self { variance, tolerance: tolerance.max(4.0 * floor), floor, is_asked: true }
     }
 
-    /// The same question with another V.
+    /// This question with another V.
     #[must_use]
     pub fn with_variance(&self, variance: f64) -> Self {
         let new = if self.is_asked { Self::asked } else { Self::new };

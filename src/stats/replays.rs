@@ -29,7 +29,7 @@ pub struct Replay {
     pub distance: u64,
     /// How many of the kept draws do.
     pub count: u64,
-    /// How often each of them comes.
+    /// Number of times that each of them comes.
     pub times: u64,
     /// ln of a bound on the chance of that.
     pub ln_p: f64,

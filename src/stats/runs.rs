@@ -41,7 +41,7 @@ impl Runs {
         }
     }
 
-    /// How often each draw is written, and ln of a bound on the probability of that; `None` for once.
+    /// Number of times that each draw is written, and ln of a bound on the probability of that; `None` for once.
     pub fn found(&self) -> Option<(u64, f64)> {
         let pairs = self.ended.saturating_sub(1) / 2;
         (self.divisor > 1 && pairs >= 2).then(|| {

@@ -39,7 +39,7 @@ pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
 
-/// The same by values that few passes share.
+/// The most surprising repetition of values that few passes share.
 fn by_values(stack: &Stack) -> Option<Repeat> {
     let (n, pixels) = (stack.passes, stack.size.pixels());
     let mut places: BTreeMap<Vec<u32>, u64> = BTreeMap::new();
