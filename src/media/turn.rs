@@ -45,8 +45,8 @@ impl Turn {
         self.rows.map(|row| dot(row, direction))
     }
 
-    /// The numbers that make a point's lattice coordinates: three products, each of a difference, and three sums are rounded,
-    /// by 5/2 of a unit each, and half of that is what the reader of a distance counts.
+    /// Sizes whose rounding, 2 ε of each, bounds that of a point's lattice coordinates: a difference, a product and three sums
+    /// are rounded, by ε/2 of the three terms each.
     pub(super) fn terms(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
         let far = [0, 1, 2].map(|j| (point[j] - self.origin[j]).abs());
         self.rows.map(|row| 1.5 * dot(row.map(f64::abs), far) + shift)
