@@ -52,8 +52,9 @@ pub struct Class {
     pub hosts: Vec<usize>,
 }
 
-/// The classes of equal lines, in the order in which they are drawn: longer ones first.
-pub fn classes(lines: &[Line]) -> Vec<Class> {
+/// The classes of equal lines, in the order in which they are drawn: longer ones first, and of those as long solid ones,
+/// so that dashes are seen where two lines share a stretch. `dashes` are those of the lines.
+pub fn classes(lines: &[Line], dashes: &[&[f64]]) -> Vec<Class> {
     let on = |a: usize, b: usize| lines[a].lies_on(&lines[b]);
     let mut members: Vec<Vec<usize>> = Vec::new();
     for index in (0..lines.len()).filter(|&index| lines[index].length() > 0) {
@@ -70,8 +71,19 @@ pub fn classes(lines: &[Line]) -> Vec<Class> {
             Class { members: class.clone(), hosts }
         })
         .collect();
-    classes.sort_by_key(|class| std::cmp::Reverse(lines[class.members[0]].length()));
+    let gaps =
+        |class: &Class| if class.members.len() > 1 { 0.0 } else { gaps(dashes[class.members[0]]) };
+    classes.sort_by(|a, b| {
+        let [long, other] = [a, b].map(|class| lines[class.members[0]].length());
+        other.cmp(&long).then(gaps(a).total_cmp(&gaps(b)))
+    });
     classes
+}
+
+/// Share of a dashed line that is gaps.
+fn gaps(dash: &[f64]) -> f64 {
+    let gaps: f64 = dash.iter().skip(1).step_by(2).sum();
+    if gaps > 0.0 { gaps / dash.iter().sum::<f64>() } else { 0.0 }
 }
 
 impl Class {
@@ -172,7 +184,9 @@ mod tests {
             Line::Level(5.0),
             through(&[(1.0, 5.0), (2.0, 5.0)]),
         ];
-        let classes = classes(&lines);
+        let mut dashes: [&[f64]; 8] = [&[]; 8];
+        dashes[0] = &[2.0, 3.0];
+        let classes = classes(&lines, &dashes);
         let class = |members: &[usize], hosts: &[usize]| Class {
             members: members.to_vec(),
             hosts: hosts.to_vec(),

@@ -59,7 +59,8 @@ impl Graph {
         let shifts = side_by_side(&spots, APART, 0.4 * gap);
         let is_moved = shifts.iter().any(|&shift| shift != 0.0);
         points.iter_mut().zip(shifts).for_each(|(point, shift)| point.spot[0] += shift);
-        let classes = classes(&lines);
+        let dashes: Vec<&[f64]> = series.iter().map(|one| one.style.dash).collect();
+        let classes = classes(&lines, &dashes);
         Self { panel, head: quantity.head, lines, classes, points, is_moved }
     }
 
