@@ -184,9 +184,7 @@ mod tests {
             Line::Level(5.0),
             through(&[(1.0, 5.0), (2.0, 5.0)]),
         ];
-        let mut dashes: [&[f64]; 8] = [&[]; 8];
-        dashes[0] = &[2.0, 3.0];
-        let classes = classes(&lines, &dashes);
+        let classes = classes(&lines, &[&[]; 8]);
         let class = |members: &[usize], hosts: &[usize]| Class {
             members: members.to_vec(),
             hosts: hosts.to_vec(),
@@ -214,6 +212,16 @@ mod tests {
             "Equal in theory where both are drawn, one line on the other: (a, b) B on A; (a, b) H on E",
         ];
         assert_eq!(notes, expected);
+    }
+
+    #[test]
+    fn dashes_are_drawn_over_solid_lines_of_their_length() {
+        let lines = [through(&[(1.0, 2.0), (2.0, 3.0)]), through(&[(1.0, 2.0), (2.0, 5.0)])];
+        let order = |dashes: [&[f64]; 2]| -> Vec<usize> {
+            classes(&lines, &dashes).iter().map(|class| class.members[0]).collect()
+        };
+        assert_eq!(order([&[9.0, 4.0], &[]]), [1, 0]);
+        assert_eq!(order([&[], &[9.0, 4.0]]), [0, 1]);
     }
 
     #[test]
