@@ -184,7 +184,8 @@ mod tests {
             Line::Level(5.0),
             through(&[(1.0, 5.0), (2.0, 5.0)]),
         ];
-        let classes = classes(&lines, &[&[]; 8]);
+        let solid: [&[f64]; 8] = [&[]; 8];
+        let classes = classes(&lines, &solid);
         let class = |members: &[usize], hosts: &[usize]| Class {
             members: members.to_vec(),
             hosts: hosts.to_vec(),
