@@ -4,7 +4,7 @@ use super::{Place, commands};
 use crate::common::{self, none};
 use trueflight::catalogue::digits::enough;
 use trueflight::harness::record::Verdict;
-use trueflight::harness::{Amount, Options, Plan, verdict};
+use trueflight::harness::{Amount, Case, Options, Plan, suite, verdict};
 
 /// Mean and variance need different numbers of draws at each σ̂; the names have spaces and parentheses.
 const SWEPT: &str = "title = \"too few draws\"
@@ -126,7 +126,9 @@ fn what_a_budget_cuts_is_decided_without_it() {
 /// underpowered that the plan called sufficient, but for whole distributions, of which draws alone tell.
 #[test]
 fn the_plan_foresees_what_a_run_finds() {
-    let cases = common::shipped();
+    let sources = suite::suite();
+    let cases: Vec<Case> =
+        sources.iter().map(|source| Case::read(source).expect("a built-in case")).collect();
     let options = Options { draws: Amount::Exactly(20_000), ..common::options(1, 20_000) };
     let plan = Plan::new(&cases, &options);
     let planned = verdict::planned(&plan);
@@ -152,4 +154,19 @@ fn the_plan_foresees_what_a_run_finds() {
     }
     none(&wrong);
     assert!(open > 20, "{open}");
+}
+
+/// What README says first of a CI, `trueflight check cases/`, in a checkout.
+#[test]
+#[ignore = "long: plans all cases of the repository, a minute of two cores"]
+fn the_cases_of_the_repository_have_enough_draws_for_a_ci() {
+    let cases = common::shipped();
+    let options = Options { draws: Amount::CaseOr(400_000), ..Options::default() };
+    let planned = verdict::planned(&Plan::new(&cases, &options));
+    let mut wrong = Vec::new();
+    for case in &planned.results.cases {
+        let open = case.rows.iter().filter(|row| row.foreseen == Some(Verdict::Inconclusive));
+        wrong.extend(open.map(|row| format!("{}: {}: {}", case.name, row.estimator, row.reason)));
+    }
+    none(&wrong);
 }
