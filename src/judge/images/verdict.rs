@@ -2,7 +2,7 @@
 
 use super::claim::{Claim, Pixels};
 use super::judgement::{Judgement, Refuted, Tile};
-use crate::catalogue::deviation::Deviation;
+use crate::catalogue::deviation::{Deviation, signed_percent};
 use crate::catalogue::digits::{percent, short};
 use crate::stats::verdict::Verdict;
 
@@ -24,8 +24,9 @@ fn said(judgement: &Judgement, pixels: &Pixels, claim: &Claim) -> (Verdict, Stri
     let mut failing = Vec::new();
     if let Some(variance) = judgement.variance.filter(|variance| variance.is_refuted) {
         failing.push(format!(
-            "the variance is too small: that of the values is {} of it (ln E = {:.1} ≥ {:.1}){}",
-            percent(variance.about_mean),
+            "the variance is too small: values spread {:.3} times as wide, {} (ln E = {:.1} ≥ {:.1}){}",
+            variance.about_mean,
+            signed_percent(variance.about_mean - 1.0),
             variance.ln_e,
             variance.limit,
             match judgement.estimate {
