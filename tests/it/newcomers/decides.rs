@@ -21,7 +21,7 @@ const TOLERANT: &str = "title = \"tolerances\"
 medium.constant.extinction = 2
 span = [0, 2]
 sampling.constant.value = 2.5
-estimators = [{ woodcock = {} }, { ratio = {} }, { ratio = { control.constant.value = 0.5 } }]
+estimators = [{ woodcock = {} }, { ratio = {} }, { residual-ratio = { control.constant.value = 0.5 } }]
 [tolerance]
 mean = 1e-2
 ";
