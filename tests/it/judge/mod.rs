@@ -189,11 +189,7 @@ fn the_variance_is_tested_and_can_be_done_without() {
     let known = format!("--truth 1 --variance {} x.f64", 1.0 / 48.0);
     place.expect(0, &known, &["kurtosis estimated"]);
     place.expect(0, "--truth 1 x.f64", &["variance estimated", "not tested"]);
-    place.expect(
-        3,
-        "--truth 1.01 x.f64",
-        &["variance estimated", "the mean looks off by -0.9"],
-    );
+    place.expect(3, "--truth 1.01 x.f64", &["variance estimated", "the mean looks off by -0.9"]);
     let tails = format!("--truth 1 --variance {} --kurtosis 1e7 x.f64", 1.0 / 48.0);
     place.expect(0, &tails, &["variance assumed", "underpowered"]);
 }

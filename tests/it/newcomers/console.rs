@@ -76,7 +76,8 @@ fn a_failure_is_told_in_one_unit_with_its_likely_causes() {
         place.says(1, "check bad.toml --draws 400000 --junit j.xml --markdown s.md --out out");
     let told = |text: &str| {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
-        let after = text.split("the mean is off by ").nth(1).expect("a failure").to_owned();
+        // A column may cut the first short.
+        let after = text.rsplit("the mean is off by ").next().expect("a failure").to_owned();
         let after = after.replace("\\_", "_");
         let (percent, rest) = after.split_once(" % (measured ").expect("a percentage");
         let (measured, rest) = rest.split_once(", expected ").expect("a measured value");
@@ -132,9 +133,10 @@ fn the_total_counts_what_will_be_drawn() {
     assert_eq!((last, kept), (made, 0), "at its end the total is what was drawn");
     let share = first as f64 / made as f64;
     assert!((0.7..1.3).contains(&share), "{first} were expected, {made} were drawn");
-    // As many as were planned would be far too many.
+    // As many as were planned would be too many.
     let planned: u64 = plan.experiments().filter(|e| e.1.outcome.is_ok()).map(|e| e.1.draws).sum();
-    assert!(planned as f64 > 1.2 * made as f64, "{planned} planned, {made} drawn");
+    assert!(planned > made + made / 10, "{planned} planned, {made} drawn");
+    assert!(first.abs_diff(made) < planned - made, "{first} expected, {made} drawn");
 }
 
 #[test]
