@@ -176,14 +176,24 @@ def _method(method: str, is_safe: Callable[[Any], bool] = lambda _: True) -> Cal
     return copied
 
 
+class _Exported:
+    """An array that is asked by DLPack of 2023 for a copy on the CPU, for any version of NumPy."""
+
+    def __init__(self, made: Any) -> None:
+        self._made = made
+
+    def __dlpack__(self, **_: Any) -> Any:
+        return self._made.__dlpack__(dl_device=self.__dlpack_device__(), copy=True)
+
+    def __dlpack_device__(self) -> tuple[int, int]:
+        return 1, 0
+
+
 def _dlpack(made: Any) -> Any:
-    """A copy by DLPack of 2023, which may cross devices."""
+    """An array by DLPack, copied if it is on another device."""
     if not _has(made, "__dlpack__"):
         return None
-    try:
-        return np.from_dlpack(made, device="cpu")
-    except (TypeError, ValueError, BufferError, RuntimeError):
-        return np.from_dlpack(made)
+    return np.from_dlpack(_Exported(made) if _is_on_device(made) else made)
 
 
 # How an array comes to the host, the surest way first. `get` and `numpy` mean something else for other objects (a pandas
