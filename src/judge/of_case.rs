@@ -15,6 +15,8 @@ use crate::theory::{Law, Prediction};
 
 /// The problem with distances as draws.
 const FLIGHTS: &str = "free-flight";
+/// Largest deviation of a length that is always the same, relative to it.
+const SURE: f64 = 1e-6;
 /// Largest number of values of a sweep that are tried where a value beside them is refused.
 const TRIED: usize = 8;
 
@@ -107,9 +109,13 @@ fn claims(case: &Case, prediction: &Prediction, rounding: f64) -> Vec<(String, C
         // Without a medium all flights leave.
         None if case.problem == FLIGHTS => {
             let channel = prediction.channels.first();
-            let sure =
-                channel.filter(|channel| channel.moments.is_some_and(|m| m.variance() == 0.0));
-            sure.map(|channel| Flights { length: channel.truth.value, from: 0.0, escape: 1.0 })
+            let length = channel.map(|channel| channel.truth.value);
+            // All have the length of the ray then, to rounding.
+            let is_sure = |length: &f64| {
+                let moments = channel.and_then(|channel| channel.moments);
+                moments.is_some_and(|m| m.variance().sqrt() <= SURE * length)
+            };
+            length.filter(is_sure).map(|length| Flights { length, from: 0.0, escape: 1.0 })
         }
         _ => None,
     };
@@ -192,8 +198,9 @@ impl Point<'_> {
         match (self.axis, choice.swept) {
             (None, None) => Ok(None),
             (None, Some(value)) => {
-                let takes_any =
-                    !choice.nearest && scenario.depends_on(self.index, What::SamplingScale);
+                let takes_any = self.case.sweep.is_none()
+                    && !choice.nearest
+                    && scenario.depends_on(self.index, What::SamplingScale);
                 if !takes_any {
                     return Err(ClaimError::NotSwept { case, estimator });
                 }

@@ -120,6 +120,18 @@ fn a_wrong_way_to_write_them_is_named_and_no_bias_accused() {
 }
 
 #[test]
+fn without_a_medium_all_flights_leave_however_that_is_written() {
+    let case = ODD.replace("extinction = 0.5", "extinction = 0");
+    let place = Place::new(&[("odd.toml", case.as_bytes())]);
+    for left in [1.3, f64::INFINITY, -1.0, 7.0] {
+        std::fs::write(place.path().join("x.f64"), raw(&[left; 1000])).expect("written");
+        place.expect(0, "--case odd.toml --estimator woodcock x.f64", &["pass"]);
+    }
+    std::fs::write(place.path().join("x.f64"), raw(&[1.2; 1000])).expect("written");
+    place.expect(1, "--case odd.toml --estimator woodcock x.f64", &["fail"]);
+}
+
+#[test]
 fn flights_that_never_leave_or_leave_too_often_fail() {
     let place = Place::new(&[("ff.toml", FLIGHTS.as_bytes())]);
     let judge = "--case ff.toml --estimator woodcock x.f64";

@@ -18,9 +18,9 @@ const POINTS: &str = "title = \"explorers\"
 medium.constant.extinction = 0.5
 span = [0, 2]
 sampling.constant.value = 1
-control.explorers = {}
+control.explorers.points = 4
 sweep.points.values = [2, 4, 8]
-estimators = [{ ratio = {} }]
+estimators = [{ double = {} }, { ratio = {} }]
 ";
 
 /// Ratio tracking of σ_t = 0.5 on [0, 2] by σ̂: (1 − 0.5/σ̂)^N, N Poisson distributed of mean 2σ̂.
@@ -81,17 +81,19 @@ fn what_cannot_be_is_refused_with_the_nearest_value() {
             &["nearest value of the sweep is 0.5"],
         ),
         (
-            "--case points.toml --estimator ratio --swept 5.4",
+            "--case points.toml --estimator double --swept 5.4",
             &["is not a whole number from 2", "nearest value of the sweep is 4"],
         ),
         (
-            "--case points.toml --estimator ratio --swept 1",
+            "--case points.toml --estimator double --swept 1",
             &["is not a whole number from 2", "sweep is 2"],
         ),
         ("--case swept.toml --estimator ratio --swept 0", &["is not a finite number above 0"]),
         ("--case swept.toml --estimator ratio --swept -1", &["is not a finite number above 0"]),
         ("--case swept.toml --estimator closed-form --swept 1", &["is not swept"]),
         ("--case swept.toml --estimator closed-form --swept 1 --nearest", &["is not swept"]),
+        // A number of points is no σ̂ of an estimator that has none.
+        ("--case points.toml --estimator ratio --swept 4", &["is not swept"]),
         ("--case swept.toml --estimator ratio --nearest", &["--swept"]),
         ("--truth 1 --nearest", &["--swept"]),
     ] {
@@ -99,7 +101,7 @@ fn what_cannot_be_is_refused_with_the_nearest_value() {
     }
     // Any number of points, not only those of the sweep; and the nearest for what is none.
     for more in ["--swept 5", "--swept 5.4 --nearest", "--swept 4"] {
-        let arguments = format!("--case points.toml --estimator ratio {more} u.f64");
+        let arguments = format!("--case points.toml --estimator double {more} u.f64");
         let (code, text) = place.says(&arguments, &[]);
         assert_ne!(code, 2, "{arguments}: {text}");
         assert!(text.contains("points = "), "{text}");
