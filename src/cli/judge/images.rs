@@ -1,5 +1,6 @@
 //! `trueflight judge --images`: the gate over stacks of images.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
@@ -8,7 +9,7 @@ use clap::Args;
 use super::Shown;
 use crate::cli::{Console, USAGE, numbers, output};
 use crate::judge::images::against::{Terms, compare};
-use crate::judge::images::{Claim, Judgement, Level, Wanted, files, judge};
+use crate::judge::images::{Claim, Judgement, Level, Stack, Wanted, files, judge};
 use crate::report::judge::images as report;
 use crate::report::judge::junit::Told;
 
@@ -55,6 +56,11 @@ pub struct Arguments {
     #[arg(long, value_name = "N", requires = "images")]
     #[arg(value_parser = numbers::whole::<u32>(1..=u32::MAX), allow_negative_numbers = true)]
     tile: Option<u32>,
+    /// Judge averages of blocks of N × N pixels instead of pixels: with a filter that blends pixels, blocks wider than the
+    /// filter are independent. All images are averaged; a variance must come from passes
+    #[arg(long, value_name = "N", requires = "images", conflicts_with_all = ["case", "variance", "variance_image"])]
+    #[arg(value_parser = numbers::whole::<u32>(1..=1 << 16), allow_negative_numbers = true)]
+    average: Option<u32>,
     /// Write judgement.json, tiles.csv, z-map.png and p-values.png into a folder
     #[arg(long, value_name = "DIR", requires = "images")]
     out: Option<PathBuf>,
@@ -120,20 +126,33 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
     let beside = [&images.truth_image, &images.variance_image].into_iter().flatten();
     let all = arguments.files.iter().chain(&against).chain(&variance_stack).chain(beside);
     let frame = files::Frame::of(&all.collect::<Vec<_>>())?;
+    let block = images.average.and_then(|block| NonZeroUsize::new(block as usize));
+    let read = |paths: &[PathBuf]| -> anyhow::Result<Stack> {
+        let stack = files::stack_in(paths, frame)?;
+        Ok(match block {
+            Some(block) => stack.averaged(block),
+            None => stack,
+        })
+    };
     if !against.is_empty() {
-        let stack = files::stack_in(&arguments.files, frame)?;
-        let reference = files::stack_in(&against, frame)?;
+        let stack = read(&arguments.files)?;
+        let reference = read(&against)?;
         let terms = Terms { is_same_law: images.same_law, rounding: arguments.rounding };
         return Ok(compare(&stack, &reference, terms, wanted)?);
     }
     let level = |value: Option<f64>, image: &Option<PathBuf>| match (value, image) {
         (Some(value), _) => Ok(Some(Level::All(value))),
-        (None, Some(path)) => files::picture_in(path, frame).map(Level::Each).map(Some),
+        (None, Some(path)) => files::picture_in(path, frame).map(|picture| {
+            Some(Level::Each(match block {
+                Some(block) => picture.averaged(block),
+                None => picture,
+            }))
+        }),
         (None, None) => Ok(None),
     };
     let variance_stack = match &*variance_stack {
         [] => None,
-        paths => Some(files::stack_in(paths, frame)?),
+        paths => Some(read(paths)?),
     };
     let claim = Claim {
         truth: level(arguments.truth, &images.truth_image)?
@@ -146,7 +165,7 @@ fn judged(arguments: &super::Arguments, wanted: &Wanted) -> anyhow::Result<Judge
         range: arguments.range,
         rounding: arguments.rounding,
     };
-    Ok(judge(&files::stack_in(&arguments.files, frame)?, &claim, wanted)?)
+    Ok(judge(&read(&arguments.files)?, &claim, wanted)?)
 }
 
 /// The files of a stack; those of a folder in the order of their names.

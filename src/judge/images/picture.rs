@@ -1,5 +1,7 @@
 //! Pictures and stacks of them: numbers in rows from the top, each pixel with all its channels.
 
+use std::num::NonZeroUsize;
+
 use super::error::ImageError;
 
 /// How large a picture is.
@@ -23,6 +25,30 @@ impl Size {
     pub fn values(self) -> usize {
         self.pixels() * self.channels
     }
+}
+
+/// Averages of blocks of `block` × `block` pixels, smaller ones at the right and at the foot.
+fn averages(size: Size, values: &[f64], block: usize) -> (Size, Vec<f64>) {
+    let (rows, columns) = (size.rows.div_ceil(block), size.columns.div_ceil(block));
+    let found = Size { rows, columns, channels: size.channels };
+    let span = |first: usize, length: usize| first * block..((first + 1) * block).min(length);
+    let mut averages = Vec::with_capacity(found.values());
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let (down, across) = (span(row, size.rows), span(column, size.columns));
+        let count = (down.len() * across.len()) as f64;
+        for channel in 0..size.channels {
+            let of = |row: usize, column: usize| {
+                values[(row * size.columns + column) * size.channels + channel]
+            };
+            let sum: f64 = down
+                .clone()
+                .flat_map(|row| across.clone().map(move |column| (row, column)))
+                .map(|(row, column)| of(row, column))
+                .sum();
+            averages.push(sum / count);
+        }
+    }
+    (found, averages)
 }
 
 impl std::fmt::Display for Size {
@@ -54,6 +80,13 @@ impl Picture {
             return Err(ImageError::Count { expected, passes: 1, found });
         }
         Ok(Self { size, values, rounding: 0.0 })
+    }
+
+    /// Returns the averages of blocks of `block` × `block` pixels; those at the right and at the foot may be smaller.
+    #[must_use]
+    pub fn averaged(&self, block: NonZeroUsize) -> Self {
+        let (size, values) = averages(self.size, &self.values, block.get());
+        Self { size, values, rounding: self.rounding }
     }
 
     /// How large it is.
@@ -92,6 +125,16 @@ impl Stack {
         Ok(Self { size, passes, values, rounding: 0.0 })
     }
 
+    /// Returns passes of averages of blocks of `block` × `block` pixels. Where a filter blends pixels, averages of blocks
+    /// wider than it are nearly independent of each other, as pixels are without it.
+    #[must_use]
+    pub fn averaged(&self, block: NonZeroUsize) -> Self {
+        let (size, passes, rounding) = (self.size, self.passes, self.rounding);
+        let of = |pass: usize| averages(size, self.pass(pass), block.get());
+        let values = (0..passes).flat_map(|pass| of(pass).1).collect();
+        Self { size: averages(size, self.pass(0), block.get()).0, passes, values, rounding }
+    }
+
     /// How large each pass is.
     pub fn size(&self) -> Size {
         self.size
@@ -112,5 +155,22 @@ impl Stack {
     pub(super) fn grey(&self, pass: usize, pixel: usize) -> f64 {
         let channels = self.size.channels;
         self.pass(pass)[pixel * channels..(pixel + 1) * channels].iter().sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_averaged_each_channel_by_itself() {
+        let size = Size { rows: 2, columns: 3, channels: 2 };
+        let values: Vec<f64> = (0..24).map(f64::from).collect();
+        let stack = Stack::new(2, size, values).expect("a stack");
+        let block = NonZeroUsize::new(2).expect("two");
+        let found = stack.averaged(block);
+        assert_eq!(found.size(), Size { rows: 1, columns: 2, channels: 2 });
+        // (0 + 2 + 6 + 8)/4, each channel one more; then the last column, (4 + 10)/2; the second pass has 12 more.
+        assert_eq!(found.values, [4.0, 5.0, 7.0, 8.0, 16.0, 17.0, 19.0, 20.0]);
     }
 }

@@ -184,7 +184,11 @@ pub(super) fn off(judgement: &Judgement, tile: &Tile) -> String {
     } else {
         String::new()
     };
-    format!("the mean{channel} is off by {told} (ln E = {:.1})", tile.ln_e)
+    let p = match (&judgement.comparison, tile.p) {
+        (Some(_), Some(p)) => format!("p = {}, ", short(p, 2)),
+        _ => String::new(),
+    };
+    format!("the mean{channel} is off by {told} ({p}ln E = {:.1})", tile.ln_e)
 }
 
 /// What is wrong with a value.

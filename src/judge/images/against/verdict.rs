@@ -66,14 +66,21 @@ fn open(judgement: &Judgement, comparison: &Comparison, differing: usize) -> Vec
     let mut open = Vec::new();
     if differing > 0 {
         let p = short(comparison.p, 2);
-        let why = if judgement.neighbours.is_refuted() {
-            "pixels depend on each other, so that nothing follows for means of different laws"
+        let (why, cure) = if judgement.neighbours.is_refuted() {
+            (
+                "pixels depend on each other, so that nothing follows for means of different laws",
+                "judge averages of blocks wider than the filter by --average N",
+            )
         } else {
-            "with the kurtosis of these values it may be the shape of the law and not its mean"
+            (
+                "with the kurtosis of these values it may be the shape of the law and not its mean",
+                "render more passes",
+            )
         };
+        let all = judgement.tiles.len() + judgement.whole.len();
         open.push(format!(
-            "the stacks have different laws in {differing} tiles or the whole (p = {p}), but {why}; render more passes, or \
-             claim by --same-law that both renderers have one law in each pixel"
+            "the stacks have different laws in {differing} of {all} tiles and wholes (p = {p}), but {why}; {cure}, or claim by \
+             --same-law that both renderers have one law in each pixel"
         ));
     }
     if comparison.method == "none" {

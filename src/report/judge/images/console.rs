@@ -98,17 +98,18 @@ fn against_line(found: &Comparison) -> String {
 }
 
 /// Mean, error, truth and z.
-fn numbers(tile: &Tile) -> String {
+fn numbers(judgement: &Judgement, tile: &Tile) -> String {
+    let truth = if judgement.comparison.is_some() { "reference" } else { "truth" };
     let z = tile.z.map_or(String::new(), |z| format!(", z = {}", signed(z)));
     let (mean, error) = (fixed(tile.mean, 8), short(tile.standard_error, 3));
     let p = tile.p.map_or(String::new(), |p| format!(", p = {}", short(p, 2)));
-    format!("{mean} ± {error}, truth {}{z}{p}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
+    format!("{mean} ± {error}, {truth} {}{z}{p}, ln E = {:.1}", short(tile.truth, 10), tile.ln_e)
 }
 
 fn whole_line(judgement: &Judgement, whole: &Tile) -> String {
     let tolerance = whole.tolerance.map_or(String::new(), |x| format!(", ε = {}", percent(x)));
     let channel = channel(judgement, whole);
-    format!("{channel}{}{tolerance}: {}", numbers(whole), whole.verdict.word())
+    format!("{channel}{}{tolerance}: {}", numbers(judgement, whole), whole.verdict.word())
 }
 
 fn tiles(judgement: &Judgement) -> String {
@@ -127,7 +128,10 @@ fn tiles(judgement: &Judgement) -> String {
 fn worst_line(judgement: &Judgement, tile: &Tile) -> String {
     let Tile { row, column, height, width, .. } = tile;
     let (channel, word) = (channel(judgement, tile), tile.verdict.word());
-    format!("{height} × {width} at row {row}, column {column}: {channel}{}: {word}", numbers(tile))
+    format!(
+        "{height} × {width} at row {row}, column {column}: {channel}{}: {word}",
+        numbers(judgement, tile)
+    )
 }
 
 fn dependence(found: &Dependence, evidence: &str, untested: &str) -> String {

@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use trueflight::rng::{Address, unit};
+
 use super::super::{Place, npy, raw};
 use super::{Law, draws, values};
 
@@ -34,6 +36,47 @@ fn the_command_takes_estimated_variances_and_references() {
     place.expect(2, &format!("--images --against nowhere.npy {passes}"), &["nowhere.npy"]);
     place.expect(3, &format!("--images --against {passes} {passes}"), &["share values"]);
     place.expect(2, &format!("{known} --kurtosis 0.5 {passes}"), &["kurtosis"]);
+}
+
+/// Passes of 96 × 96 pixels that a filter of 3 × 3 blends, with a brighter square.
+fn blended(seed: u64, factor: f64) -> Vec<u8> {
+    let mut rng = Address { seed, experiment: 33, block: 0, lane: 0 }.stream();
+    let mut values = Vec::new();
+    for _ in 0..32 {
+        let noise: Vec<f64> = (0..98 * 98).map(|_| -(1.0 - unit(&mut rng)).ln()).collect();
+        for (row, column) in (0..96).flat_map(|row| (0..96).map(move |column| (row, column))) {
+            let is_bad = (32..64).contains(&row) && (32..64).contains(&column);
+            let places = (0..9).map(|k| (row + k / 3) * 98 + column + k % 3);
+            let mean = places.map(|place| noise[place]).sum::<f64>() / 9.0;
+            values.push(if is_bad { factor * mean } else { mean });
+        }
+    }
+    npy("<f8", "(32, 96, 96)", &raw(&values))
+}
+
+#[test]
+fn averages_of_blocks_wider_than_a_filter_are_judged_as_pixels() {
+    let place = Place::new(&[
+        ("good.npy", &blended(1, 1.0)),
+        ("bad.npy", &blended(2, 1.3)),
+        ("other.npy", &blended(3, 1.0)),
+    ]);
+    let against = "--images --against other.npy --tile";
+    place.expect(3, &format!("{against} 16 bad.npy"), &["different laws", "--average N"]);
+    place.expect(1, &format!("{against} 16 --same-law bad.npy"), &["rows 32 to 63"]);
+    // Tiles of 4 × 4 blocks of 8 × 8 pixels; 0.3 √(32 · 1024/2) = 38 standard errors.
+    place.expect(
+        1,
+        &format!("{against} 4 --average 8 bad.npy"),
+        &["12 × 12 pixels", "rows 4 to 7"],
+    );
+    let (code, text) = place.says(&format!("{against} 4 --average 8 good.npy"), &[]);
+    assert_ne!(code, 1, "{text}");
+    let known = "--images --truth 1 --variance-stack other.npy --tile";
+    place.expect(3, &format!("{known} 16 bad.npy"), &["not independent"]);
+    place.expect(1, &format!("{known} 4 --average 8 bad.npy"), &["rows 4 to 7, columns 4 to 7"]);
+    place.expect(2, "--images --truth 1 --variance 1 --average 2 good.npy", &["cannot be used"]);
+    place.expect(2, &format!("{known} 4 --average 0 good.npy"), &["--average"]);
 }
 
 #[test]
