@@ -18,6 +18,12 @@ const PLAIN: f64 = 6.0;
 /// Coefficient of 1/√ν in that limit.
 const FEW: f64 = 3.0;
 
+/// Factor of the limit where evidence from some draw on refutes the claim, and that of all draws does not.
+const HINTED: f64 = 0.6;
+/// Factor of the limit for pairs of blocks.
+const PAIRS: f64 = 1.1;
+/// Maximum number of parts that changes are looked for between.
+const MAX_PARTS: usize = 512;
 /// Expected number of events of which none comes with probability e⁻²⁰.
 const MISSED: f64 = 20.0;
 
@@ -61,36 +67,36 @@ impl Scalar {
         (shown.max(known) > limit(carry)).then_some(shown.copysign(off))
     }
 
-    /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two blocks.
+    /// The most significant change of the mean, if it is beyond the limit: from a block on, else between two blocks. Where the
+    /// mean of all draws does not fail and that of later ones does, less is enough.
     pub(super) fn obvious_change(&self) -> Option<Change> {
         let (n, mean) = (self.past.draws() as f64, self.past.mean());
         let (carry, variance) = (self.past.effective_draws(), self.past.variance());
-        let mut sum = 0.0;
-        // What the blocks so far have more than their share, beside their number of draws.
-        let mut path = vec![(0.0, 0u64)];
-        for &(block, draws) in &self.sums {
+        let need = if self.has_failed() { 1.0 } else { HINTED };
+        // The excess of the blocks so far over their share, beside their number of draws; of many blocks every k-th.
+        let every = self.sums.len().div_ceil(MAX_PARTS).max(1);
+        let (mut sum, mut path) = (0.0, vec![(0.0, 0u64)]);
+        for (&(block, draws), index) in self.sums.iter().zip(1..) {
             sum += block;
-            path.push((sum - mean * draws as f64, draws));
+            if index % every == 0 || index == self.sums.len() {
+                path.push((sum - mean * draws as f64, draws));
+            }
         }
         let end = path.len() - 1;
-        let between = |a: usize, b: usize| {
+        let between = |a: usize, b: usize, need: f64| {
             let (excess, inside) = (path[b].0 - path[a].0, (path[b].1 - path[a].1) as f64);
             let share = inside / n;
             let z = excess / (variance * inside * (1.0 - share)).sqrt();
-            let is_plain = z.abs() > limit(carry * share.min(1.0 - share));
+            let is_plain = z.abs() > need * limit(carry * share.min(1.0 - share));
             let to = (b < end).then_some(path[b].1);
             is_plain.then(|| Change { from: path[a].1, to, off: mean + excess / inside, z })
         };
         let larger = |a: &Change, b: &Change| a.z.abs().total_cmp(&b.z.abs());
-        let from_one_on = (1..end).filter_map(|a| between(a, end)).max_by(larger);
+        let from_one_on = (1..end).filter_map(|a| between(a, end, need)).max_by(larger);
         from_one_on.or_else(|| {
-            let place = |(index, _): (usize, &(f64, u64))| index;
-            let by_excess =
-                |a: &(usize, &(f64, u64)), b: &(usize, &(f64, u64))| a.1.0.total_cmp(&b.1.0);
-            let lowest = path.iter().enumerate().min_by(by_excess).map(place)?;
-            let highest = path.iter().enumerate().max_by(by_excess).map(place)?;
-            let (a, b) = (lowest.min(highest), lowest.max(highest));
-            if a < b { between(a, b) } else { None }
+            // So many more pairs reach the limit a little more easily.
+            let pairs = (1..end).flat_map(|a| (a + 1..end).map(move |b| (a, b)));
+            pairs.filter_map(|(a, b)| between(a, b, PAIRS * need)).max_by(larger)
         })
     }
 }
