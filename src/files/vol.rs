@@ -104,8 +104,8 @@ impl<'a> Vol<'a> {
         let corner = |n: usize| [0, 1, 2].map(|i| f64::from(f32::from_le_bytes(word(n + i))));
         let samples = &bytes[HEADER..];
         let width = encoding.number().map_or(0, Number::width) as u64;
-        let factors = size.into_iter().chain([channels]);
-        let wanted = factors.fold(Some(width), |product, n| product?.checked_mul(n));
+        let mut factors = size.into_iter().chain([channels]);
+        let wanted = factors.try_fold(width, u64::checked_mul);
         if wanted.is_none_or(|wanted| wanted != samples.len() as u64) {
             let than = if wanted.is_none_or(|wanted| wanted > samples.len() as u64) {
                 "shorter"

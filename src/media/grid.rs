@@ -32,7 +32,7 @@
 //!
 //! `.vol`: float32, float16 or uint8, of which 255 is 1; of several channels `channel` is read. `.pbrt`: the density of a
 //! `uniformgrid` medium and its box; pbrt's σ_t is that times `scale` and `sigma_a + sigma_s`, which is given as
-//! `extinction`. `.nvdb`: grids of the types Float, Fp4, Fp8, Fp16 and FpN, of `NanoVDB` 32, plain, zipped or Blosc.
+//! `extinction`. `.nvdb`: grids of the types Float, Fp4, Fp8, Fp16 and `FpN`, of `NanoVDB` 32, plain, zipped or Blosc.
 //!
 //! A `.vdb` or `.nvdb` file says itself where its voxels stand, and takes neither `bounds` nor `samples` nor `border`: the voxel
 //! (i, j, k) is a sample at matrix·(i, j, k) + shift of its transform. Beside the voxels that are not background stand

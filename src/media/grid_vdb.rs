@@ -109,12 +109,11 @@ fn dense(grid: &Grid, low: [i64; 3], high: [i64; 3]) -> Result<Samples, Unreadab
             samples[row + x..row + x + edge].fill(value.into());
         }
     }
-    let (bounds, turned) = match scale {
-        Some(scale) => (along_axes(scale, grid.transform.shift, [low, high])?, None),
-        None => {
-            let (bounds, turned) = turned(&grid.transform, [low, high])?;
-            (bounds, Some(turned))
-        }
+    let (bounds, turned) = if let Some(scale) = scale {
+        (along_axes(scale, grid.transform.shift, [low, high])?, None)
+    } else {
+        let (bounds, turned) = turned(&grid.transform, [low, high])?;
+        (bounds, Some(turned))
     };
     Ok(Samples { size, values: samples, bounds: Some(bounds), turned, remark: String::new() })
 }

@@ -27,7 +27,7 @@ pub fn items(path: &Path) -> anyhow::Result<Vec<Item>> {
         let format = Format::Csv { column: Some(Column::Index(place)), lookups: lookups.clone() };
         let item = column(Draws::open(path, format)?, &file)?;
         let (format, kind) = ("table of draws".to_owned(), "text".to_owned());
-        items.push(Item { format, kind, name, ..item });
+        items.push(Item { format, name, kind, ..item });
     }
     Ok(items)
 }
@@ -54,7 +54,9 @@ fn column(mut draws: Draws, file: &str) -> anyhow::Result<Item> {
     let (mut spread, mut count, mut buffer) = (Spread::default(), 0, Vec::new());
     while draws.read(&mut buffer, BLOCK)? > 0 {
         count += buffer.len() as u64;
-        buffer.iter().for_each(|&draw| spread.add(draw, 1.0));
+        for &draw in &buffer {
+            spread.add(draw, 1.0);
+        }
     }
     let mut item =
         Item { file: file.to_owned(), size: vec![count], counts: "draws", ..Item::default() };

@@ -10,12 +10,12 @@
 //! ```
 //!
 //! All numbers are little-endian. Versions 32.x are read, which have one layout, and grids of the types Float, Fp4, Fp8, Fp16
-//! and FpN. A file that begins with "NanoVDB1" is one grid as it lies in memory. Other types are named in the error.
+//! and `FpN`. A file that begins with `NanoVDB1` is one grid as it lies in memory. Other types are named in the error.
 //!
 //! No crate reads these files. No place that the file names is trusted: each part is taken from the bytes that are
 //! there, and no more nodes are visited than fit into them.
 //!
-//! Source: K. Museth, *NanoVDB: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And Simulation*,
+//! Source: K. Museth, *`NanoVDB`: A GPU-Friendly and Portable VDB Data Structure For Real-Time Rendering And Simulation*,
 //! SIGGRAPH Talks 2021; the layout is that of `NanoVDB.h`, `PNanoVDB.h` and `io/IO.h`, versions 32.4 and 32.9.
 
 mod listing;

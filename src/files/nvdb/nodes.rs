@@ -94,7 +94,6 @@ impl Reader<'_> {
         let axis = |shift: u32| -> i32 {
             // Twenty bits of them are those of a coordinate.
             let high = (key >> shift) & 0xf_ffff;
-            #[expect(clippy::cast_possible_truncation)] // 20 bits
             (((high as u32) << 12).cast_signed())
         };
         let origin = [axis(42), axis(21), axis(0)];

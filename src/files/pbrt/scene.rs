@@ -32,12 +32,15 @@ struct Medium {
 
 const ADVICE: &str = "give one, as in MakeNamedMedium \"smoke\" \"string type\" \"uniformgrid\" \"integer nx\" [ 64 ] …";
 
+/// A medium by its name.
+pub type Named = (String, Result<Grid, Fault>);
+
 /// The media of a scene file that are grids, with what is wrong with one.
 ///
 /// # Errors
 ///
 /// The text is no scene file, or has no medium.
-pub fn grids(text: &str) -> Result<Vec<(String, Result<Grid, Fault>)>, Fault> {
+pub fn grids(text: &str) -> Result<Vec<Named>, Fault> {
     let (media, included) = media(text)?;
     if media.is_empty() {
         return match included {
@@ -58,7 +61,7 @@ pub fn grids(text: &str) -> Result<Vec<(String, Result<Grid, Fault>)>, Fault> {
 /// Whatever keeps the file from having such a medium.
 pub fn read(text: &str, name: Option<&str>) -> Result<Grid, Fault> {
     let mut media = grids(text)?;
-    let list = |media: &[(String, Result<Grid, Fault>)]| {
+    let list = |media: &[Named]| {
         media.iter().map(|(name, _)| shown(name)).take(20).collect::<Vec<_>>().join(", ")
     };
     if let Some(name) = name {
@@ -99,7 +102,7 @@ fn media(text: &str) -> Result<(Vec<Medium>, Option<String>), Fault> {
             "WorldBegin" | "Identity" => moved = Moved::default(),
             "AttributeBegin" | "TransformBegin" | "ObjectBegin" => outer.push(moved.clone()),
             "AttributeEnd" | "TransformEnd" | "ObjectEnd" => {
-                moved = outer.pop().unwrap_or_default()
+                moved = outer.pop().unwrap_or_default();
             }
             "Translate" => moved.translate(three(&mut words)?),
             "Scale" => moved.scale(three(&mut words)?),
@@ -123,7 +126,7 @@ fn three(words: &mut Words) -> Result<[f64; 3], Fault> {
     for number in &mut numbers {
         match words.next()? {
             Some(Word::Plain(text)) if text.parse::<f64>().is_ok() => {
-                *number = text.parse().unwrap_or_default()
+                *number = text.parse().unwrap_or_default();
             }
             _ => {
                 return words.wrong(

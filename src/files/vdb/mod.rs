@@ -68,12 +68,15 @@ pub struct Listed {
     pub is_read: bool,
 }
 
-/// Lists the grids of a file, or what is wrong with the beginning of one.
+/// An entry, or the name of a grid and the fault of its beginning.
+pub type Entered = Result<Listed, (String, Fault)>;
+
+/// Lists the grids of a file.
 ///
 /// # Errors
 ///
 /// The file is not one of the kind that is described above.
-pub fn list(file: &[u8]) -> Result<Vec<Result<Listed, (String, Fault)>>, Fault> {
+pub fn list(file: &[u8]) -> Result<Vec<Entered>, Fault> {
     let mut bytes = Bytes::new(file);
     let entries = header::entries(&mut bytes)?;
     let mut listed = Vec::new();
