@@ -94,7 +94,7 @@ impl Reader<'_> {
         let axis = |shift: u32| -> i32 {
             // Twenty bits of them are those of a coordinate.
             let high = (key >> shift) & 0xf_ffff;
-            (((high as u32) << 12).cast_signed())
+            ((high as u32) << 12).cast_signed()
         };
         let origin = [axis(42), axis(21), axis(0)];
         let child = word(self.bytes, at + 8)?.cast_signed();
