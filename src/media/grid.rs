@@ -73,8 +73,8 @@ pub struct Grid {
 pub struct GridRay {
     voxels: Arc<Voxels>,
     track: Track,
-    /// The numbers that make the track's beginning.
-    terms: [f64; 3],
+    /// Sizes of the numbers that make the track's beginning and its slope.
+    terms: [[f64; 3]; 2],
     cells: Cells,
     cubics: Vec<[f64; 4]>,
     lookups: Cubics,
@@ -128,8 +128,8 @@ impl OpticalDepth for GridRay {
         let depth = self.cells.integrate(span, |index, cell, part| self.part(index, cell, part));
         // Places are off by their rounding, and the field changes by less than its highest sample
         // in a cell; where it jumps, each plane moves by the rounding of its distance.
-        let (terms, slope) = (self.terms, self.track.slope);
-        let reach = |t: f64| (0..3).map(move |j| terms[j] + (slope[j] * t).abs());
+        let [start, slope] = self.terms;
+        let reach = |t: f64| (0..3).map(move |j| start[j] + slope[j] * t.abs());
         let places = span.length() * reach(span.to.abs().max(span.from.abs())).sum::<f64>();
         let jumps =
             if self.voxels.jumps() { self.cells.count() as f64 * span.to.abs() } else { 0.0 };

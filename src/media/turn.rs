@@ -45,11 +45,12 @@ impl Turn {
         self.rows.map(|row| dot(row, direction))
     }
 
-    /// Sizes whose rounding, 2 ε of each, bounds that of a point's lattice coordinates: a difference, a product and three sums
-    /// are rounded, by ε/2 of the three terms each.
-    pub(super) fn terms(&self, point: [f64; 3], shift: f64) -> [f64; 3] {
+    /// Sizes for a beginning and a direction: 2 ε of each bounds the rounding of its lattice coordinates. Up to five
+    /// operations round the three terms, by ε/2 each.
+    pub(super) fn terms(&self, [point, direction]: [[f64; 3]; 2], shift: f64) -> [[f64; 3]; 2] {
         let far = [0, 1, 2].map(|j| (point[j] - self.origin[j]).abs());
-        self.rows.map(|row| 1.5 * dot(row.map(f64::abs), far) + shift)
+        let size = |terms: [f64; 3]| self.rows.map(|row| 1.25 * dot(row.map(f64::abs), terms));
+        [size(far).map(|x| x + shift), size(direction.map(f64::abs))]
     }
 
     /// A value at a place of the lattice; 0 outside it.

@@ -125,11 +125,14 @@ impl Voxels {
         Track { start: self.lattice(ray.origin.0), slope }
     }
 
-    /// The largest numbers that make a ray's beginning in lattice coordinates: its rounding is theirs.
-    pub fn terms(&self, ray: &Ray) -> [f64; 3] {
+    /// Sizes for a ray's beginning and its slope: 2 ε of each bounds the rounding of lattice coordinates.
+    pub fn terms(&self, ray: &Ray) -> [[f64; 3]; 2] {
         match &self.turn {
-            Some(turn) => turn.terms(ray.origin.0, self.shift),
-            None => self.lattice(ray.origin.0).map(f64::abs),
+            Some(turn) => turn.terms([ray.origin.0, ray.direction.0], self.shift),
+            None => {
+                let Track { start, slope } = self.track(ray);
+                [start.map(f64::abs), slope.map(f64::abs)]
+            }
         }
     }
 

@@ -48,7 +48,8 @@ fn text(bytes: &[u8]) -> String {
 /// Turned lattices, and a background that is not 0, against `OpenVDB`'s samplers and rational arithmetic.
 #[test]
 fn turned_lattices_and_backgrounds_are_those_of_openvdb() {
-    assert_eq!(crate::vdb::agrees("grids"), 7);
+    // A turned place is a sum of three products along each axis, with as many roundings.
+    assert_eq!(crate::vdb::agrees("grids", 4e-12), 7);
 }
 
 #[test]
@@ -63,7 +64,7 @@ fn a_background_ends_at_its_box_and_plan_says_so() {
     assert!(message.contains("background is -0.5") && help.contains("not negative"), "{message}");
 }
 
-/// Walks through a turned grid: the light of a furnace is 1, and draws agree with the exact transmittance.
+/// Draws through turned grids agree with the exact transmittance.
 #[test]
 fn estimators_pass_in_a_turned_grid() {
     let folder = data("grids");
@@ -72,9 +73,9 @@ fn estimators_pass_in_a_turned_grid() {
             "title = \"t\"
             [problem.transmittance]
             volume.grid = {{ file = \"{0}/{file}\", extinction = 0.5 }}
-            ray = {{ origin = [4, -2.5, 2], direction = [0.1, 0.3, 0.4], length = 9 }}
+            ray = {{ origin = [0.46, -0.45, 3.22], direction = [1, 0.2, -0.3], length = 9 }}
             sampling.constant.value = 2
-            estimators = [{{ ratio = {{}} }}, {{ woodcock = {{}} }}, {{ closed-form = {{}} }}]",
+            estimators = [{{ ratio = {{}} }}, {{ woodcock = {{}} }}]",
             folder.display()
         )
     };
@@ -82,9 +83,10 @@ fn estimators_pass_in_a_turned_grid() {
         let ray = if file.contains("filled") {
             "origin = [-3, 1, 1], direction = [1, 0.1, 0]"
         } else {
-            "origin = [4, -2.5, 2], direction = [0.1, 0.3, 0.4]"
+            "origin = [0.46, -0.45, 3.22], direction = [1, 0.2, -0.3]"
         };
-        let text = read(file).replace("origin = [4, -2.5, 2], direction = [0.1, 0.3, 0.4]", ray);
+        let text =
+            read(file).replace("origin = [0.46, -0.45, 3.22], direction = [1, 0.2, -0.3]", ray);
         let rows = crate::common::rows(&text, 200_000);
         let words = crate::common::failing(&rows);
         assert!(rows[0].truth.is_some_and(|truth| truth < 0.95), "{file}: {:?}", rows[0].truth);

@@ -149,11 +149,11 @@ fn furnaces_refuse_a_ray_beside_their_volume() {
     assert!(notes(&text("[-5, 0.5, 0.5]")).is_empty());
 }
 
-/// Of the shipped cases one is about a ray that misses, and no other has a note.
+/// Of the shipped cases two are about rays that meet nothing, and no other has a note.
 #[test]
-fn one_shipped_case_has_a_note() {
+fn two_shipped_cases_have_a_note() {
     let cases = crate::common::shipped();
     let noted = cases.iter().filter(|case| !case.scenario.notes().is_empty());
     let names: Vec<&str> = noted.map(|case| case.name.as_str()).collect();
-    assert_eq!(names, ["transmittance/eq21-missing"]);
+    assert_eq!(names, ["transmittance/eq21-missing", "transmittance/eq21-zero-length"]);
 }
