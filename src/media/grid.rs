@@ -72,8 +72,7 @@ pub struct Grid {
 /// A voxel grid along a ray.
 pub struct GridRay {
     voxels: Arc<Voxels>,
-    track: Track,
-    /// Sizes of the numbers that make the track's beginning and its slope.
+    /// Sizes of the numbers that make the beginning and the slope on the lattice.
     terms: [[f64; 3]; 2],
     cells: Cells,
     cubics: Vec<[f64; 4]>,
@@ -108,7 +107,7 @@ impl GridRay {
             voxels.cubic(track.at(middle), track.at(from), track.slope)
         });
         let terms = voxels.terms(ray);
-        Self { voxels, track, terms, cells, cubics, lookups }
+        Self { voxels, terms, cells, cubics, lookups }
     }
 
     fn part(&self, index: usize, cell: Span, part: Span) -> f64 {
@@ -290,7 +289,7 @@ mod tests {
                 let seen = GridRay::new(field.clone(), &ray, inside);
                 for n in 0..=20_000 {
                     let t = inside.from + inside.length() * (f64::from(n) / 20_000.0);
-                    let Track { start, slope } = seen.track;
+                    let Track { start, slope } = field.track(&ray);
                     let at: [f64; 3] = std::array::from_fn(|j| start[j] + slope[j] * t);
                     // The field changes by less than its largest sample in a cell.
                     let place: f64 =
