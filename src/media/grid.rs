@@ -55,7 +55,6 @@ use super::grid_file::Format;
 use super::grid_settings::{
     facts, format, no_placement, own_bounds, read_bounds, read_placement, read_samples,
 };
-use super::lattice::Track;
 use super::voxels::{Interpolation, Placement, Voxels};
 use super::{Extinction, Field, FreeFlight, OpticalDepth, Smoothness};
 use crate::catalogue::{Domain, Settings};
@@ -228,7 +227,7 @@ impl Field for Grid {
 #[cfg(test)]
 mod tests {
     use super::super::grid_file::Samples;
-    use super::super::lattice;
+    use super::super::lattice::{self, Track};
     use super::*;
     use crate::geometry::Point;
 
