@@ -27,6 +27,9 @@ pub(super) type Unsuitable = (String, &'static str);
 /// The size of a case's own grids, and whether lookups take the nearest sample.
 pub(super) type OwnGrid = ([usize; 3], bool);
 
+/// The volumes and albedos of channels, and their common phase function.
+pub(super) type Scatterers = (Vec<Arc<Volume>>, Vec<f64>, Phase);
+
 /// The options of one export.
 pub(super) struct Reader<'a> {
     /// The name of the case.
@@ -103,7 +106,7 @@ impl Reader<'_> {
     pub fn scatterers(
         &self,
         channels: Vec<spectral_furnace::Channel>,
-    ) -> Result<(Vec<Arc<Volume>>, Vec<f64>, Phase), Unsuitable> {
+    ) -> Result<Scatterers, Unsuitable> {
         let channels = self.chosen(channels)?;
         let phases: Vec<Phase> = channels.iter().map(|channel| channel.phase).collect();
         let volumes = channels.iter().map(|channel| channel.volume.clone()).collect();

@@ -75,7 +75,9 @@ fn medium(scene: &Scene, text: &mut String) {
         // Constant volumes hold numbers from 0 to 1: up to Mitsuba 3.4 it refuses others.
         let scale = scene.peak();
         if scale > 1.0 {
-            extinctions.iter_mut().for_each(|extinction| *extinction /= scale);
+            for extinction in &mut extinctions {
+                *extinction /= scale;
+            }
             let _ = writeln!(text, "    <float name=\"scale\" value=\"{}\"/>", number(scale));
         }
         let _ = writeln!(text, "    {}", value("sigma_t", &extinctions));

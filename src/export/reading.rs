@@ -10,6 +10,7 @@
 //!
 //! A homogeneous medium is written as one, in a box or a ball.
 
+use std::slice;
 use std::sync::Arc;
 
 use super::error::ExportError;
@@ -267,7 +268,7 @@ impl Reader<'_> {
         let problem = SingleScattering::read(Some(&body), settings).ok_or_else(unread)?;
         let media::Body::Volume { volume, ray, .. } = &body else { return Err(unread()) };
         let phase = lobe(Phase::read(settings).ok_or_else(unread)?);
-        let fields = self.in_space(&[volume.clone()], self.own_grids(settings, 1)?)?;
+        let fields = self.in_space(slice::from_ref(volume), self.own_grids(settings, 1)?)?;
         self.lit(settings, fields, ray, (vec![problem.albedo()], phase))
     }
 
@@ -315,7 +316,8 @@ impl Reader<'_> {
                 cure,
             ));
         }
-        let fields = self.in_space(&[sphere.scene.volume.clone()], self.own_grids(settings, 1)?)?;
+        let fields =
+            self.in_space(slice::from_ref(&sphere.scene.volume), self.own_grids(settings, 1)?)?;
         if !matches!(fields.shape, Bounds::Sphere { .. }) {
             let why = "a ball whose σ_t varies is none once it is sampled to a grid";
             return Err((why.into(), cure));

@@ -94,7 +94,9 @@ pub fn vol(channels: &[&Sampled]) -> Vec<u8> {
     };
     let channels: Vec<&Sampled> = (0..count).filter_map(of_channel).copied().collect();
     for index in 0..first.values.len() {
-        channels.iter().for_each(|grid| bytes.extend(grid.values[index].to_le_bytes()));
+        for grid in &channels {
+            bytes.extend(grid.values[index].to_le_bytes());
+        }
     }
     bytes
 }

@@ -65,6 +65,14 @@ impl Field {
         }
     }
 
+    /// The samples, unless the medium is homogeneous.
+    pub fn grid(&self) -> Option<&Sampled> {
+        match self {
+            Self::Even(_) => None,
+            Self::Grid(grid) => Some(grid),
+        }
+    }
+
     /// Whether every value can be an extinction in single precision.
     pub fn is_extinction(&self) -> bool {
         match self {
@@ -108,12 +116,9 @@ pub enum Light {
 
 impl Scene {
     /// The samples of the channels, where the medium is not homogeneous; one where all have the same.
-    pub fn grids<'a>(&'a self) -> Vec<&'a Sampled> {
-        let grid = |channel: &'a Channel| match &channel.field {
-            Field::Grid(grid) => Some(grid),
-            Field::Even(_) => None,
-        };
-        let mut grids: Vec<&'a Sampled> = self.channels.iter().filter_map(grid).collect();
+    pub fn grids(&self) -> Vec<&Sampled> {
+        let fields = self.channels.iter().map(|channel| &channel.field);
+        let mut grids: Vec<&Sampled> = fields.filter_map(Field::grid).collect();
         if grids.windows(2).all(|pair| pair[0] == pair[1]) {
             grids.truncate(1);
         }

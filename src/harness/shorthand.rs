@@ -101,7 +101,9 @@ impl Writer<'_> {
         for Entry { key, node, .. } in settings {
             let Some((_, setting)) = known.iter().find(|(name, _)| name == key) else { continue };
             if let Value::Array(items) = &mut node.value {
-                items.iter_mut().for_each(|item| self.constant(item, [key, setting], path));
+                for item in items {
+                    self.constant(item, [key, setting], path);
+                }
             } else {
                 self.constant(node, [key, setting], path);
             }

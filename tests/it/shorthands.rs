@@ -109,7 +109,9 @@ fn phases_lights_and_bounds_may_be_names_too() {
     assert_eq!(results(&long), results(&short));
     let told = |text: &str, words: &[&str]| {
         let told = mistakes(text).unwrap_or_else(|| panic!("{text} was read")).render(false);
-        words.iter().for_each(|words| assert!(told.contains(words), "{text}\n{told}"));
+        for words in words {
+            assert!(told.contains(words), "{text}\n{told}");
+        }
     };
     told(
         &slab(" = \"henyey-greenstein\"", " = \"diffuse\""),

@@ -40,7 +40,7 @@ fn channels(list: &[usize]) -> Wishes {
     Wishes { channels: Some(list.to_vec()), ..Wishes::default() }
 }
 
-/// The cube of the field: T = exp(−σ_t · 2), σ_t = ½, 1, 2.
+/// The cube of the field: `T = exp(−2 σ_t)`, `σ_t` = ½, 1, 2.
 fn cube() -> Source {
     written(include_str!("../../data/field/03-coloured-media/three.toml"))
 }
