@@ -141,9 +141,8 @@ fn line(one: &Series, quantity: &Quantity, panel: &Panel) -> Line {
         let has_place = points.iter().any(|&(x, y)| panel.spot(x, y).is_some());
         return if has_place { Line::Points(points) } else { Line::None };
     }
-    let level = one.rows.iter().filter(|row| row.swept.is_none());
-    let level =
-        level.filter_map(|row| (quantity.predicted)(row).or((quantity.measured)(row))).next();
+    let mut fixed = one.rows.iter().filter(|row| row.swept.is_none());
+    let level = fixed.find_map(|row| (quantity.predicted)(row).or((quantity.measured)(row)));
     level.filter(|&y| panel.down(y).is_some()).map_or(Line::None, Line::Level)
 }
 
