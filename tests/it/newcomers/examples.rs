@@ -71,9 +71,13 @@ fn every_case_that_is_shown_passes_when_it_is_run() {
     none(&wrong("run", &cases));
 }
 
+/// `check` makes a tenth of the draws where a case does not say how many.
 #[test]
 fn every_case_that_is_shown_passes_in_a_ci() {
-    none(&wrong("check", &shown("[problem.")));
+    let mut cases = shown("[problem.");
+    cases.retain(|(_, text)| !text.contains("\ndraws = "));
+    assert!(!cases.is_empty());
+    none(&wrong("check", &cases));
 }
 
 #[test]
