@@ -30,7 +30,7 @@ pub struct Arguments {
     /// Print every row, not only those that do not pass
     #[arg(long, short)]
     verbose: bool,
-    /// How the rows are printed; csv and json have all of them
+    /// Form of the rows on stdout; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }

@@ -53,7 +53,7 @@ pub struct Arguments {
     /// Print every row, not only those that do not pass
     #[arg(long, short)]
     pub verbose: bool,
-    /// How the rows are printed; csv and json have all of them
+    /// Form of the rows on stdout; csv and json have all of them
     #[arg(long, value_enum, default_value_t)]
     pub format: Format,
 }

@@ -183,10 +183,10 @@ pub struct Row {
     /// Empty where no number of draws does, and for all others.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub decide: String,
-    /// Of a plan: `inconclusive` or `underpowered` where the planned draws are too few for a pass.
+    /// `inconclusive` or `underpowered` where a plan has too few draws for a pass; `None` in a run.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foreseen: Option<Verdict>,
-    /// Of a plan: how many draws such a row needs; `None` where no number of draws is enough.
+    /// Draws that such a row of a plan needs; `None` where no number of draws is enough.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub needed_draws: Option<f64>,
     /// The mean of the draws.

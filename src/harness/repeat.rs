@@ -86,8 +86,8 @@ pub fn deciding(
     if draws > MAX_DRAWS { String::new() } else { check(plan, case, planned, &enough(draws)) }
 }
 
-/// The command that decides all experiments of a case that the planned draws leave inconclusive; empty where there is
-/// none that a number of draws decides.
+/// The command that decides all experiments of a case that the planned draws leave inconclusive; empty where no number
+/// of draws does.
 pub fn deciding_all(plan: &Plan, case: &PlannedCase) -> String {
     let ready = case.experiments.iter().filter(|planned| planned.outcome.is_ok());
     let open = ready.filter(|planned| {

@@ -62,8 +62,8 @@ impl Store {
         self.files.iter().find_map(|file| file.standing(experiment).cloned())
     }
 
-    /// The blocks of pieces, in their order: read where they are in a file, drawn and kept otherwise. `listen` is told
-    /// how many draws each piece was.
+    /// The blocks of pieces, in their order: read where they are in a file, drawn and kept otherwise. `listen` is
+    /// called with the draws of each piece.
     pub fn blocks(
         &self,
         pieces: &[Piece],

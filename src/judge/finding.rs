@@ -98,7 +98,7 @@ impl Scalar {
         }
     }
 
-    /// How far the quantity is from what is claimed, where y is `off` on average.
+    /// Deviation of the quantity from the claim, where y is `off` on average.
     pub(super) fn deviation(&self, off: f64, draws: u64) -> Deviation {
         let &Self { expected, scale, unit, .. } = self;
         Deviation { unit, ..Deviation::new(expected + scale * off, expected, draws) }

@@ -125,7 +125,7 @@ fn failures(text: &mut String, pen: Pen, record: &Record) {
     }
 }
 
-/// What the planned draws leave inconclusive, case by case, with the command that decides it.
+/// Rows that the planned draws leave inconclusive, case by case, with the command that decides them.
 fn foreseen(text: &mut String, pen: Pen, cases: &[CaseRecord]) {
     let rows = |case: &CaseRecord, verdict| {
         case.rows.iter().filter(|row| row.foreseen == Some(verdict)).count()

@@ -34,7 +34,7 @@ pub fn document(title: &str, sections: &Markup) -> String {
     OPTIONAL.iter().fold(page.into_string(), |page, end| page.replace(end, ""))
 }
 
-/// What usually causes a failure, folded.
+/// Likely causes of a failure, folded.
 pub fn causes(lines: &[String]) -> Markup {
     let item = |line: &String| line.strip_prefix("- ").unwrap_or(line).to_owned();
     html! {

@@ -1,7 +1,7 @@
-//! What usually causes a failure: the table against the patterns of all known bugs, and against the manual.
+//! Likely causes of failures: the table against the patterns of all known bugs, and against the manual.
 //!
 //! `tests/data/known-bugs.csv` has the pattern that each known bug leaves in a million draws, from seed 1, and the kind
-//! of bug that it is, by hand. [`write_patterns`] prints the patterns anew.
+//! of bug that it is, by hand. [`write_patterns`] prints the patterns again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -15,7 +15,7 @@ use trueflight::mutants::{self, streams};
 use trueflight::report::likely;
 use trueflight::self_test;
 
-/// What most of the known bugs must find in their list.
+/// Share of the known bugs of a kind that their line names, at least.
 const SHARE: f64 = 0.9;
 /// More causes than this are no hint.
 const MOST: usize = 4;
@@ -80,7 +80,7 @@ fn every_known_bug_is_of_a_kind_that_the_table_knows() {
     assert_eq!((kinds.len(), kinds), (CAUSES.len(), used));
 }
 
-/// Of each line of the table: how many known bugs leave its pattern, and of how many it names the kind.
+/// Numbers of known bugs for each line of the table: with its pattern, and of a kind that it names.
 fn explained() -> BTreeMap<&'static str, [usize; 2]> {
     let mut counts: BTreeMap<&str, [usize; 2]> =
         TABLE.iter().map(|line| (line.pattern, [0; 2])).collect();
@@ -194,7 +194,7 @@ fn a_failure_at_one_end_of_a_sweep_is_told_as_such() {
     }
 }
 
-/// How many draws the record is of.
+/// Draws of the record.
 const DRAWS: u64 = 1_000_000;
 
 #[test]

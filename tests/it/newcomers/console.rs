@@ -1,4 +1,4 @@
-//! What a run shows: what does not pass, where its page is, how far it is.
+//! The console of a run: rows that do not pass, the path of the page, progress.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -156,7 +156,7 @@ fn the_plan_foresees_what_a_run_finds() {
     assert!(open > 20, "{open}");
 }
 
-/// What README says first of a CI, `trueflight check cases/`, in a checkout.
+/// The first command that README gives for a CI, `trueflight check cases/`, in a checkout.
 #[test]
 #[ignore = "long: plans all cases of the repository, a minute of two cores"]
 fn the_cases_of_the_repository_have_enough_draws_for_a_ci() {

@@ -47,7 +47,7 @@ fn place() -> Place {
     place
 }
 
-/// What of the cases does not end with 0, or has a row that is neither a pass nor declared before the draws.
+/// Cases that do not end with 0, or have a row that is neither a pass nor declared before the draws.
 fn wrong(command: &str, cases: &[(String, String)]) -> Vec<String> {
     let place = place();
     let mut wrong = Vec::new();
@@ -97,7 +97,7 @@ fn the_examples_folder_passes() {
     place.says(0, &format!("run '{}'", case.display()));
 }
 
-/// What the plan of a case says beforehand is what a run finds: the newcomer learns it before the draws.
+/// A newcomer would learn it before the draws.
 #[test]
 fn no_case_that_is_shown_is_planned_with_too_few_draws() {
     let place = place();

@@ -1,4 +1,4 @@
-//! What a newcomer meets: examples that pass, commands that decide, failures with their likely causes, progress.
+//! First steps of a newcomer: examples that pass, commands that decide, failures with their likely causes, progress.
 
 mod causes;
 mod console;
@@ -34,7 +34,7 @@ impl Place {
         command.env("COLUMNS", "200").args(words(arguments)).output().expect("it runs")
     }
 
-    /// What it says on stdout, where it ends with this exit code.
+    /// Stdout of a command that must end with this exit code.
     fn says(&self, code: i32, arguments: &str) -> String {
         let output = self.run(arguments);
         let [out, err] = [&output.stdout, &output.stderr]
