@@ -1,6 +1,6 @@
 //! All techniques of bidirectional path tracing, weighted by densities of directions only.
 //!
-//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where σ_t/σ̂ is one number; refused elsewhere, and for τ > 12.
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where `σ_t/σ̂` is one number; refused elsewhere, and for τ > 12.
 //!
 //! ```text
 //! X = Σ_s w_s c_s,   w_s ∝ 1 for s = 0 and s = r + 2, else ([ρ_{s−1}]_{s≥2} [ρ_s]_{s≤r})^{−β}

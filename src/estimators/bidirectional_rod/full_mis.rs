@@ -1,6 +1,6 @@
 //! All techniques of bidirectional path tracing, weighted by densities of whole paths.
 //!
-//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where σ_t/σ̂ is one number; refused elsewhere, and for τ > 12.
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where `σ_t/σ̂` is one number; refused elsewhere, and for τ > 12.
 //!
 //! ```text
 //! X = Σ_s w_s c_s,   w_s = c_s^{−β}/Σⱼ cⱼ^{−β},   c₀ = c_{r+2} = 1,  cⱼ = T̂_{j−1} [a ρ_{j−1}]_{j≥2} [a ρⱼ]_{j≤r}

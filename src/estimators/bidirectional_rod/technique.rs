@@ -1,6 +1,6 @@
 //! One technique of bidirectional path tracing by itself.
 //!
-//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where σ_t/σ̂ is one number; refused elsewhere, and for τ > 12.
+//! Unbiased for: σ̂ ≥ σ_t, with tracked connections where `σ_t/σ̂` is one number; refused elsewhere, and for τ > 12.
 //!
 //! ```text
 //! X = c_s = T̂_{s−1} [a ρ_{s−1}]_{s≥2} [a ρ_s]_{s≤r},   1 for s = 0 and s = r + 2

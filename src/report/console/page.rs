@@ -240,7 +240,10 @@ fn painted(words: &[Word], pen: Pen) -> String {
         for (k, (paint, letters)) in word.iter().enumerate() {
             let space = if i > 0 && k == 0 { " " } else { "" };
             match runs.last_mut() {
-                Some((last, text)) if last == paint => *text += &format!("{space}{letters}"),
+                Some((last, text)) if last == paint => {
+                    text.push_str(space);
+                    text.push_str(letters);
+                }
                 Some((Paint::Plain, text)) => {
                     text.push_str(space);
                     runs.push((*paint, letters.clone()));
