@@ -46,9 +46,9 @@ fn manual() -> Vec<(String, String)> {
         "CONTRIBUTING.md".into(),
         "ARCHITECTURE.md".into(),
     ]);
-    let pages =
-        pages.map(|path| path.to_string_lossy().into_owned()).filter(|path| path.ends_with(".md"));
-    pages.map(|path| (path.clone(), read(&path))).collect()
+    let pages = pages.filter(|path| path.extension().is_some_and(|end| end == "md"));
+    let names = pages.map(|path| path.to_string_lossy().into_owned());
+    names.map(|name| (name.clone(), read(&name))).collect()
 }
 
 /// Output of the command.

@@ -65,10 +65,9 @@ fn every_result_is_shown_or_named() {
         .filter(|name| !own.contains(&name.as_str()) && !is_named(name) && !is_linked(name));
     none(&wrong.cloned().collect::<Vec<_>>());
     // A plot is there once.
-    let twins = kept
-        .iter()
-        .filter(|name| kept.contains(&name.replace(".svg", ".png")) && name.ends_with(".svg"));
-    none(&twins.cloned().collect::<Vec<_>>());
+    let plots = kept.iter().filter_map(|name| name.strip_suffix(".svg"));
+    let twins = plots.filter(|plot| kept.contains(&format!("{plot}.png")));
+    none(&twins.map(str::to_owned).collect::<Vec<_>>());
     // What notes and pages call by its path is there.
     for (page, text) in &pages {
         for name in text.split("../results/").skip(1) {
