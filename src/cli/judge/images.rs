@@ -96,10 +96,10 @@ pub fn main(arguments: &super::Arguments, console: &Console) -> anyhow::Result<u
         tolerance: arguments.tolerance,
         alpha: arguments.alpha,
     };
-    let name = match images.against.is_empty() {
-        true => name(&arguments.files),
-        false => format!("{} against {}", name(&arguments.files), self::name(&images.against)),
-    };
+    let mut name = name(&arguments.files);
+    if !images.against.is_empty() {
+        name = format!("{name} against {}", self::name(&images.against));
+    }
     let judgement = match judged(arguments, &wanted) {
         Ok(judgement) => judgement,
         Err(error) => {

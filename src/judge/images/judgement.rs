@@ -205,3 +205,25 @@ pub struct Tile {
     /// What is said of it.
     pub verdict: Verdict,
 }
+
+/// How many of the worst tiles are kept apart.
+const WORST: usize = 5;
+
+/// Numbers of tiles by their verdicts.
+pub(super) fn counts(tiles: &[Tile]) -> Counts {
+    let of = |verdict| tiles.iter().filter(|tile| tile.verdict == verdict).count();
+    Counts {
+        tiles: tiles.len(),
+        pass: of(Verdict::Pass),
+        fail: of(Verdict::Fail),
+        listed: tiles.iter().filter(|tile| tile.is_listed).count(),
+    }
+}
+
+/// The tiles with the most evidence against them, of those that fail or are listed.
+pub(super) fn worst(tiles: &[Tile]) -> Vec<Tile> {
+    let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
+    let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
+    off.sort_by(|a, b| b.ln_e.total_cmp(&a.ln_e));
+    off.into_iter().take(WORST).cloned().collect()
+}

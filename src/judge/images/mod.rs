@@ -58,7 +58,7 @@ pub use judgement::Judgement;
 pub use picture::{Picture, Size, Stack};
 
 use self::claim::Pixels;
-use self::judgement::{Counts, Dependence, Refuted, Tile, Variance};
+use self::judgement::{Dependence, Refuted, Tile, Variance, counts, worst};
 use self::tiles::{Part, Terms};
 use crate::judge::scalar::Levels;
 use crate::numeric::parallel;
@@ -76,8 +76,6 @@ const LISTED: f64 = 0.05;
 const VALUES: usize = 2048;
 /// Number of values of a tile where the passes must show a variance, too.
 const NOISY_VALUES: usize = 8192;
-/// How many of the worst tiles are kept apart.
-const WORST: usize = 5;
 
 /// What is wanted of the verdict.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -166,27 +164,23 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         _ => None,
     };
     let has_variance = !variance.is_some_and(|variance| variance.is_refuted);
-    let levels = |share: f64, count: usize| Levels {
-        ln_fail: (count as f64 / (share * alpha)).ln(),
-        ln_pass: -MISS.ln(),
+    let terms = terms([is_free, has_variance], wanted, parts.len());
+    let whole_terms = Terms {
+        is_capped: true,
+        count: 1,
+        levels: levels(SHARES[1] * alpha, whole.len()),
+        ..terms
     };
-    let terms = Terms {
-        is_free,
-        has_variance,
-        tolerance: wanted.tolerance,
-        is_capped: false,
-        count: parts.len(),
-        levels: levels(SHARES[0], parts.len()),
-    };
-    let whole_terms =
-        Terms { is_capped: true, count: 1, levels: levels(SHARES[1], whole.len()), ..terms };
     let all = |parts: &[Part], terms: Terms, q: &[f64]| {
         // Averages of pixels that depend on each other have a range alone.
         let is_possible =
             |part: &Part| is_free || pixels.truth_share > 0.0 || part.height * part.width == 1;
-        let one = |i: usize| match is_noisy && is_possible(&parts[i]) {
-            true => noisy::tile(stack, &pixels, parts[i], terms, q[i]),
-            false => tiles::tile(stack, &pixels, parts[i], terms),
+        let one = |i: usize| {
+            if is_noisy && is_possible(&parts[i]) {
+                noisy::tile(stack, &pixels, parts[i], terms, q[i])
+            } else {
+                tiles::tile(stack, &pixels, parts[i], terms)
+            }
         };
         parallel::range(if refuting == 0 { parts.len() } else { 0 }, one)
     };
@@ -196,13 +190,6 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
     let is_judged = !order.is_refuted();
     decide(&mut tiles, SHARES[0] * alpha, is_judged);
     decide(&mut whole, SHARES[1] * alpha, is_judged);
-    let of = |verdict| tiles.iter().filter(|tile| tile.verdict == verdict).count();
-    let counts = Counts {
-        tiles: tiles.len(),
-        pass: of(Verdict::Pass),
-        fail: of(Verdict::Fail),
-        listed: tiles.iter().filter(|tile| tile.is_listed).count(),
-    };
     let mut judgement = Judgement {
         verdict: Verdict::Inconclusive,
         reason: String::new(),
@@ -223,12 +210,29 @@ pub fn judge(stack: &Stack, claim: &Claim, wanted: &Wanted) -> Result<Judgement,
         truth_passes: claim.truth_passes,
         comparison: None,
         worst: worst(&tiles),
+        counts: counts(&tiles),
         whole,
         tiles,
-        counts,
     };
     verdict::decide(&mut judgement, &pixels, claim);
     Ok(judgement)
+}
+
+/// The levels of one of `count` parts that share `alpha`.
+fn levels(alpha: f64, count: usize) -> Levels {
+    Levels { ln_fail: (count as f64 / alpha).ln(), ln_pass: -MISS.ln() }
+}
+
+/// The terms of tiles.
+fn terms([is_free, has_variance]: [bool; 2], wanted: &Wanted, count: usize) -> Terms {
+    Terms {
+        is_free,
+        has_variance,
+        tolerance: wanted.tolerance,
+        is_capped: false,
+        count,
+        levels: levels(SHARES[0] * wanted.alpha, count),
+    }
 }
 
 /// Why images that were made of the passes judged are no grounds.
@@ -376,12 +380,4 @@ fn decide(tiles: &mut [Tile], alpha: f64, is_judged: bool) {
     for index in e_benjamini_hochberg(&ln_e, LISTED) {
         tiles[index].is_listed = true;
     }
-}
-
-/// The tiles with the most evidence against them, of those that fail or are listed.
-fn worst(tiles: &[Tile]) -> Vec<Tile> {
-    let is_off = |tile: &&Tile| tile.is_listed || tile.verdict == Verdict::Fail;
-    let mut off: Vec<&Tile> = tiles.iter().filter(is_off).collect();
-    off.sort_by(|a, b| b.ln_e.total_cmp(&a.ln_e));
-    off.into_iter().take(WORST).cloned().collect()
 }

@@ -23,9 +23,9 @@ mod evidence;
 mod verdict;
 
 use self::evidence::Evidence;
-use super::judgement::{Comparison, Counts, Dependence, Judgement, Tile};
+use super::judgement::{Comparison, Dependence, Judgement, Tile, counts, worst};
 use super::{ImageError, LISTED, NOISY_VALUES, Stack, Wanted, claim, estimate, same, tiles};
-use super::{neighbours_of, not_finite, order_of, worst};
+use super::{neighbours_of, not_finite, order_of};
 use crate::judge::claim::ROUNDING;
 use crate::stats::multiplicity::{e_benjamini_hochberg, holm};
 use crate::stats::permutation::{Groups, distinct};
@@ -102,60 +102,13 @@ pub fn compare(
              nothing; give each stack seeds of its own"
         );
     }
-    let (mut parts, whole) = (tiles::parts(size, tile, true), tiles::wholes(size));
-    let count = parts.len();
-    parts.extend(whole);
-    let is_judged = refuting == 0 && !order.is_refuted();
-    let mut comparison = Comparison {
-        passes: reference.passes,
-        method: "none",
-        permutations: 0,
-        p: 1.0,
-        is_same_law: terms.is_same_law,
-        spread: None,
-        spread_p: 1.0,
-        kurtosis: None,
-    };
-    let mut all = Vec::new();
-    let mut differing = 0;
-    if is_judged {
+    let Tested { mut all, count, comparison, differing } = if refuting == 0 && !order.is_refuted() {
         let evidence = Evidence::new(stack, reference, terms.rounding, wanted, is_free)?;
-        let smallest: Vec<_> = parts.iter().copied().filter(|part| part.size == tile).collect();
-        let q = [stack, reference].map(|stack| estimate::all_q(&[stack], &smallest, None));
-        let q = q.iter().flatten().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
-        comparison.kurtosis = (q > 0.0).then(|| estimate::kurtosis(q));
-        let rows = [stack.passes, reference.passes];
-        let alpha = if terms.is_same_law { SHARES[0] * alpha } else { alpha };
-        let enough = distinct(rows[0], rows[1]) >= 2.0 / alpha;
-        let adjusted;
-        if enough {
-            let (values, prior) = evidence.rows(&parts);
-            let found = Groups::new(values, rows, &prior).compare(alpha, 1);
-            all = evidence.tiles(&parts, count, Some(&found.p));
-            (comparison.method, comparison.permutations) = ("permutation", found.deals);
-            adjusted = found.adjusted;
-            let (values, prior) = evidence.spreads();
-            let spread = Groups::new(values, rows, &[prior]).compare(SHARES[1] * wanted.alpha, 2);
-            comparison.spread_p = spread.p[0];
-        } else {
-            all = evidence.tiles(&parts, count, None);
-            let times = all.len() as f64;
-            adjusted =
-                all.iter().map(|tile| tile.p.map_or(1.0, |p| (times * p).min(1.0))).collect();
-            comparison.method = if is_free { "signs" } else { "none" };
-        }
-        comparison.spread = evidence.spread();
-        comparison.p = adjusted.iter().copied().fold(1.0, f64::min);
-        differing = decide(&mut all, &adjusted, alpha, wanted.alpha, terms.is_same_law);
-    }
-    let whole = all.split_off(count.min(all.len()));
-    let of = |verdict| all.iter().filter(|tile| tile.verdict == verdict).count();
-    let counts = Counts {
-        tiles: all.len(),
-        pass: of(Verdict::Pass),
-        fail: of(Verdict::Fail),
-        listed: all.iter().filter(|tile| tile.is_listed).count(),
+        tested([stack, reference], &evidence, terms, tile, alpha)
+    } else {
+        Tested { all: Vec::new(), count: 0, comparison: untested(reference, terms), differing: 0 }
     };
+    let whole = all.split_off(count.min(all.len()));
     let mut judgement = Judgement {
         verdict: Verdict::Inconclusive,
         reason: String::new(),
@@ -176,12 +129,78 @@ pub fn compare(
         truth_passes: None,
         comparison: Some(comparison),
         worst: worst(&all),
+        counts: counts(&all),
         whole,
         tiles: all,
-        counts,
     };
     verdict::decide(&mut judgement, differing);
     Ok(judgement)
+}
+
+/// The tiles, then the wholes, with what was found of both stacks.
+struct Tested {
+    all: Vec<Tile>,
+    /// Number of tiles.
+    count: usize,
+    comparison: Comparison,
+    /// Number of tiles and wholes that are rejected for equal distributions alone.
+    differing: usize,
+}
+
+fn untested(reference: &Stack, terms: Terms) -> Comparison {
+    Comparison {
+        passes: reference.passes,
+        method: "none",
+        permutations: 0,
+        p: 1.0,
+        is_same_law: terms.is_same_law,
+        spread: None,
+        spread_p: 1.0,
+        kurtosis: None,
+    }
+}
+
+/// Both tests of all tiles and wholes.
+fn tested(
+    stacks: [&Stack; 2],
+    evidence: &Evidence,
+    terms: Terms,
+    tile: usize,
+    alpha: f64,
+) -> Tested {
+    let size = stacks[0].size;
+    let mut parts = tiles::parts(size, tile, true);
+    let count = parts.len();
+    parts.extend(tiles::wholes(size));
+    let mut comparison = untested(stacks[1], terms);
+    let smallest: Vec<_> = parts.iter().copied().filter(|part| part.size == tile).collect();
+    let q = stacks.map(|stack| estimate::all_q(&[stack], &smallest, None));
+    let q = q.iter().flatten().copied().filter(|q| q.is_finite()).fold(0.0, f64::max);
+    comparison.kurtosis = (q > 0.0).then(|| estimate::kurtosis(q));
+    comparison.spread = evidence.spread();
+    let rows = stacks.map(|stack| stack.passes);
+    let level = if terms.is_same_law { SHARES[0] * alpha } else { alpha };
+    let (mut all, adjusted) = if distinct(rows[0], rows[1]) >= 2.0 / level {
+        let (values, prior) = evidence.rows(&parts);
+        let found = Groups::new(values, rows, &prior).compare(level, 1);
+        (comparison.method, comparison.permutations) = ("permutation", found.deals);
+        let (values, prior) = evidence.spreads();
+        let spread = Groups::new(values, rows, &[prior]).compare(SHARES[1] * alpha, 2);
+        comparison.spread_p = spread.p[0];
+        (evidence.tiles(&parts, count, Some(&found.p)), found.adjusted)
+    } else {
+        let all = evidence.tiles(&parts, count, None);
+        if all.iter().any(|tile| tile.p.is_some()) {
+            comparison.method = "signs";
+        }
+        let times = all.len() as f64;
+        let of = |tile: &Tile| tile.p.map_or(1.0, |p| (times * p).min(1.0));
+        let adjusted = all.iter().map(of).collect();
+        (all, adjusted)
+    };
+    comparison.p = adjusted.iter().copied().fold(1.0, f64::min);
+    let differing = decide(&mut all, &adjusted, level, alpha, terms.is_same_law);
+    Tested { all, count, comparison, differing }
 }
 
 fn check(stack: &Stack, reference: &Stack, terms: Terms) -> Result<(), ImageError> {
@@ -235,9 +254,9 @@ fn decide(
         let has_passed = tile.ln_p.iter().all(|&ln_p| ln_p >= -MISS.ln());
         let is_different = adjusted <= level;
         differing += usize::from(is_different && !is_off && !is_same_law);
-        tile.verdict = match is_different {
-            true if is_off || is_same_law => Verdict::Fail,
-            false if has_passed => Verdict::Pass,
+        tile.verdict = match (is_different, is_off || is_same_law, has_passed) {
+            (true, true, _) => Verdict::Fail,
+            (false, _, true) => Verdict::Pass,
             _ => Verdict::Inconclusive,
         };
     }
