@@ -64,9 +64,9 @@ fn wrong_renderers_are_found_against_a_reference() {
 
 /// How often correct stacks fail, by distribution, number of passes and ground: the table of the manual.
 #[test]
-#[ignore = "long: 200 stacks of each of 84 kinds, 6 minutes of two cores"]
+#[ignore = "long: 50 stacks of each of 80 kinds, 2 minutes of two cores"]
 fn levels_of_correct_stacks() {
-    const STACKS: u64 = 200;
+    const STACKS: u64 = 50;
     let mut total = [[0_u64; 2]; 4];
     let mut table = String::new();
     for law in LAWS {
@@ -99,6 +99,6 @@ fn levels_of_correct_stacks() {
         }
     }
     println!("{table}image, stack, truth of passes, against: {total:?}");
-    // 4,000 of each at α = 1e-3: 4 on average if the level were exhausted, above 12 with chance 3e-4.
-    assert!(total.iter().all(|[failed, _]| *failed <= 12), "{table}");
+    // 1,000 of each at α = 1e-3: 1 on average if the level were exhausted, above 5 with chance 6e-4.
+    assert!(total.iter().all(|[failed, _]| *failed <= 5), "{table}");
 }
