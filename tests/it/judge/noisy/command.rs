@@ -74,7 +74,11 @@ fn averages_of_blocks_wider_than_a_filter_are_judged_as_pixels() {
     assert_ne!(code, 1, "{text}");
     let known = "--images --truth 1 --variance-stack other.npy --tile";
     place.expect(3, &format!("{known} 16 bad.npy"), &["not independent"]);
-    place.expect(1, &format!("{known} 4 --average 8 bad.npy"), &["rows 4 to 7, columns 4 to 7"]);
+    place.expect(
+        1,
+        &format!("{known} 4 --average 8 bad.npy"),
+        &["4 × 4 at row 4, column 4", ": fail"],
+    );
     place.expect(2, "--images --truth 1 --variance 1 --average 2 good.npy", &["cannot be used"]);
     place.expect(2, &format!("{known} 4 --average 0 good.npy"), &["--average"]);
 }
