@@ -69,7 +69,9 @@ fn levels_of_correct_stacks() {
     const STACKS: u64 = 50;
     let mut total = [[0_u64; 2]; 4];
     let mut table = String::new();
-    for law in LAWS {
+    // A rarer law leaves references of 4 passes black, which have no unit.
+    let laws = LAWS.map(|law| if law == Law::Rare(0.002) { Law::Rare(0.01) } else { law });
+    for law in laws {
         for (n, q) in [(4, 4), (16, 16), (64, 64), (8, 64)] {
             let mut failed = [0; 4];
             for seed in 0..STACKS {
