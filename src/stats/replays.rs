@@ -11,6 +11,8 @@
 //! leave n − i m. Values that occur very often, the atoms of discrete laws, say little: see [`super::sequences`]. What
 //! is kept depends on a value alone, so that of two equal sequences the same draws are kept, however far apart they are.
 
+use std::hash::Hasher;
+
 /// The most draws that are kept.
 const MOST: usize = 1 << 16;
 /// Draws that are kept for comparison.
@@ -39,6 +41,30 @@ pub struct Replay {
 pub(crate) fn hash(bits: u64) -> u64 {
     // The upper bits of a product depend on all bits below them.
     (bits ^ (bits >> 32)).wrapping_mul(0xd6e8_feb8_6659_fd93)
+}
+
+/// Odd factor of [`Spread`].
+const ODD: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Hasher of keys that are nearly hashes: tables go by low bits, which the coarsest tokens leave at 0.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Spread(u64);
+
+impl Hasher for Spread {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        for &byte in bytes {
+            self.0 = self.0.rotate_left(8) ^ u64::from(byte);
+        }
+    }
+
+    fn write_u64(&mut self, key: u64) {
+        let product = key.wrapping_mul(ODD);
+        self.0 = product ^ (product >> 32);
+    }
 }
 
 impl Replays {

@@ -17,10 +17,10 @@
 //! to [`super::replays`].
 
 use std::collections::HashMap;
-use std::hash::{BuildHasherDefault, Hasher};
+use std::hash::BuildHasherDefault;
 
 use super::capital::ln_add;
-use super::replays::{Replay, hash};
+use super::replays::{Replay, Spread, hash};
 
 /// Maximum number of windows that are kept.
 const MAX_WINDOWS: usize = 1 << 15;
@@ -108,27 +108,6 @@ struct Bet {
     distance: u64,
     /// The distance in tokens.
     tokens: u64,
-}
-
-/// Hasher of keys that are nearly hashes: tables go by low bits, which the coarsest tokens leave at 0.
-#[derive(Debug, Clone, Copy, Default)]
-struct Spread(u64);
-
-impl Hasher for Spread {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = self.0.rotate_left(8) ^ u64::from(byte);
-        }
-    }
-
-    fn write_u64(&mut self, key: u64) {
-        let product = key.wrapping_mul(BASE);
-        self.0 = product ^ (product >> 32);
-    }
 }
 
 /// Bits by which 0 and −0 are the same.
