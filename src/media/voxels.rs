@@ -127,13 +127,11 @@ impl Voxels {
 
     /// Sizes for a ray's beginning and its slope: 2 ε of each bounds the rounding of lattice coordinates.
     pub fn terms(&self, ray: &Ray) -> [[f64; 3]; 2] {
-        match &self.turn {
-            Some(turn) => turn.terms([ray.origin.0, ray.direction.0], self.shift),
-            None => {
-                let Track { start, slope } = self.track(ray);
-                [start.map(f64::abs), slope.map(f64::abs)]
-            }
+        if let Some(turn) = &self.turn {
+            return turn.terms([ray.origin.0, ray.direction.0], self.shift);
         }
+        let Track { start, slope } = self.track(ray);
+        [start.map(f64::abs), slope.map(f64::abs)]
     }
 
     /// The cell that holds a place and how far the place is into it; a place that rounding left
