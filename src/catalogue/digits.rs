@@ -37,6 +37,7 @@ pub fn count(n: u64) -> String {
 }
 
 /// A needed number of draws rounded up to two significant digits, as options take it.
+#[allow(clippy::cast_possible_truncation)] // a power of ten
 pub fn enough(draws: f64) -> String {
     let power = draws.log10().floor() - 1.0;
     let unit = if power > 0.0 { 10f64.powi(power as i32) } else { 1.0 };
