@@ -77,6 +77,7 @@ impl Place {
 
 /// Which checks of an experiment fail, and on which side.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[allow(clippy::struct_excessive_bools)] // one for each check that has no side
 pub struct Pattern {
     /// The mean.
     pub mean: Side,

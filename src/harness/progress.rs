@@ -40,6 +40,11 @@ impl<'a> Progress<'a> {
         (self.listen)(step);
     }
 
+    /// Passes on draws of an earlier run.
+    pub(super) fn keep(&self, draws: impl Iterator<Item = u64>) {
+        self.hear(Step::Kept(draws.sum()));
+    }
+
     /// Tells how many draws are expected, from those of each experiment, kept ones with them.
     pub(super) fn expect(&self, draws: impl Iterator<Item = u64>) {
         let new = draws.sum::<u64>().saturating_sub(self.kept.load(Ordering::Relaxed));

@@ -79,7 +79,7 @@ pub fn draw_heard(plan: &Plan, cache: &Cache, store: &Store, listen: &Listener) 
     let progress = Progress::new(plan, listen);
     let listen = |step| progress.hear(step);
     // What a run before had merged.
-    running.iter().for_each(|one| listen(Step::Kept(one.at.drawn.draws)));
+    progress.keep(running.iter().map(|one| one.at.drawn.draws));
     progress.expect(running.iter().map(Running::expected));
     let mut budget = plan.options.budget;
     let (mut cut_by_time, mut cut_by_budget) = (false, false);

@@ -168,6 +168,7 @@ impl Scalar {
     }
 
     /// The question with its quantity: `expected` in theory, and `expected + scale y` where y is measured.
+    #[must_use]
     pub fn of(self, expected: f64, scale: f64) -> Self {
         Self { expected, scale, ..self }
     }
