@@ -108,7 +108,7 @@ fn built_in(names: &[&str]) -> Vec<Case> {
 fn steps(plan: &Plan, cache: &Cache) -> [u64; 4] {
     let steps = Mutex::new(Vec::new());
     let draws = run::draw_heard(plan, cache, &Store::default(), &|step| {
-        steps.lock().expect("it").push(step)
+        steps.lock().expect("it").push(step);
     });
     let steps = steps.into_inner().expect("it");
     let expected: Vec<u64> = steps
