@@ -32,7 +32,9 @@ impl Foreseen {
         let those = || weak.iter().filter(|one| Some(one.verdict) == verdict);
         let needed = those().map(|one| one.needed).fold(0.0, f64::max);
         let mut reasons: Vec<&str> = Vec::new();
-        for one in those().filter(|one| !one.reason.is_empty()) {
+        // Those of the verdict first.
+        let others = weak.iter().filter(|one| Some(one.verdict) != verdict);
+        for one in those().chain(others).filter(|one| !one.reason.is_empty()) {
             if !reasons.contains(&one.reason.as_str()) {
                 reasons.push(&one.reason);
             }

@@ -1,10 +1,11 @@
 //! A problem with its medium and the estimators of a case: from a sweep's value to an experiment.
 
+mod labels;
+
 use std::sync::{Arc, OnceLock};
 
 use super::course::Fields;
 use super::estimator::{Defaults, Estimators};
-use super::names::Names;
 use super::plot_data::Course;
 use super::problem::{AnyProblem, Parts, ProblemKind, Walk};
 use super::ready::{Ready, refuse_what_cannot_be_computed};
@@ -12,7 +13,7 @@ use super::sweep::{Variation, What};
 use crate::catalogue::{Fault, Settings};
 use crate::estimators::{Experiment, Order, RayView, Refusal, Site};
 use crate::media::body::RayNeed;
-use crate::media::{Body, Medium, Piecewise, misses};
+use crate::media::{Body, Medium, Piecewise};
 use crate::recipes::{controls, sampling};
 use crate::rng::Address;
 use crate::theory::{Mesh, Prediction};
@@ -95,21 +96,6 @@ impl Scenario {
         }))
     }
 
-    /// Contents of the files of the medium, a sentence each.
-    pub fn facts(&self) -> Vec<String> {
-        self.body.facts()
-    }
-
-    /// Doubts about the medium and its ray, a sentence each.
-    pub fn notes(&self) -> Vec<String> {
-        misses::notes(&self.body, self.ray)
-    }
-
-    /// The field's name in the catalogue.
-    pub fn medium(&self) -> &str {
-        self.body.name()
-    }
-
     /// The distance that each channel of a draw is about.
     pub fn distances(&self) -> Vec<f64> {
         self.problem.distances()
@@ -145,47 +131,6 @@ impl Scenario {
             }
             What::Density | What::AlbedoScale | What::Contrast => true,
         }
-    }
-
-    /// How an experiment is called in tables.
-    pub fn names(&self, estimator: usize, variation: Variation) -> Names {
-        if let Some(Ok(names)) = self.varied(variation, |other| other.names(estimator, None)) {
-            return names;
-        }
-        let parsed = &self.estimators.list[estimator];
-        let swept_albedo = matches!(variation, Some((What::Albedo, _)));
-        let control = self.with_control(estimator, variation, |recipe| recipe.label());
-        let (sampling, sampling_kind) = match (variation, self.estimators.sampling_of(parsed)) {
-            (Some((What::Sampling, value)), _) if self.depends_on(estimator, What::Sampling) => {
-                (Some(value), "constant".into())
-            }
-            (Some((What::SamplingScale, factor)), Some(recipe)) => {
-                let kind = format!("{factor} × {}", recipe.label());
-                (recipe.constant().map(|value| value * factor), kind)
-            }
-            (_, Some(recipe)) => (recipe.constant(), recipe.label()),
-            (_, None) => (None, String::new()),
-        };
-        let is_plain = control.is_empty() && sampling.is_some();
-        let alias = if is_plain { parsed.alias() } else { None };
-        let estimator = parsed.label(!swept_albedo);
-        Names { estimator, sampling, sampling_kind, control, alias }
-    }
-
-    /// Knowledge of the medium that an experiment needs beside lookups, as in `τ, max |σ_t − σ_c|`.
-    pub fn needs(&self, estimator: usize, variation: Variation) -> String {
-        if let Some(Ok(needs)) = self.varied(variation, |other| other.needs(estimator, None)) {
-            return needs;
-        }
-        let parsed = &self.estimators.list[estimator];
-        let control = self.with_control(estimator, variation, |recipe| recipe.needs());
-        // A swept σ̂ stands in the recipe's place.
-        let is_swept = matches!(variation, Some((What::Sampling, _)));
-        let recipe = self.estimators.sampling_of(parsed);
-        let recipe = recipe.filter(|_| !(is_swept && self.depends_on(estimator, What::Sampling)));
-        let own = parsed.features.needs.filter(|own| control != Some(own));
-        let needs = [own, control, recipe.and_then(sampling::Recipe::needs)];
-        needs.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }
 
     /// Whether the case declares an estimator biased.

@@ -123,8 +123,10 @@ impl Scalar {
         let finest = by_range.map_or(0.0, OfRange::finest);
         let chosen = |n: f64| gate::tolerance_of(variance, n).max(finest / n);
         let chosen = left.map_or(self.ask.usual, chosen).min(self.ask.cap);
+        // The bets of a range need no narrow ε.
         let design = match self.ask.tolerance {
             Some(asked) => Design::asked(variance, asked, self.ask.floor),
+            None if by_range.is_some() => Design::asked(variance, chosen, self.ask.floor),
             None => Design::new(variance, chosen, self.ask.floor),
         };
         let suffices = |n| design.draws() <= n * (1.0 + 1e-6);
@@ -173,9 +175,12 @@ impl Scalar {
             }
             if let Some(ground) = &mut self.of_range {
                 let variance = bound.or(ground.variance(&self.past));
-                let aim = self.design.zip(variance);
-                let aim =
-                    aim.map(|(Design { tolerance, .. }, variance)| Aim { tolerance, variance });
+                // Until ε is chosen, the widest one guides the bets against a correct mean.
+                let is_provisional = self.design.is_none();
+                let widest = self.ask.tolerance.unwrap_or(self.ask.cap);
+                let tolerance = self.design.map_or(widest, |design| design.tolerance);
+                let aim = variance.filter(|_| !is_provisional || self.past.draws() > 0);
+                let aim = aim.map(|variance| Aim { tolerance, variance, is_provisional });
                 ground.absorb(y, aim, self.ask.floor);
             }
         }

@@ -67,6 +67,8 @@ pub struct Aim {
     pub tolerance: f64,
     /// V, as well as it is known.
     pub variance: f64,
+    /// Whether ε may still change: then it guides the bets against a correct mean, and nothing is bet on a pass.
+    pub is_provisional: bool,
 }
 
 /// The stakes of one side, on a mean `m` with the far end of the range at a distance of `room`; 0 for
@@ -96,6 +98,7 @@ impl Bets {
         let mut factors: Vec<Factor> = side(1.0, floor - low, floor, &PLANNED, aim).collect();
         factors.extend(side(-1.0, high + floor, -floor, &PLANNED, aim));
         let above = factors.len();
+        let aim = aim.filter(|aim| !aim.is_provisional);
         let excess = aim.map_or(0.0, |aim| aim.tolerance - floor);
         let room = |room: f64| if aim.is_some() { room - excess } else { f64::INFINITY };
         factors.extend(side(-1.0, room(high), excess, &CALM, aim));
@@ -107,7 +110,8 @@ impl Bets {
     /// The share of the capital of each bet on draws in a range, with an aim.
     pub fn shares(range: [f64; 2]) -> Gains {
         let far = range.map(|end| if end.is_finite() { end.signum() * 2.0 } else { end });
-        let bets = Self::new(far, Some(Aim { tolerance: 1.0, variance: 1.0 }), 0.0);
+        let bets =
+            Self::new(far, Some(Aim { tolerance: 1.0, variance: 1.0, is_provisional: false }), 0.0);
         let list = |factors: &[Factor]| {
             let all: f64 = factors.iter().map(|factor| factor.share).sum();
             factors.iter().map(|factor| factor.share / all).collect::<Vec<f64>>()
@@ -171,7 +175,7 @@ mod tests {
     use crate::stats::capital::Capital;
 
     fn aim(tolerance: f64) -> Aim {
-        Aim { tolerance, variance: 0.0675 }
+        Aim { tolerance, variance: 0.0675, is_provisional: false }
     }
 
     fn uniforms(seed: u64, n: usize) -> Vec<f64> {

@@ -286,9 +286,8 @@ impl Sequences {
         counts.sort_unstable();
         let times = counts.get(counts.len() / 2).copied().unwrap_or(2);
         // Where the draws come again and again without others between them, the last windows are not complete.
-        let whole = self.reach.map_or(0, |[first, last]| (last - first + distance / 2) / distance);
-        let times =
-            if (times..=times + 1 + times / 8).contains(&(whole + 1)) { whole + 1 } else { times };
+        let whole = self.reach.map_or(0, |[first, last]| (last - first).div_ceil(distance));
+        let times = if (times..=times + 1 + times / 8).contains(&whole) { whole } else { times };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a count
         let count = self.successes as u64;
         Some(Replay { distance, count, times, ln_p: -self.ln_e.max(0.0) })

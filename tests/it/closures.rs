@@ -252,8 +252,11 @@ fn what_makes_no_sense_is_told_with_its_cure() {
         (said(u().of("no/such-case", "ratio", 1.0).verdict()), "no/such-case"),
         (said(u().of(CASE, "ratoi", 1.0).verdict()), "no estimator is called `ratoi`"),
         (said(u().of(CASE, "woodcock", 0.5).verdict()), "refused"),
-        (said(u().of(CASE, "ratio", None).verdict()), "choose one of its values"),
-        (said(u().of(CASE, "ratio", -1.0).verdict()), "swept value = -1"),
+        (said(u().of(CASE, "ratio", None).verdict()), "say at which value your draws were made"),
+        (
+            said(u().of(CASE, "ratio", -1.0).verdict()),
+            "sampling = -1 is not a finite number above 0",
+        ),
         (said(pair().truth(0.5).alpha(1.5).verdict()), "alpha = 1.5"),
         (
             said(

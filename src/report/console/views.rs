@@ -37,8 +37,8 @@ const RUN: &[Spec] = &[
     ("κ", true, 9, |row| digits(row.predicted_kurtosis, 3)),
     ("FoM", true, 8, |row| digits(row.fom, 4)),
     (LTUV, true, 10, |row| of_channel(row, row.log10_ltuv())),
-    SETUP,
-    NEEDS,
+    ("setup", true, 8, SETUP.3),
+    ("needs", false, 9, NEEDS.3),
 ];
 
 const PREDICT: &[Spec] = &[

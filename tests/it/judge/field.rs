@@ -4,7 +4,8 @@ use super::{Place, raw, uniform};
 
 /// Uniform numbers in [0, 1), another sequence for each seed.
 fn units(seed: u64, n: usize) -> Vec<f64> {
-    let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15).wrapping_add(1);
+    // Not a multiple of the step: the sequences would overlap.
+    let mut state = seed.wrapping_mul(0xd134_2543_de82_ef95);
     let mut next = || {
         // SplitMix64 (G. L. Steele Jr., D. Lea, C. H. Flood, Fast splittable pseudorandom number generators, 2014).
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -142,12 +143,18 @@ const BATCHED: &str = "--truth 0.36787944117144233";
 fn no_pass_stands_beside_a_bias_of_77_standard_errors() {
     let file = field("27-range-pass/bias1000.f64");
     let place = Place::new(&[("x.f64", &file)]);
-    let looks = ["z = +77.38", "looks off by +1.02e-2, +77.4 standard errors", "give more"];
+    let looks = [
+        "z = +77.38",
+        "looks off by +1 % (measured 0.3716, expected 0.3679), z = +77.4 over 1000 draws",
+        "give more",
+    ];
     place.expect(3, &format!("{BATCHED} --range 0,1 x.f64"), &looks);
-    // What a range of length 1 can show with so many draws: 12 times its further part over n.
+    // What a range of length 1 can show with so many draws: 12 R/n with R = (1 − T)/T, relative to the truth; up to half of
+    // the draws show the variance before.
     let found = place.json(&format!("{BATCHED} --range 0,1 x.f64"), &[]);
     let tolerance = found["findings"][0]["gate"]["tolerance"].as_f64().expect("ε");
-    assert!((0.0..0.03).contains(&tolerance), "{tolerance}");
+    let finest = 12.0 * (1.0_f64.exp() - 1.0) / 1000.0;
+    assert!((finest..2.0 * finest).contains(&tolerance), "{tolerance}");
     for known in ["--variance 2.3e-6", "--kurtosis 4", "--variance 2.3e-6 --kurtosis 3.1"] {
         let said = "the mean is off by +1.0";
         place.expect(1, &format!("{BATCHED} {known} x.f64"), &[said]);
@@ -169,7 +176,10 @@ fn a_tolerance_that_is_asked_for_is_the_one_that_is_tested() {
     let file = field("27-range-pass/bias1000.f64");
     let place = Place::new(&[("x.f64", &file), ("few.f64", &file[..800])]);
     let within = "within the tolerance of 5.0e-2 that was asked for";
-    let said = ["pass: the mean is off by +1.02e-2 ± 1.3e-4 (+77.4 standard errors)", within];
+    let said = [
+        "pass: the mean is off by +1 % (measured 0.3716, expected 0.3679), z = +77.4 over 1000 draws",
+        within,
+    ];
     place.expect(0, &format!("{BATCHED} --range 0,1 --tolerance 0.05 x.f64"), &said);
     place.expect(
         3,
@@ -202,8 +212,7 @@ fn a_tolerance_that_is_asked_for_is_the_one_that_is_tested() {
     place.expect(1, "--truth 0.25 --variance 0 --tolerance 0.05 off.f64", &[unused]);
     place.expect(0, "--truth 0.25 --range 0,1 --tolerance 0.05 off.f64", &["pass"]);
     // Without one, draws that are all alike and off do not pass.
-    let (code, text) = place.says("--truth 0.25 --range 0,1 off.f64", &[]);
-    assert!(code == 0 || !text.contains("z = "), "{text}");
+    place.expect(3, "--truth 0.25 --range 0,1 off.f64", &["undecided"]);
 }
 
 #[test]
@@ -313,10 +322,11 @@ fn a_draw_of_0_or_1_has_the_moments_of_a_coin_in_slabs_of_any_depth() {
                     "[{ weighted = { sampling.constant.value = 300 } }, { analog",
                 );
             let rows = predicted(&case);
-            assert!(rows.len() == 4, "{case}");
+            // Refused, where the truth itself is not resolved.
+            let refused = rows.iter().all(|row| row["truth"].is_empty());
+            assert!(rows.len() == if refused { 2 } else { 4 }, "{case}");
             for row in &rows {
                 let number = |column: &str| row[column].parse::<f64>().ok();
-                // Refused, where the truth itself is not resolved.
                 let Some(truth) = number("truth") else { continue };
                 let context = format!("{depth}, {albedo}, {light}: {row:?}");
                 let coin = truth * (1.0 - truth);

@@ -320,7 +320,10 @@ fn bad_input_is_2_with_one_clear_error() {
         ("--case case.toml --estimator ratoi x.f64", "choose one of: ratio"),
         ("--case case.toml --estimator ratio x.f64", "several estimators"),
         ("--case case.toml --estimator woodcock x.f64", "0.8, 1"),
-        ("--case case.toml --estimator woodcock --swept 0.4 x.f64", "0.8, 1"),
+        (
+            "--case case.toml --estimator woodcock --swept 0.4 x.f64",
+            "the nearest value of the sweep is 0.8",
+        ),
         ("--case case.toml --estimator closed-form x.f64", "no estimator"),
     ] {
         place.expect(2, arguments, &[word]);

@@ -37,12 +37,13 @@ fn shown(table: &str) -> Vec<(String, String)> {
 /// A folder with what cases name: files of the checkout stand in it by the same paths.
 fn place() -> Place {
     let place = Place::new(&[]);
-    let data = "tests/data/vdb";
-    fs::create_dir_all(place.path().join(data)).expect("a folder");
-    for entry in fs::read_dir(root().join(data)).expect("the folder") {
-        let from = entry.expect("an entry").path();
-        let to = place.path().join(data).join(from.file_name().expect("a name"));
-        fs::copy(from, to).expect("a copy");
+    for data in ["tests/data/vdb", "tests/data/field/23-npy-axes"] {
+        fs::create_dir_all(place.path().join(data)).expect("a folder");
+        for entry in fs::read_dir(root().join(data)).expect("the folder") {
+            let from = entry.expect("an entry").path();
+            let to = place.path().join(data).join(from.file_name().expect("a name"));
+            fs::copy(from, to).expect("a copy");
+        }
     }
     place
 }
