@@ -213,7 +213,7 @@ impl<S> Check<S> {
         if !(alpha > 0.0 && alpha < 1.0) {
             let (what, wanted) = ("alpha", "a probability above 0 and below 1");
             let source = ClaimError::Number { what, value: alpha, wanted };
-            return Err(CheckError::Claim { name: self.name.clone(), source });
+            return Err(CheckError::Claim { name: self.name.clone(), source: source.into() });
         }
         let wanted = Wanted {
             tolerance: self.said.tolerance,
@@ -230,6 +230,9 @@ impl<S> Check<S> {
             Ok(Reading::with(trial, std::mem::take(&mut background)))
         };
         let readings: Result<Vec<Reading>, _> = claims.into_iter().map(reading).collect();
-        readings.map_err(|source| CheckError::Claim { name: self.name.clone(), source })
+        readings.map_err(|source: ClaimError| CheckError::Claim {
+            name: self.name.clone(),
+            source: source.into(),
+        })
     }
 }

@@ -34,7 +34,7 @@ pub enum CheckError {
         /// The check.
         name: String,
         /// What is wrong with it.
-        source: ClaimError,
+        source: Box<ClaimError>,
     },
     /// A draw without values.
     #[error("check `{name}`: a draw has no values; return one at least")]

@@ -168,8 +168,8 @@ impl Said {
             let rounding = self.rounding;
             let given =
                 Given { truth, variance, kurtosis, range: None, lookups: own_lookups, rounding };
-            let by_numbers =
-                Claim::new(&given).map_err(|source| CheckError::Claim { name: name(), source })?;
+            let by_numbers = Claim::new(&given)
+                .map_err(|source| CheckError::Claim { name: name(), source: source.into() })?;
             let known = theory.map(|channels| {
                 let claim = channels[index].1;
                 Claim { rounding: claim.rounding.max(rounding), ..claim }
@@ -188,7 +188,9 @@ impl Said {
                     Claim { lookups: own_lookups.or(told), ..known }
                 }
             };
-            claim.within(self.range).map_err(|source| CheckError::Claim { name: name(), source })
+            claim
+                .within(self.range)
+                .map_err(|source| CheckError::Claim { name: name(), source: source.into() })
         };
         (0..values).map(claim).collect()
     }

@@ -190,7 +190,7 @@ pub fn main(arguments: &Arguments, catalogue: &Catalogue, console: &Console) -> 
     if !errors.is_empty() {
         return Ok(USAGE);
     }
-    Ok(arguments.code(worst(judged.iter().map(|found| &found.judgement))))
+    Ok(arguments.code(worst(&judged.iter().map(|found| &found.judgement))))
 }
 
 /// The verdict on the draws of a file, or on one channel of them.
@@ -218,7 +218,7 @@ fn name(file: &Path) -> String {
 }
 
 /// Fail before inconclusive before pass.
-fn worst<'a>(judged: impl Iterator<Item = &'a Judgement> + Clone) -> Verdict {
+fn worst<'a>(judged: &(impl Iterator<Item = &'a Judgement> + Clone)) -> Verdict {
     let any = |verdict| judged.clone().any(|judgement| judgement.verdict == verdict);
     let order = [Verdict::Fail, Verdict::Inconclusive];
     order.into_iter().find(|&verdict| any(verdict)).unwrap_or(Verdict::Pass)

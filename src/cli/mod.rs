@@ -99,7 +99,7 @@ enum Command {
     /// List the grids, images and draws in files, with their sizes, boxes and ranges
     Inspect(inspect::Arguments),
     /// Judge the draws of another renderer, from a file or a pipe
-    Judge(judge::Arguments),
+    Judge(Box<judge::Arguments>),
     /// A case as a scene of Mitsuba 3 or pbrt-v4, with what its pixels must be
     Export(export::Arguments),
     /// Shell completions

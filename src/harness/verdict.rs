@@ -68,7 +68,7 @@ pub fn predicted_with_optima(plan: &Plan) -> Record {
             let best = best.filter(|_| row.verdict.is_none());
             row.best_sampling = best.map(|best| best.sampling);
             row.best_fom = finite(best.map(|best| best.figure_of_merit));
-            row.best_kind = best.map_or("", |best| best.kind.words()).to_owned();
+            best.map_or("", |best| best.kind.words()).clone_into(&mut row.best_kind);
             row.best_limit = best.and_then(|best| best.kind.limit());
         }
     }

@@ -1,5 +1,6 @@
 //! What theory claims of one experiment of a case.
 
+use std::fmt::Write;
 use std::sync::Arc;
 
 use super::claim::{Claim, ClaimError, Lookups};
@@ -88,9 +89,9 @@ impl Theory {
         }
         let mut about = format!("`{label}` of {}", case.name);
         if let Some((what, value)) = variation {
-            about += &format!(", {} = {}", what.key(), number(value));
+            let _ = write!(about, ", {} = {}", what.key(), number(value));
             if let Some(asked) = choice.swept.filter(|_| choice.nearest) {
-                about += &format!(", the value of the sweep nearest to {}", number(asked));
+                let _ = write!(about, ", the value of the sweep nearest to {}", number(asked));
             }
         }
         let channels = claims(case, &prediction, rounding);

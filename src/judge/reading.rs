@@ -5,7 +5,7 @@ use super::contents::Contents;
 use super::flights::Ends;
 use super::judgement::{Judgement, Stop};
 use super::scalar::{Levels, Scalar};
-use super::theory::{Background, DISTRIBUTION, Tested};
+use super::theory::{Background, DISTRIBUTION, Tested, Tests};
 use super::trial::{BUFFER, Trial};
 use super::{dependence, verdict};
 use crate::numeric::sum::Sum;
@@ -325,7 +325,7 @@ impl Reading {
             self.judge_averages(rest);
         }
         self.scalars().for_each(Scalar::decide);
-        let tested = self.background.tests.take().map_or(Tested::default(), |tests| tests.close());
+        let tested = self.background.tests.take().map_or(Tested::default(), Tests::close);
         let mut notes = std::mem::take(&mut self.background.notes);
         notes.extend(tested.untested);
         let is_single = self.ends.as_ref().map_or(self.is_single, |ends| ends.is_single);

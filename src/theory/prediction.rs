@@ -223,7 +223,7 @@ impl Prediction {
             channel.most_variance = None;
         }
         let Self { stable_share, setup_lookups, .. } = self;
-        Self { channels, stable_share, setup_lookups, ..Self::default() }
+        Self { channels, setup_lookups, stable_share, ..Self::default() }
     }
 
     /// The same of order-free draws: their values have the same law, their lookups may have not.

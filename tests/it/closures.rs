@@ -265,7 +265,10 @@ fn what_makes_no_sense_is_told_with_its_cure() {
             "multiply the draws by e^τ",
         ),
         (said(u().of(CASE, "ratio", 1.0).truth(0.5).verdict()), "the truth is given twice"),
-        (said(pair().of(CASE, "ratio", 1.0).verdict()), "1 number for the channels of the case"),
+        (
+            said(pair().of(CASE, "ratio", 1.0).verdict()),
+            "a draw has 2 values, but the case has 1 channel",
+        ),
         (said(check("none", |_| [0.0; 0]).truth(0.5).verdict()), "return one at least"),
         (said(u().truth(0.5).range(1.0, 0.0).verdict()), "is empty"),
         (said(u().truth(1e308).range(0.0, 1.0).verdict()), "the truth 1e308 inside"),

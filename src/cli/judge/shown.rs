@@ -47,7 +47,7 @@ impl Arguments {
             _ if judged.len() == files.len() => format!("of {} files", judged.len()),
             _ => format!("of {} channels of {} files", judged.len(), files.len()),
         };
-        report::console::together(verdicts.clone(), &of, worst(verdicts), self.alpha)
+        report::console::together(&verdicts, &of, worst(&verdicts), self.alpha)
     }
 
     /// All of it as JSON has it.
@@ -62,7 +62,7 @@ impl Arguments {
         let of_file = |channels: &[Judged]| match channels {
             [one] if one.channel.is_empty() => serde_json::json!({ "judgement": one.judgement }),
             _ => {
-                let verdict = worst(channels.iter().map(|found| &found.judgement));
+                let verdict = worst(&channels.iter().map(|found| &found.judgement));
                 let channels = channels.iter().map(|found| {
                     serde_json::json!({ "channel": found.channel, "judgement": found.judgement })
                 });
@@ -78,7 +78,7 @@ impl Arguments {
             .into_iter()
             .map(|channels| with(of_file(channels), "file", serde_json::json!(channels[0].file)))
             .collect();
-        let verdict = worst(judged.iter().map(|found| &found.judgement));
+        let verdict = worst(&judged.iter().map(|found| &found.judgement));
         serde_json::json!({ "verdict": verdict, "alpha": self.alpha, "files": files })
     }
 }

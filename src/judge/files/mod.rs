@@ -99,7 +99,7 @@ pub struct Draws {
 
 enum Source {
     Csv(Box<csv::Table>),
-    Rows(rows::Rows),
+    Rows(Box<rows::Rows>),
 }
 
 impl std::fmt::Debug for Draws {
@@ -174,8 +174,8 @@ impl Draws {
                 let table = csv::Table::open(bytes, name, &layout, lookups.as_ref())?;
                 Source::Csv(Box::new(table))
             }
-            Format::Npy => Source::Rows(npy::open(bytes, name, length, layout)?),
-            Format::Raw => Source::Rows(raw::open(bytes, name, length, layout)?),
+            Format::Npy => Source::Rows(npy::open(bytes, name, length, layout)?.into()),
+            Format::Raw => Source::Rows(raw::open(bytes, name, length, layout)?.into()),
         };
         Ok(Self { source, lookups: Vec::new() })
     }

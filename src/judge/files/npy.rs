@@ -32,7 +32,7 @@ pub(super) fn open(
         _ => return Err(shape()),
     };
     let width = usize::try_from(width).map_err(|_| shape())?;
-    if layout.takes_all() && (draws as u128) < width as u128 {
+    if layout.takes_all() && u128::from(draws) < width as u128 {
         let (file, shape) = (file.to_owned(), array.written_shape());
         return Err(ForeignError::Transposed { file, shape });
     }

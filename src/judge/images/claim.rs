@@ -118,12 +118,11 @@ impl Pixels {
         };
         check("truth", size, &truth, &is_inside, &wanted)?;
         check_numbers(claim)?;
-        let (variance, estimate) = match Estimated::of(claim, size)? {
-            Some((variance, estimate)) => (Some(variance), Some(estimate)),
-            None => {
-                let level = claim.variance.as_ref();
-                (level.map(|variance| variance.spread("variance", size)).transpose()?, None)
-            }
+        let (variance, estimate) = if let Some((variance, estimate)) = Estimated::of(claim, size)? {
+            (Some(variance), Some(estimate))
+        } else {
+            let level = claim.variance.as_ref();
+            (level.map(|variance| variance.spread("variance", size)).transpose()?, None)
         };
         if let (Some(variance), None) = (&variance, &estimate) {
             let is_fine = |x: f64| x.is_finite() && x >= 0.0;

@@ -118,7 +118,7 @@ pub(super) struct Pairs {
 
 impl Pairs {
     /// Adds the Y of the passes of a part.
-    pub(super) fn add(&mut self, stack: &Stack, places: impl Iterator<Item = usize> + Clone) {
+    pub(super) fn add(&mut self, stack: &Stack, places: &(impl Iterator<Item = usize> + Clone)) {
         for first in (0..stack.passes - 1).step_by(2) {
             let (one, other) = (stack.pass(first), stack.pass(first + 1));
             for i in places.clone() {
@@ -146,7 +146,7 @@ pub(super) fn all_q(stacks: &[&Stack], parts: &[Part], kurtosis: Option<f64>) ->
     let own = parallel::map(parts, |part| {
         let mut pairs = Pairs::default();
         for stack in stacks {
-            pairs.add(stack, part.places(stack));
+            pairs.add(stack, &part.places(stack));
         }
         pairs.q()
     });

@@ -84,7 +84,9 @@ fn alike(stack: &Stack) -> Option<Repeat> {
         let mut last: BTreeMap<u64, usize> = BTreeMap::new();
         for pass in 0..n {
             let mut hasher = DefaultHasher::new();
-            part.iter().for_each(|&pixel| stack.grey(pass, pixel).to_bits().hash(&mut hasher));
+            for &pixel in part {
+                stack.grey(pass, pixel).to_bits().hash(&mut hasher);
+            }
             if let Some(earlier) = last.insert(hasher.finish(), pass) {
                 *alike.entry((earlier, pass)).or_default() += 1;
             }

@@ -121,8 +121,7 @@ pub(super) fn pairs(
     let judged: Vec<usize> = (0..stack.size.values()).filter(is_judged).collect();
     let count = judged.len() as f64;
     let claimed = judged.iter().map(|&i| variance[i]).sum::<f64>() / count;
-    // NaN where nothing is judged.
-    if !(claimed > 0.0) {
+    if claimed.is_nan() || claimed <= 0.0 {
         return None;
     }
     // The channels of a pixel depend on each other: they are one draw.

@@ -24,7 +24,7 @@ pub fn block(judgement: &Judgement, name: &str, width: usize) -> String {
 
 /// Summary of several verdicts; `of` names the draws in words.
 pub fn together<'a>(
-    judged: impl Iterator<Item = &'a Judgement> + Clone,
+    judged: &(impl Iterator<Item = &'a Judgement> + Clone),
     of: &str,
     worst: Verdict,
     alpha: f64,

@@ -33,7 +33,7 @@ fn grids_are_told_by_name_size_box_and_values() {
     let values: Vec<f64> = (0..27).map(|n| f64::from(n * n % 8) / 4.0 + 0.125).collect();
     let mean = values.iter().sum::<f64>() / 27.0;
     let most = values.iter().copied().fold(0.0, f64::max);
-    assert_eq!([&later["least"], &later["most"]].map(|x| x.as_f64()), [Some(0.125), Some(most)]);
+    assert_eq!([&later["least"], &later["most"]].map(Value::as_f64), [Some(0.125), Some(most)]);
     assert!((later["mean"].as_f64().expect("a mean") - mean).abs() < 1e-12);
     assert_eq!((later["background"].as_f64(), later["active"].as_u64()), (Some(0.0), Some(27)));
     let several = inspected(&["vdb/several.vdb"]);
@@ -124,7 +124,7 @@ fn images_and_draws_are_told() {
 fn what_cannot_be_read_is_one_error_each_and_exit_code_2() {
     let folder = tempfile::tempdir().expect("a folder");
     let write = |name: &str, bytes: &[u8]| {
-        std::fs::write(folder.path().join(name), bytes).expect("written")
+        std::fs::write(folder.path().join(name), bytes).expect("written");
     };
     write("a.vol", b"VOL");
     write("a.npy", b"none");

@@ -136,7 +136,7 @@ fn a_grid_of_pbrt_is_zero_beyond_its_box() {
         there.display()
     );
     // Along x at the height of the first row: 0 at −0.5, 0.5 at 0.5, 1 at 1.5, 0 at 2.5; the box is from 0 to 2.
-    let depth = 0.5 * (0.25 + 0.5) * 0.5 + 0.75 + 0.5 * (1.0 + 0.5) * 0.5;
+    let depth: f64 = 0.5 * (0.25 + 0.5) * 0.5 + 0.75 + 0.5 * (1.0 + 0.5) * 0.5;
     let truth = crate::common::predicted(&text)[0].truth.expect("a transmittance");
-    assert!((truth / (-depth as f64).exp() - 1.0).abs() < 1e-14, "{truth}");
+    assert!((truth / (-depth).exp() - 1.0).abs() < 1e-14, "{truth}");
 }

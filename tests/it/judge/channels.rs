@@ -213,7 +213,9 @@ fn arrays_of_another_shape_are_refused_with_the_cure() {
 #[test]
 fn a_wrong_channel_is_named_and_fails_the_file() {
     let mut wrong = draws(5);
-    wrong.iter_mut().for_each(|x| x[1] *= 1.1);
+    for x in &mut wrong {
+        x[1] *= 1.1;
+    }
     let place = Place::new(&[
         ("three.toml", CASE.as_bytes()),
         ("x.npy", &npy("<f8", &format!("({N}, 3)"), &raw(&rows(&wrong)))),
@@ -244,7 +246,9 @@ fn checks_in_memory_take_draws_without_their_luminance() {
     let outcome = claim().judge(&rows(&draws)).expect("a verdict");
     assert_eq!(outcome.verdict(), Verdict::Pass, "{outcome}");
     assert_eq!(outcome.channels, NAMES);
-    draws.iter_mut().for_each(|x| x[2] *= 1.2);
+    for x in &mut draws {
+        x[2] *= 1.2;
+    }
     let reason = claim().judge(&rows(&draws)).expect("a verdict").reason();
     assert!(reason.contains("channel 3: the "), "{reason}");
     let error = claim().values(2).judge(&rows(&draws)).expect_err("two values").to_string();

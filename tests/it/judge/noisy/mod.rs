@@ -88,7 +88,7 @@ fn image(of: impl Fn(usize) -> f64) -> Level {
     Level::Each(Picture::new(SIZE, (0..PIXELS).map(of).collect()).expect("a picture"))
 }
 
-/// Sums over the passes of a pixel, by pairs, and not as the product has them: Σ(x_p − x_q)²/(n(n − 1)) over p < q.
+/// Sums over the passes of a pixel, by pairs, and not as the product has them: `Σ(x_p − x_q)²/(n(n − 1))` over p < q.
 fn estimated(stack: &[f64]) -> Vec<f64> {
     let n = stack.len() / PIXELS;
     let value = |pass: usize, pixel: usize| stack[pass * PIXELS + pixel];
@@ -164,8 +164,7 @@ fn wrong_renderers_are_found_by_an_estimated_variance() {
 fn a_truth_of_passes_has_their_error() {
     let exact = |law: Law| image(move |pixel| law.variance() * truth(pixel) * truth(pixel));
     let (mut failed, mut without) = (0, 0);
-    for seed in 0..40 {
-        let law = [Law::Normal, Law::Fireflies(1.0)][seed as usize % 2];
+    for (seed, law) in (0..40).zip([Law::Normal, Law::Fireflies(1.0)].into_iter().cycle()) {
         let reference = values(30_000 + seed, 4, law);
         let mean = |i: usize| (0..4).map(|pass| reference[pass * PIXELS + i]).sum::<f64>() / 4.0;
         let claim = Claim {

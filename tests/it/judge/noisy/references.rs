@@ -1,5 +1,7 @@
 //! Two stacks against each other, and how often correct stacks fail.
 
+use std::fmt::Write;
+
 use trueflight::judge::images::against::{Terms, compare};
 use trueflight::judge::images::{Claim, Wanted};
 use trueflight::stats::verdict::Verdict;
@@ -94,7 +96,7 @@ fn levels_of_correct_stacks() {
                 let found = compare(&stack, &other, Terms::default(), &Wanted::default());
                 failed[3] += count(found.expect("a judgement").verdict);
             }
-            table += &format!("{law:?}, {n} passes, {q} others: {failed:?} of {STACKS}\n");
+            let _ = writeln!(table, "{law:?}, {n} passes, {q} others: {failed:?} of {STACKS}");
             for (total, failed) in total.iter_mut().zip(failed) {
                 *total = [total[0] + failed, total[1] + STACKS];
             }
