@@ -91,7 +91,9 @@ fn score(z: f64) -> String {
 fn distinct_digits(a: f64, b: f64) -> usize {
     let relative = (a - b).abs() / a.abs().max(b.abs());
     let places = -relative.log10();
-    let digits = if places.is_finite() { (places.ceil() + 2.0).max(3.0) } else { 3.0 };
+    // A power of ten is not rounded up.
+    let places = (places - 1e-6).ceil();
+    let digits = if places.is_finite() { (places + 2.0).max(3.0) } else { 3.0 };
     (digits as usize).min(MAX_DIGITS)
 }
 

@@ -91,7 +91,14 @@ def test_the_best_sampling_extinction_is_searched():
 
 def test_setup_lookups_are_charged_to_the_draws_of_a_ray():
     for head, draws in (("", 1), ("draws_per_ray = 8", 8)):
-        case = CASE.replace("[problem", f"{head}\n[problem", 1).replace("{ ratio = {} }", "{ double.control.explorers.points = 20 }")
+        case = f"""
+            title = "Eq. 21"
+            {head}
+            [problem.transmittance]
+            volume.eq21 = {{}}
+            ray = {{ origin = [0, 0, 0], direction = [0, 0, 1], length = 20 }}
+            estimators = [{{ double = {{ sampling = 1, control.explorers.points = 20 }} }}]
+        """
         found = tf.predict(case, filter="double")
         assert found["setup_lookups"].tolist() == [20] and found["draws_per_ray"].tolist() == [draws]
         cost = found["predicted_lookups"] + 20 / draws

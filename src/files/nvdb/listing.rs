@@ -73,7 +73,7 @@ pub struct Listed {
 }
 
 impl Listed {
-    /// Whether [`read`] reads its type.
+    /// Whether [`super::read`] reads its type.
     pub fn is_read(&self) -> bool {
         nodes::Values::of(self.number).is_some()
     }

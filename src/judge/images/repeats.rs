@@ -22,6 +22,9 @@ use crate::stats::independence::Signs;
 /// About how many pixels are looked at.
 const PIXELS: usize = 1 << 16;
 
+/// ln of a probability that is no chance.
+const SURE: f64 = -20.0;
+
 /// A repetition.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Repeat {
@@ -34,7 +37,12 @@ pub(super) struct Repeat {
 /// The most surprising repetition; `None` where no value comes twice.
 pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     // Two searches share the level.
-    let found = [by_values(stack), alike(stack)].into_iter().flatten();
+    let (values, alike) = (by_values(stack), alike(stack));
+    // Where two passes of 0 and 1 are alike, all others share the other value in many pixels: they are not meant.
+    let is_most = |found: &Repeat| 2 * found.passes.len() > stack.passes;
+    let is_sure = alike.as_ref().is_some_and(|found| found.ln_p < SURE);
+    let values = values.filter(|found| !(is_sure && is_most(found)));
+    let found = [values, alike].into_iter().flatten();
     let found = found.map(|found| Repeat { ln_p: (found.ln_p + LN_2).min(0.0), ..found });
     found.min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))
 }
