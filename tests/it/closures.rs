@@ -274,7 +274,7 @@ fn what_makes_no_sense_is_told_with_its_cure() {
         (said(u().truth(1e308).range(0.0, 1.0).verdict()), "the truth 1e308 inside"),
         (
             said(u().of(CASE, "ratio", f64::NAN).verdict()),
-            "swept value = NaN is not a finite number above 0",
+            "sampling = NaN is not a finite number above 0",
         ),
         (said(u().of("transmitance/eq21-overview", "ratio", 1.0).verdict()), "did you mean"),
         (said(claim("none").truth(0.5).judge(&[])), "there are no draws"),
