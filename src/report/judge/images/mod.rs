@@ -1,6 +1,7 @@
 //! What `judge --images` found: on the console, as a table of tiles, and as a picture.
 
 pub mod console;
+mod maps;
 pub mod p_values;
 pub mod tiles_csv;
 pub mod z_map;

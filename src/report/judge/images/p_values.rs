@@ -4,16 +4,13 @@
 //! t-test*, Journal of Computer Graphics Techniques 9 (2020). Here the p-values are those of permutations where two
 //! stacks are compared, which are exact for equal laws; else those of z by the normal law.
 
-use super::z_map::{FRAMES, GAP, HEAD, LONGEST, border, dot};
+use super::maps::{Dots, GAP, HEAD, Maps, border, png as encoded, smallest};
 use crate::catalogue::digits::short;
-use crate::harness::record::Verdict;
 use crate::judge::images::Judgement;
 use crate::judge::images::judgement::Tile;
 use crate::report::plots::font::{Typeface, fit};
-use crate::report::plots::paint;
-use crate::report::plots::sheet::{Align, Image, Sheet};
+use crate::report::plots::sheet::{Align, Sheet};
 use crate::report::plots::style::{COLOURS, DARK, GREY, ink};
-use crate::report::render::palette;
 
 /// The fewest and the most bins of the histogram; between them a bin for every ten tiles.
 const BINS: [usize; 2] = [4, 20];
@@ -33,24 +30,13 @@ const NONE: [u8; 3] = [0xF3, 0xE8, 0xC8];
 ///
 /// In words, where the painter gives up.
 pub fn png(judgement: &Judgement, name: &str) -> Result<Vec<u8>, String> {
-    let face = Typeface::load().map_err(|error| error.to_string())?;
-    let (rgb, size) = paint::pixels_of(&compose(judgement, name, &face))?;
-    palette::encode(&rgb, size).map_err(|error| error.to_string())
-}
-
-/// p of the smallest tiles, which do not overlap.
-fn smallest(judgement: &Judgement) -> impl Iterator<Item = &Tile> {
-    judgement.tiles.iter().filter(|tile| tile.size == judgement.tile)
+    encoded(|face| compose(judgement, name, face))
 }
 
 fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
-    let size = judgement.size;
-    let scale = LONGEST / size.rows.max(size.columns) as f64;
-    let [width, height] = [size.columns, size.rows].map(|n| n as f64 * scale);
-    let across = size.channels as f64;
-    let all = GAP + across * (width + GAP) + WIDTH + GAP;
-    let mut sheet = Sheet::new(all, HEAD + height.max(HEIGHT + 70.0) + 24.0);
-    let room = all - 2.0 * GAP;
+    let maps = Maps::new(judgement);
+    let all = maps.end() + WIDTH + GAP;
+    let mut sheet = Sheet::new(all, HEAD + maps.size[1].max(HEIGHT + 70.0) + 24.0);
     let source = match judgement.comparison.as_ref().map(|found| found.method) {
         Some("permutation") => "by permutations of the passes: uniform if both stacks have one law",
         Some(_) => "bounds by signs of differences: rather too large",
@@ -58,48 +44,12 @@ fn compose(judgement: &Judgement, name: &str, face: &Typeface) -> Sheet {
     };
     let facts = format!("p-values of tiles of {0} × {0} pixels, {source}", judgement.tile);
     let legend = "map: black to white, p from 0 to 1; red: p ≤ 0.001; a blue frame: it fails. No pattern should be seen";
-    for (y, text, em, colour) in [
-        (24.0, format!("{name}: {}", judgement.verdict.word()), 16.0, DARK),
-        (46.0, facts, 11.5, GREY),
-        (64.0, legend.to_owned(), 11.5, GREY),
-    ] {
-        sheet.text([GAP, y], fit(face, &text, em, room), em, colour, Align::Start);
-    }
-    for channel in 0..size.channels {
-        let left = GAP + channel as f64 * (width + GAP);
-        if size.channels > 1 {
-            let middle = [left + 0.5 * width, HEAD - 9.0];
-            sheet.text(middle, format!("channel {channel}"), 11.5, DARK, Align::Middle);
-        }
-        sheet.image(map(judgement, channel, [left, HEAD], [width, height]));
-        border(&mut sheet, [left, HEAD], [width, height], GREY);
-        let fails = |tile: &&Tile| tile.channel == channel && tile.verdict == Verdict::Fail;
-        for tile in judgement.tiles.iter().filter(fails).take(FRAMES) {
-            let at = [left + tile.column as f64 * scale, HEAD + tile.row as f64 * scale];
-            let size = [tile.width, tile.height].map(|n| n as f64 * scale);
-            border(&mut sheet, at, size, COLOURS[0]);
-        }
-    }
-    histogram(&mut sheet, judgement, face, GAP + across * (width + GAP));
+    maps.head(&mut sheet, face, all - 2.0 * GAP, [name, &facts, legend]);
+    // The smallest of all pixels of a dot; a minimum leaves NaN out.
+    let join = |shown: f64, tile: &Tile| shown.min(tile.p.unwrap_or(f64::NAN));
+    maps.draw(&mut sheet, COLOURS[0], &Dots { none: f64::NAN, join, colour });
+    histogram(&mut sheet, judgement, face, maps.end());
     sheet
-}
-
-fn map(judgement: &Judgement, channel: usize, at: [f64; 2], size: [f64; 2]) -> Image {
-    let dot = dot(judgement);
-    let columns = judgement.size.columns.div_ceil(dot);
-    let mut shown = vec![f64::NAN; columns * judgement.size.rows.div_ceil(dot)];
-    for tile in smallest(judgement).filter(|tile| tile.channel == channel) {
-        let Some(p) = tile.p else { continue };
-        for row in tile.row / dot..=(tile.row + tile.height - 1) / dot {
-            for column in tile.column / dot..=(tile.column + tile.width - 1) / dot {
-                let shown = &mut shown[row * columns + column];
-                // The least of all pixels of a dot.
-                *shown = shown.min(p);
-            }
-        }
-    }
-    let pixels = shown.iter().map(|&p| colour(p)).collect();
-    Image { at, size, columns, pixels }
 }
 
 fn colour(p: f64) -> [u8; 3] {
@@ -154,7 +104,10 @@ fn histogram(sheet: &mut Sheet, judgement: &Judgement, face: &Typeface, left: f6
         sheet.text([x0 - 6.0, y(n)], text, 10.5, DARK, Align::End);
     }
     for (line, text) in [
-        format!("{all} tiles; line and band: uniform, ± 3 standard deviations."),
+        format!(
+            "{all} {}; line and band: uniform, ± 3 standard deviations.",
+            if all == 1 { "tile" } else { "tiles" }
+        ),
         "Uniform: nothing was found. A peak at 0: tiles are off.".to_owned(),
         "A peak at 1: less noise than the variance says, or passes shared.".to_owned(),
     ]
