@@ -51,7 +51,7 @@ impl Default for Said {
 }
 
 impl Said {
-    /// How many values a pushed draw has.
+    /// Number of values of a pushed draw.
     pub(super) fn values(&self) -> usize {
         let truths = self.truth.as_ref().map_or(1, |Values(list)| list.len());
         let known = self.known().map_or(truths, |theory| theory.channels.len());

@@ -29,7 +29,7 @@ pub struct Scenario {
     meshes: OnceLock<Vec<Arc<Mesh>>>,
     estimators: Estimators,
     variants: Option<Variants>,
-    /// What the problem asks of the ray.
+    /// Requirement of the problem on the ray.
     ray: RayNeed,
 }
 

@@ -6,8 +6,8 @@
 //! variance, mean, lookups, drift            fail; inconclusive; else pass
 //! ```
 //!
-//! A variance that is refuted only because the mean is off is not accused. One that is refuted as too small is named before the mean, and a mean that is off only in
-//! units of that variance is not accused: its evidence rests on what is refuted.
+//! A variance that is refuted only because the mean is off does not fail. One that is refuted as too small is named before
+//! the mean. A mean that is off only in units of that variance does not fail: its evidence rests on what is refuted.
 
 use super::dependence::off_without_change;
 use super::flights::Ends;

@@ -50,7 +50,7 @@ pub struct Sequences {
     tokens: u64,
     ring: Ring,
     kept: HashMap<u64, Window, BuildHasherDefault<Spread>>,
-    /// How many leading bits of a window's hash must be 0.
+    /// Number of leading bits of a window's hash that must be 0.
     bits: u32,
     pending: Option<Bet>,
     bets: f64,
@@ -61,7 +61,7 @@ pub struct Sequences {
     reach: Option<[u64; 2]>,
 }
 
-/// What a token is, and how many make a window and a bet.
+/// Definition of a token, and the numbers of tokens of a window and a bet.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Scheme {
     /// The bits of a value that has more than half of all draws.
@@ -116,7 +116,7 @@ fn bits_of(x: f64) -> u64 {
 }
 
 impl Scheme {
-    /// By the values of a first block; `None` where tokens are so many that single values tell.
+    /// Chooses the scheme by the values of a first block; `None` where values are so varied that equality of single values suffices.
     fn new(block: &[f64]) -> Option<Self> {
         let mut values: Vec<u64> = block.iter().map(|&x| bits_of(x)).collect();
         values.sort_unstable();
@@ -174,7 +174,7 @@ impl Sequences {
         &self.ring.0[token as usize % RING]
     }
 
-    /// Hash of so many tokens, the last of which is the given one.
+    /// Hash of the `count` tokens that end with `last`.
     fn hash_of(&self, last: u64, count: usize, base: u64) -> u64 {
         // Before the first token the ring is 0.
         let before = self.at(last.wrapping_sub(count as u64)).prefix;
@@ -217,7 +217,7 @@ impl Sequences {
         }
     }
 
-    /// Keeps a window whose next tokens are complete.
+    /// Keeps a window after its next tokens are complete.
     fn keep(&mut self, scheme: &Scheme, window: &Token, last: u64) {
         let next = self.hash_of(last, scheme.bet, scheme.bases[1]);
         let token = last - scheme.bet as u64;
@@ -237,7 +237,7 @@ impl Sequences {
         }
     }
 
-    /// Pays out a bet whose last token is the given one.
+    /// Settles the bet that ends with the token `last`.
     fn settle(&mut self, scheme: &Scheme, last: u64) {
         let Some(bet) = self.pending.take() else { return };
         let share = (self.successes + 0.5) / (self.bets + 1.0);

@@ -22,7 +22,7 @@ impl Scenario {
         self.body.name()
     }
 
-    /// How an experiment is called in tables.
+    /// Names of an experiment in tables.
     pub fn names(&self, estimator: usize, variation: Variation) -> Names {
         if let Some(Ok(names)) = self.varied(variation, |other| other.names(estimator, None)) {
             return names;

@@ -206,7 +206,7 @@ pub struct Tile {
     pub verdict: Verdict,
 }
 
-/// How many of the worst tiles are kept apart.
+/// Maximum number of worst tiles that are listed.
 const WORST: usize = 5;
 
 /// Numbers of tiles by their verdicts.

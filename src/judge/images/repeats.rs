@@ -22,7 +22,7 @@ use crate::stats::independence::Signs;
 /// About how many pixels are looked at.
 const PIXELS: usize = 1 << 16;
 
-/// ln of a probability that is no chance.
+/// ln of a probability below which a repetition is certain.
 const SURE: f64 = -20.0;
 
 /// A repetition.
@@ -38,7 +38,7 @@ pub(super) struct Repeat {
 pub(super) fn repeat(stack: &Stack) -> Option<Repeat> {
     // Two searches share the level.
     let (values, alike) = (by_values(stack), alike(stack));
-    // Where two passes of 0 and 1 are alike, all others share the other value in many pixels: they are not meant.
+    // If two passes of 0 and 1 are equal, all others share the other value in many pixels, without being equal.
     let is_most = |found: &Repeat| 2 * found.passes.len() > stack.passes;
     let is_sure = alike.as_ref().is_some_and(|found| found.ln_p < SURE);
     let values = values.filter(|found| !(is_sure && is_most(found)));
