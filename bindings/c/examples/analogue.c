@@ -13,8 +13,8 @@ int main(void)
 {
     double depth = 1.0;
     tf_check *check = tf_check_new("analogue");
-    tf_check_truth(check, exp(-depth));
-    tf_check_range(check, 0.0, 1.0);
+    TF_SET(check, TF_TRUTH, exp(-depth));
+    TF_SET(check, TF_RANGE, 0.0, 1.0);
     tf_check_run(check, draw, &depth);
 
     const int passed = tf_check_passed(check);

@@ -72,11 +72,11 @@ static double timed(const struct problem *problem, enum way way, const double *d
 {
     static volatile double sink;
     tf_check *check = tf_check_new(problem->name);
-    tf_check_truth(check, problem->truth);
-    tf_check_draws(check, count);
-    if (way == BY_VARIANCE) tf_check_variance(check, problem->variance);
-    else tf_check_range(check, 0, 1);
-    if (way == DRAW || way == BATCH || way == AVERAGES) tf_check_batch(check, 4096);
+    TF_SET(check, TF_TRUTH, problem->truth);
+    TF_SET(check, TF_DRAWS, count);
+    if (way == BY_VARIANCE) TF_SET(check, TF_VARIANCE, problem->variance);
+    else TF_SET(check, TF_RANGE, 0, 1);
+    if (way == DRAW || way == BATCH || way == AVERAGES) TF_SET(check, TF_BATCH, 4096);
 
     const double start = now();
     switch (way) {

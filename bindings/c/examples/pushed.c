@@ -13,9 +13,9 @@ int main(void)
     for (size_t i = 0; i < count; ++i) pixels[i] = 1.02 * tf_rng_uniform(&rng);
 
     tf_check *check = tf_check_new("pixels");
-    tf_check_truth(check, 0.5);
-    tf_check_variance(check, 1.0 / 12.0);
-    tf_check_draws(check, count);
+    TF_SET(check, TF_TRUTH, 0.5);
+    TF_SET(check, TF_VARIANCE, 1.0 / 12.0);
+    TF_SET(check, TF_DRAWS, count);
     /* As they come: by hundreds, or all at once. */
     for (size_t i = 0; i < count; i += 100) tf_check_absorb(check, pixels + i, 100);
     free(pixels);

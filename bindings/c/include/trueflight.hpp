@@ -3,10 +3,10 @@
  *     trueflight::check("analogue", [](auto& rng) { return -std::log(rng.positive_uniform()) > 1 ? 1.0 : 0.0; })
  *         .truth(std::exp(-1.0)).range(0, 1).assert_pass();
  *
- * A wrapper of trueflight.h: what a setter means stands there, under the same name. A draw is a number, or a std::array
- * of them; its type says how many values it has. What makes no sense throws `error`, a verdict other than pass
- * `not_passed`; an exception of the estimator's comes through as it is. A check is used by one thread at a time, and not
- * by its own estimator; different checks are independent.
+ * A wrapper of trueflight.h, which documents each property: `.truth(x)` sets TF_TRUTH. A draw is a number, or a std::array
+ * of them; its type says how many values it has. Setters record, and the first draws or the verdict validate: an invalid
+ * claim throws `error`, a verdict other than pass `not_passed`; an exception of the estimator's comes through as it is.
+ * One thread at a time uses a check, and its own estimator must not. Different checks are independent.
  */
 #ifndef TRUEFLIGHT_HPP
 #define TRUEFLIGHT_HPP
@@ -26,7 +26,7 @@
 
 namespace trueflight {
 
-/** A check has no verdict. */
+/** Error of a check, which has no verdict. */
 class error : public std::runtime_error {
   public:
     explicit error(tf_status status) : std::runtime_error(tf_last_error()), status_(status) {}
@@ -36,21 +36,21 @@ class error : public std::runtime_error {
     tf_status status_;
 };
 
-/** A verdict is fail or inconclusive; the text is that of the verdict. */
+/** Verdict of fail or inconclusive; the message is the text of the verdict. */
 class not_passed : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/** The random stream of an estimator; also a generator for the distributions of <random>. */
+/** Random stream of an estimator; also a generator for the distributions of <random>. */
 class rng {
   public:
     using result_type = std::uint64_t;
     explicit rng(tf_rng *stream) : stream_(stream) {}
 
-    /** In [0, 1). */
+    /** Returns a uniform number in [0, 1). */
     double uniform() { return tf_rng_uniform(stream_); }
-    /** In (0, 1]: its logarithm is finite. */
+    /** Returns a uniform number in (0, 1]. Its logarithm is finite. */
     double positive_uniform() { return tf_rng_positive_uniform(stream_); }
 
     result_type operator()() { return tf_rng_word(stream_); }
@@ -61,14 +61,14 @@ class rng {
     tf_rng *stream_;
 };
 
-/** What was found. */
+/** Verdict with its measurements. */
 struct outcome {
     tf_verdict verdict;
-    /** Of each value of a draw. */
+    /** Measurements of each value of a draw. */
     std::vector<tf_numbers> values;
-    /** Why it is no pass; empty for a plain pass. */
+    /** Reason of a verdict other than pass; empty for a plain pass. */
     std::string reason;
-    /** All of it in a few lines. */
+    /** Verdict in a few lines, as `trueflight judge` prints it. */
     std::string text;
 
     bool passed() const noexcept { return verdict == TF_VERDICT_PASS; }
@@ -83,7 +83,7 @@ inline void need(tf_status status)
     if (status != TF_STATUS_OK) throw error(status);
 }
 
-/** How a draw is written: a number, or several. */
+/** Conversion of a draw to one or several numbers. */
 template <class T> struct draw {
     static_assert(std::is_arithmetic<T>::value, "a draw is a number or a std::array of numbers");
     static constexpr std::size_t values = 1;
@@ -100,7 +100,7 @@ template <class T, std::size_t K> struct draw<std::array<T, K>> {
     }
 };
 
-/** An estimator, and what it threw: no exception may go through C. */
+/** Estimator with the exception that it threw: none may pass through C. */
 template <class F> struct trampoline {
     using one = draw<std::decay_t<decltype(std::declval<F &>()(std::declval<rng &>()))>>;
     F &estimator;
@@ -110,7 +110,7 @@ template <class F> struct trampoline {
     {
         auto *self = static_cast<trampoline *>(user);
         try {
-            // In registers while draws are made.
+            // A local copy stays in registers.
             tf_rng local = *stream;
             rng random(&local);
             for (std::size_t i = 0; i < draws; ++i, out += one::values) {
@@ -126,32 +126,32 @@ template <class F> struct trampoline {
 
 } // namespace detail
 
-/** What is known of a draw; `Self` is the check, so that calls can be chained. */
+/** Setters of a claim; `Self` is the check, so that calls can be chained. */
 template <class Self> class setup {
   public:
-    /** One truth serves all values of a draw; a list has one for each. */
-    Self &truth(double value) { return said(tf_check_truth(get(), value)); }
-    Self &truth(const std::vector<double> &list) { return said(tf_check_truths(get(), list.data(), list.size())); }
-    Self &variance(double value) { return said(tf_check_variance(get(), value)); }
-    Self &variance(const std::vector<double> &list) { return said(tf_check_variances(get(), list.data(), list.size())); }
-    Self &kurtosis(double value) { return said(tf_check_kurtosis(get(), value)); }
-    Self &kurtosis(const std::vector<double> &list) { return said(tf_check_kurtoses(get(), list.data(), list.size())); }
-    Self &range(double low, double high) { return said(tf_check_range(get(), low, high)); }
-    Self &lookups(double mean, double variance) { return said(tf_check_lookups(get(), mean, variance)); }
-    Self &rounding(double value) { return said(tf_check_rounding(get(), value)); }
-    Self &tolerance(double value) { return said(tf_check_tolerance(get(), value)); }
-    Self &variance_tolerance(double value) { return said(tf_check_variance_tolerance(get(), value)); }
-    Self &alpha(double value) { return said(tf_check_alpha(get(), value)); }
-    Self &draws(std::uint64_t count) { return said(tf_check_draws(get(), count)); }
-    Self &seed(std::uint64_t value) { return said(tf_check_seed(get(), value)); }
-    Self &batch(std::uint64_t count) { return said(tf_check_batch(get(), count)); }
-    Self &values(std::size_t count) { return said(tf_check_set_values(get(), count)); }
-    Self &mean_only() { return said(tf_check_mean_only(get())); }
-    /** Without a value of what the case sweeps, the case's own. */
+    /** One number serves all values of a draw; a list has one for each. */
+    Self &truth(double value) { return set(TF_TRUTH, {value}); }
+    Self &truth(const std::vector<double> &list) { return set(TF_TRUTH, list); }
+    Self &variance(double value) { return set(TF_VARIANCE, {value}); }
+    Self &variance(const std::vector<double> &list) { return set(TF_VARIANCE, list); }
+    Self &kurtosis(double value) { return set(TF_KURTOSIS, {value}); }
+    Self &kurtosis(const std::vector<double> &list) { return set(TF_KURTOSIS, list); }
+    Self &range(double low, double high) { return set(TF_RANGE, {low, high}); }
+    Self &lookups(double mean, double variance) { return set(TF_LOOKUPS, {mean, variance}); }
+    Self &rounding(double value) { return set(TF_ROUNDING, {value}); }
+    Self &tolerance(double value) { return set(TF_TOLERANCE, {value}); }
+    Self &variance_tolerance(double value) { return set(TF_VARIANCE_TOLERANCE, {value}); }
+    Self &alpha(double value) { return set(TF_ALPHA, {value}); }
+    Self &draws(std::uint64_t count) { return set(TF_DRAWS, {static_cast<double>(count)}); }
+    Self &batch(std::uint64_t count) { return set(TF_BATCH, {static_cast<double>(count)}); }
+    Self &values(std::size_t count) { return set(TF_VALUES, {static_cast<double>(count)}); }
+    Self &mean_only() { return set(TF_MEAN_ONLY, {1}); }
+    Self &seed(std::uint64_t value) { return done(tf_check_seed(get(), value)); }
+    /** Takes the case's own σ̂ unless `swept` says a value. */
     Self &of(const std::string &name, const std::string &estimator,
              double swept = std::numeric_limits<double>::quiet_NaN())
     {
-        return said(tf_check_of(get(), name.c_str(), estimator.c_str(), swept));
+        return done(tf_check_of(get(), name.c_str(), estimator.c_str(), swept));
     }
 
     tf_check *get() const noexcept { return handle_.get(); }
@@ -174,7 +174,12 @@ template <class Self> class setup {
     }
 
   private:
-    Self &said(tf_status status)
+    Self &set(tf_key key, const std::vector<double> &numbers)
+    {
+        return done(tf_check_set(get(), key, numbers.data(), numbers.size()));
+    }
+
+    Self &done(tf_status status)
     {
         detail::need(status);
         return static_cast<Self &>(*this);
@@ -183,12 +188,12 @@ template <class Self> class setup {
     std::unique_ptr<tf_check, decltype(&tf_check_free)> handle_;
 };
 
-/** A check of draws that are pushed. */
+/** Check of draws that are pushed. */
 class pushed : public setup<pushed> {
   public:
     explicit pushed(const std::string &name) : setup(name) {}
 
-    /** Draws of several values lie one draw after the other; `count` is the number of numbers. */
+    /** Adds draws. Those of several values are stored one draw after the other; `count` is the number of numbers. */
     pushed &absorb(const double *draws, std::size_t count)
     {
         detail::need(tf_check_absorb(get(), draws, count));
@@ -201,9 +206,9 @@ class pushed : public setup<pushed> {
         return *this;
     }
 
-    /** Whether more draws may change what is said. */
+    /** Returns whether more draws may change the verdict. */
     bool is_open() const noexcept { return tf_check_is_open(get()) != 0; }
-    /** Judges; no draw can follow. */
+    /** Judges all draws; no draw can follow. */
     outcome verdict() const { return judged(); }
     void assert_pass() const
     {
@@ -212,7 +217,7 @@ class pushed : public setup<pushed> {
     }
 };
 
-/** A check of draws that an estimator makes. */
+/** Check of draws that an estimator makes. */
 template <class F> class drawn : public setup<drawn<F>> {
   public:
     drawn(const std::string &name, F estimator) : setup<drawn<F>>(name), estimator_(std::move(estimator)) {}
@@ -237,13 +242,13 @@ template <class F> class drawn : public setup<drawn<F>> {
     F estimator_;
 };
 
-/** A check of an estimator: a callable that takes an `rng &` and returns a draw. */
+/** Makes a check of an estimator: a callable that takes an `rng &` and returns a draw. */
 template <class F> drawn<std::decay_t<F>> check(const std::string &name, F &&estimator)
 {
     return drawn<std::decay_t<F>>(name, std::forward<F>(estimator));
 }
 
-/** A check of draws that come later. */
+/** Makes a check of draws that come later. */
 inline pushed claim(const std::string &name) { return pushed(name); }
 
 } // namespace trueflight

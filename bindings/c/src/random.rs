@@ -1,18 +1,18 @@
-//! The random stream of a callback.
+//! Random stream of a callback.
 
 use trueflight::rng::Stream;
 
-/// A random stream: xoshiro256+, the generator of the Rust library. Read it by `tf_rng_uniform` and the like.
+/// Random stream: xoshiro256+, the generator of the Rust library. Draw numbers from it by `tf_rng_uniform`,
+/// `tf_rng_positive_uniform` and `tf_rng_word`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Rng {
-    /// Where it stands; not all zero.
+    /// State of the generator; not all zero.
     pub state: [u64; 4],
 }
 
-impl Rng {
-    /// The same stream.
-    pub(crate) fn of(stream: &Stream) -> Self {
+impl From<&Stream> for Rng {
+    fn from(stream: &Stream) -> Self {
         Self { state: stream.state() }
     }
 }

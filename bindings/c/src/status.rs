@@ -1,39 +1,40 @@
-//! Codes, and the message of the last error.
-#![allow(unsafe_code)] // functions with a name of their own in the library
+//! Status codes, and the message of the last error.
+#![allow(unsafe_code)] // exported functions
 
 use std::cell::Cell;
 use std::ffi::{CStr, CString, c_char};
 
-use trueflight::check::CheckError;
+use trueflight::check::{CheckError, MAX_VALUES};
 
-/// Whether a call did what it was asked for; `tf_last_error` says why not.
+/// Result of a call; `tf_last_error` returns the message of an error.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// It did.
+    /// Success.
     Ok = 0,
     /// A pointer is null.
     NullPointer = 1,
     /// A text is not UTF-8.
     Text = 2,
-    /// What was said of the draws makes no sense, does not go with their number of values, or is too little.
+    /// The claim is invalid or incomplete, or does not match the number of values of a draw.
     Claim = 3,
     /// A case or an estimator does not exist, or cannot be judged.
     Case = 4,
-    /// Draws are missing, have no values or too many, are no whole number, or do not go with their lookups.
+    /// Draws are missing, have no values or too many, are no whole number, or do not match their lookups.
     Draws = 5,
-    /// A callback says that it made more draws than it was asked for.
+    /// A callback returned more draws than it was asked for.
     Callback = 6,
-    /// Something was said of the draws after the first of them, draws came after the verdict, or a callback used the
-    /// check that it draws for.
+    /// The claim was set after the first draw, draws came after the verdict, or a callback used its own check.
     Order = 7,
-    /// A value that a draw does not have.
+    /// A draw has no value of that index.
     Index = 8,
     /// A defect of the library.
     Internal = 9,
+    /// The library has no key of that number.
+    Key = 10,
 }
 
-/// Why a call did nothing.
+/// Error of a call, which changed nothing.
 #[derive(Debug, Clone)]
 pub struct Error {
     pub status: Status,
@@ -46,7 +47,7 @@ impl Error {
     }
 }
 
-/// With the names of C where a message tells what to call.
+/// Messages that name a function have its name in C.
 impl From<CheckError> for Error {
     fn from(error: CheckError) -> Self {
         let status = match &error {
@@ -66,59 +67,62 @@ impl From<CheckError> for Error {
             _ => Status::Internal,
         };
         let message = match &error {
-            CheckError::NoTruth { name } => format!(
-                "check `{name}`: the truth is not known; give it by tf_check_truth, or by tf_check_of"
-            ),
+            CheckError::NoTruth { name } => {
+                format!("check `{name}`: the truth is not known; set TF_TRUTH, or call tf_check_of")
+            }
             CheckError::NoLookups { name } => format!(
-                "check `{name}`: lookups are claimed; push them by tf_check_absorb_with_lookups, or leave \
-                 tf_check_lookups out"
+                "check `{name}`: the claim has lookups; add draws by tf_check_absorb_with_lookups, or leave \
+                 TF_LOOKUPS out"
             ),
             CheckError::NoLookupsWanted { name } => format!(
-                "check `{name}`: nothing is known of the lookups; call tf_check_lookups, or push draws alone"
+                "check `{name}`: nothing is known of the lookups; set TF_LOOKUPS, or add draws without lookups"
             ),
             CheckError::Twice { name, what } => format!(
                 "check `{name}`: the {what} is given twice, by a number and by tf_check_of; leave one of them out, \
-                 or call tf_check_mean_only"
+                 or set TF_MEAN_ONLY"
             ),
+            CheckError::NoValues { name } => {
+                format!("check `{name}`: a draw has no values; give 1 to {MAX_VALUES}")
+            }
             other => other.to_string(),
         };
         Self { status, message }
     }
 }
 
-/// How many bytes the last error has room for, with its end.
+/// Size of the last error in bytes, with its final zero.
 const ROOM: usize = 1 << 14;
 
 thread_local! {
-    /// The last error. It stays at its place, so that a pointer to it is good for as long as the thread.
+    /// Last error. It never moves, so that a pointer to it is valid until the thread ends.
     static LAST: Box<[Cell<u8>]> = vec![Cell::new(0); ROOM].into_boxed_slice();
 }
 
-/// A text for C; a zero in it, which C could not read past, becomes the sign for unreadable characters.
+/// Converts a text for C. A zero inside, which ends a text in C, becomes the replacement character.
 pub(crate) fn c_text(text: &str) -> CString {
     CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default()
 }
 
-/// Keeps the message for `tf_last_error`.
+/// Keeps a message for `tf_last_error`.
 pub(crate) fn remember(error: &Error) -> Status {
     let text = error.message.replace('\0', "\u{fffd}");
     let end = (0..ROOM.min(text.len() + 1)).rev().find(|&end| text.is_char_boundary(end));
     let text = &text[..end.unwrap_or(0)];
-    // A thread that is at its end has no last error.
+    // A thread that is ending has no last error.
     let _ = LAST.try_with(|last| {
         last.iter().zip(text.bytes().chain([0])).for_each(|(place, byte)| place.set(byte));
     });
     error.status
 }
 
-/// What went wrong in the last call that did, on this thread; empty if none did. The text has the same place all the
-/// thread's life: another call that goes wrong writes over it. It is cut after 16383 bytes; `tf_check_text` has all.
+/// Returns the message of the last error on this thread; empty if there was none. The pointer is the same until the thread
+/// ends, and the next error overwrites the text. It is cut after 16383 bytes; `tf_check_text` has all of it.
 #[unsafe(no_mangle)]
 pub extern "C" fn tf_last_error() -> *const c_char {
     LAST.try_with(|last| last.as_ptr().cast()).unwrap_or(c"".as_ptr())
 }
 
-/// The library's version, as in "0.1.0".
+/// Returns the version of the library, as in "0.1.0".
 #[unsafe(no_mangle)]
 pub extern "C" fn tf_version() -> *const c_char {
     const VERSION: &CStr =

@@ -9,7 +9,7 @@ fn the_header_is_that_of_the_sources() {
     let mut made = Vec::new();
     let config = cbindgen::Config::from_file(here.join("cbindgen.toml")).expect("a configuration");
     let builder = cbindgen::Builder::new().with_config(config);
-    let sources = ["status", "random", "check", "setup", "draws", "answers"];
+    let sources = ["status", "random", "handle", "claim", "draws", "verdict"];
     let builder = sources
         .iter()
         .fold(builder, |builder, name| builder.with_src(here.join(format!("src/{name}.rs"))));

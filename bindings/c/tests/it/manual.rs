@@ -1,4 +1,4 @@
-//! The manual's page: its programs run, and every function is on it.
+//! The manual's page: its programs run, and every function and key is on it.
 
 use std::fs;
 
@@ -27,17 +27,21 @@ fn programs_of_the_page_run() {
 }
 
 #[test]
-fn every_function_is_on_the_page() {
+fn every_function_and_key_is_on_the_page() {
     let header = fs::read_to_string(here().join("include/trueflight.h")).expect("a header");
     let page = page();
     let words = header.split(|c: char| !c.is_alphanumeric() && c != '_');
-    // A function's name is followed by its arguments.
-    let functions: Vec<&str> = words
-        .filter(|word| word.starts_with("tf_") && header.contains(&format!("{word}(")))
-        .collect();
-    assert!(functions.len() > 30, "{functions:?}");
-    for function in functions {
-        let is_there = [format!("`{function}`"), format!("`{function}(")];
-        assert!(is_there.iter().any(|name| page.contains(name)), "{function} is not on the page");
+    // A function's name is followed by its arguments, a key's by its number.
+    let (keys, functions): (Vec<&str>, Vec<&str>) = words
+        .filter(|word| word.to_lowercase().starts_with("tf_"))
+        .filter(|word| !word.starts_with("TF_STATUS_") && !word.starts_with("TF_VERDICT_"))
+        .filter(|word| {
+            header.contains(&format!("{word}(")) || header.contains(&format!("{word} = "))
+        })
+        .partition(|word| header.contains(&format!("{word} = ")));
+    assert!(functions.len() > 15 && keys.len() > 12, "{functions:?}, {keys:?}");
+    for name in functions.into_iter().chain(keys) {
+        let is_there = [format!("`{name}`"), format!("`{name}(")];
+        assert!(is_there.iter().any(|name| page.contains(name)), "{name} is not on the page");
     }
 }

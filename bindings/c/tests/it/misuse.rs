@@ -1,10 +1,10 @@
-//! What is said to the wrong place, at the wrong time, or of another number of values: an error, and never a write
-//! beyond the buffer. The sanitizers of [`crate::border`] run the same programs.
+//! Misuse: an invalid claim, a call at the wrong time, another number of values. Each is an error, and never a write
+//! beyond the buffer. The sanitizers of [`crate::ffi`] run the same programs.
 
 use std::process::Command;
 
-use crate::border::run;
 use crate::build::here;
+use crate::ffi::run;
 
 /// Compares what a program wrote with the beginnings of its lines.
 fn lines_begin(text: &str, wanted: &[&str]) {
@@ -16,7 +16,7 @@ fn lines_begin(text: &str, wanted: &[&str]) {
 }
 
 #[test]
-fn setters_tell_what_makes_no_sense() {
+fn the_first_draws_validate_the_claim() {
     let (code, text) = run("setters.c");
     assert_eq!(code, Some(0), "{text}");
     // A message on a case has several lines.
@@ -30,22 +30,41 @@ fn setters_tell_what_makes_no_sense() {
         ("its own", "variance tolerance = inf is not a finite number above 0"),
         ("truth", "truth = NaN is not a finite number"),
         ("truths", "truth = NaN is not a finite number"),
-        ("no truths", "a list is empty; give one number for each value of a draw"),
+        (
+            "no truths",
+            "0 numbers for the truth, but a draw has 1 value; give one for each value, or one for all",
+        ),
         ("variance", "variance = -1 is not a finite number, 0 or more"),
-        ("variances", "variance = NaN is not a finite number, 0 or more"),
+        ("variances", "2 numbers for the variance, but a draw has 1 value"),
         ("kurtosis", "kurtosis = 0.5 is not a finite number, 1 or more"),
-        ("kurtoses", "kurtosis = 0.5 is not a finite number, 1 or more"),
-        ("range", "a range of 1 to 0 has nothing inside"),
-        ("range nan", "a range of 0 to NaN has nothing inside"),
+        ("range", "a range of 1 to 0 is empty; give a range around the truth"),
+        ("range nan", "a range of 0 to NaN is empty; give a range around the truth"),
+        ("range of others", "a range of 0.6 to 1 does not have the truth 0.5 inside"),
         ("lookups", "expected lookups = 0 is not a finite number above 0"),
         ("rounding", "rounding = -1 is not a finite number, 0 or more"),
+        ("half a draw", "TF_DRAWS = 0.5 is not a whole number from 0 to 9007199254740992"),
+        ("negative draws", "TF_DRAWS = -1 is not a whole number from 0"),
+        ("more draws", "TF_DRAWS = 10000000000000000000 is not a whole number from 0"),
+        ("two batches", "TF_BATCH takes 1 number, but the count is 2"),
+        ("one end", "TF_RANGE takes 2 numbers, but the count is 1"),
+        ("three lookups", "TF_LOOKUPS takes 2 numbers, but the count is 3"),
+        ("more than the mean", "TF_MEAN_ONLY = 2 is neither 0 nor 1"),
     ];
     for (name, said) in wanted {
         let wanted = format!("{name}: 3 check `{name}`: {said}");
         assert!(lines.iter().any(|line| line.starts_with(&wanted)), "{text}\n  lacks\n{wanted}");
     }
-    assert!(text.contains("\ncase: 4 check `case`: "), "{text}");
-    assert!(text.contains("\nasked: 0\ntogether: 3 check `together`: a range of 0 to 1"), "{text}");
+    for (name, status, said) in [
+        ("values", 5, "a draw has no values; give 1 to 65536"),
+        ("more values", 5, "a draw has 65537 values; 65536 are judged together at most"),
+        ("no array", 1, "the array of numbers is null"),
+        ("no key", 10, "library 0.1.0 has no key 99"),
+        ("case", 4, ""),
+    ] {
+        let wanted = format!("\n{name}: {status} check `{name}`: {said}");
+        assert!(text.contains(&wanted), "{text}\n  lacks\n{wanted}");
+    }
+    assert!(text.contains("\nlast: 1, 0\n"), "{text}");
 }
 
 #[test]
@@ -58,12 +77,16 @@ fn a_draw_has_as_many_values_as_the_call_says() {
         "one truth: 0 ",
         "values: 3, passed: 1",
         "three truths: 0 ",
-        &format!("two of three: 3 check `uniform`: 3 truths, but a draw has 2 values; {more}"),
-        &format!("one of three: 3 check `uniform`: 3 truths, but a draw has 1 value; {more}"),
-        "two after one: 3 check `uniform`: 1 values of the draws before, but a draw has 2 values",
-        "none: 5 check `uniform`: a draw has 0 values; it must have 1 at least",
-        "most: 5 check `uniform`: there is no memory for 16384 draws of 18446744073709551615 values",
-        "many: 5 check `uniform`: there is no memory for 16384 draws of 281474976710656 values",
+        &format!(
+            "two of three: 3 check `uniform`: 3 numbers for the truth, but a draw has 2 values; {more}"
+        ),
+        &format!(
+            "one of three: 3 check `uniform`: 3 numbers for the truth, but a draw has 1 value; {more}"
+        ),
+        "two after one: 3 check `uniform`: the number of values was 1 in the draws before, but is 2 now",
+        "none: 5 check `uniform`: a draw has no values; give 1 to 65536",
+        "most: 5 check `uniform`: a draw has 18446744073709551615 values; 65536 are judged together",
+        "many: 5 check `uniform`: a draw has 281474976710656 values; 65536 are judged together at",
     ];
     lines_begin(&text, &wanted);
 }
@@ -75,8 +98,8 @@ fn a_lambda_says_how_many_values_a_draw_has() {
     let wanted = [
         "one truth: 2 values, passed: 1",
         "two truths: 2 values, passed: 1",
-        "three truths: 3 check `a`: 3 truths, but a draw has 2 values; give one for each value",
-        "three of one: 3 check `a`: 3 truths, but a draw has 1 value; give one for each value",
+        "three truths: 3 check `a`: 3 numbers for the truth, but a draw has 2 values; give one for each value",
+        "three of one: 3 check `a`: 3 numbers for the truth, but a draw has 1 value; give one for each value",
         "two variances: 2 values, passed: 1",
         "three variances: 3 check `a`: 3 numbers for the variance, but a draw has 2 values",
         if cfg!(feature = "theory") {
@@ -123,7 +146,7 @@ fn a_callback_must_leave_its_own_check_alone() {
     }
     let end = text.find("\nlong: ").expect("the long one");
     // Whole characters of two bytes, behind "check `".
-    let wanted = ["", "long: 16383, 1", "text: `half`: pass, 0, check `half`: say wh"];
+    let wanted = ["", "long: 16383, 1", "text: `half`: pass, 0, check `half`: set th"];
     assert_eq!(text[end..].trim_end(), wanted.join("\n"), "{text}");
 }
 

@@ -7,7 +7,8 @@ int main()
 {
     tf_check *own = nullptr;
     auto check = trueflight::check("own", [&](auto &rng) {
-        const tf_status status = tf_check_truth(own, 0.5);
+        const double half = 0.5;
+        const tf_status status = tf_check_set(own, TF_TRUTH, &half, 1);
         if (status != TF_STATUS_OK) throw trueflight::error(status);
         return rng.uniform();
     });

@@ -56,7 +56,7 @@ int main(int count, char **arguments)
     const double draws[12] = {1, 0, 0, 0, 0, 0, 1, 1, 0, 0, 1, 0};
     tf_check *check = tf_check_new("channels");
     tf_check_of(check, path, "spectral-mis", NAN);
-    tf_check_set_values(check, 3);
+    TF_SET(check, TF_VALUES, 3);
     tf_check_absorb(check, draws, 12);
     tf_numbers found;
     const tf_status status = tf_check_numbers(check, 2, &found);
@@ -64,12 +64,13 @@ int main(int count, char **arguments)
     tf_check_free(check);
     check = tf_check_new("no values");
     tf_check_of(check, path, "spectral-mis", NAN);
-    printf("no values: %d ", (int)tf_check_set_values(check, 0));
+    TF_SET(check, TF_VALUES, 0);
+    printf("no values: %d ", (int)tf_check_absorb(check, draws, 12));
     printf("%s\n", tf_last_error());
     tf_check_free(check);
     check = tf_check_new("two");
     tf_check_of(check, path, "spectral-mis", NAN);
-    tf_check_set_values(check, 2);
+    TF_SET(check, TF_VALUES, 2);
     tf_check_absorb(check, draws, 12);
     printf("two: %s\n", tf_last_error());
     tf_check_free(check);

@@ -12,10 +12,10 @@ static double draw(tf_rng *rng, void *user)
 int main(void)
 {
     tf_check *check = tf_check_new("the same draws");
-    tf_check_truth(check, 0.25);
-    tf_check_variance(check, 1.0 / 9 - 1.0 / 16);
+    TF_SET(check, TF_TRUTH, 0.25);
+    TF_SET(check, TF_VARIANCE, 1.0 / 9 - 1.0 / 16);
     tf_check_seed(check, 7);
-    tf_check_draws(check, 100001);
+    TF_SET(check, TF_DRAWS, 100001);
     tf_check_run(check, draw, NULL);
     puts(tf_check_text(check));
     tf_check_free(check);

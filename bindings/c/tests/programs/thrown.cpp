@@ -7,7 +7,8 @@
 int main()
 {
     tf_check *check = tf_check_new("throws");
-    tf_check_truth(check, 0.5);
+    const double half = 0.5;
+    tf_check_set(check, TF_TRUTH, &half, 1);
     try {
         tf_check_run(check, [](tf_rng *, void *) -> double { throw std::runtime_error("no scene"); }, nullptr);
     } catch (...) {

@@ -26,9 +26,9 @@ static tf_check *claimed(size_t truths)
 {
     const double list[3] = {0.5, 0.5, 0.5};
     tf_check *check = tf_check_new("uniform");
-    if (truths == 1) tf_check_truth(check, 0.5);
-    else tf_check_truths(check, list, truths);
-    tf_check_range(check, 0, 1);
+    if (truths == 1) TF_SET(check, TF_TRUTH, 0.5);
+    else tf_check_set(check, TF_TRUTH, list, truths);
+    TF_SET(check, TF_RANGE, 0, 1);
     return check;
 }
 

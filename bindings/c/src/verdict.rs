@@ -1,25 +1,25 @@
-//! Functions that tell the verdict. The first of them judges, and no draw can follow.
-#![allow(unsafe_code)] // functions with a name of their own in the library, that take pointers
-#![allow(clippy::missing_safety_doc)] // the same for all of them: it is on the crate's front page
+//! Functions that return the verdict. The first call judges, and no draw can follow.
+#![allow(unsafe_code)] // exported functions that take pointers
+#![allow(clippy::missing_safety_doc)] // the crate's documentation has the rules for all of them
 
 use std::ffi::c_char;
 
 use trueflight::judge::judgement::Judgement;
 
-use crate::border::{ask, free, write};
-use crate::check::Check;
-use crate::state::State;
+use crate::ffi::{free, query, write};
+use crate::handle::Check;
+use crate::session::Session;
 use crate::status::{Error, Status, tf_last_error};
 
-/// What is said of draws.
+/// Verdict on draws.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Verdict {
-    /// They agree with what is claimed, and a difference of the size that matters would have been seen.
+    /// The draws agree with the claim, and the gate would have seen a difference of the size of the tolerance.
     Pass = 0,
-    /// They differ by more than chance allows.
+    /// The draws differ from the claim by more than chance allows.
     Fail = 1,
-    /// The draws do not decide it.
+    /// The draws do not decide.
     Inconclusive = 2,
 }
 
@@ -34,27 +34,27 @@ impl From<trueflight::stats::verdict::Verdict> for Verdict {
     }
 }
 
-/// What was found of one value of the draws; NAN is unknown.
+/// Measurements of one value of the draws. NAN means unknown.
 #[repr(C)]
 #[derive(Debug, Clone, Copy)]
 pub struct Numbers {
-    /// What is said of this value.
+    /// Verdict on this value.
     pub verdict: Verdict,
-    /// How many draws there were.
+    /// Number of draws.
     pub draws: u64,
-    /// What the mean should be.
+    /// Expected mean.
     pub truth: f64,
-    /// What it is.
+    /// Measured mean.
     pub mean: f64,
-    /// The mean's standard error: from the variance claimed, else from that of the draws.
+    /// Standard error of the mean, from the variance of the claim, else from that of the draws.
     pub standard_error: f64,
     /// (mean − truth) in standard errors.
     pub z: f64,
-    /// The unbiased sample variance.
+    /// Unbiased sample variance.
     pub variance: f64,
-    /// The sample variance, relative to the one claimed.
+    /// Sample variance, relative to the variance of the claim.
     pub variance_ratio: f64,
-    /// The sample kurtosis.
+    /// Sample kurtosis.
     pub kurtosis: f64,
 }
 
@@ -75,48 +75,48 @@ impl From<&Judgement> for Numbers {
     }
 }
 
-/// The verdict on all values together: fail if any of them fails, pass if all pass.
+/// Returns the verdict on all values together: fail if any value fails, pass if all pass.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_verdict(check: *mut Check, verdict: *mut Verdict) -> Status {
-    // SAFETY: C's promises of checks and of places.
+    // SAFETY: rules for checks and results.
     unsafe {
-        told(ask(check, |check| {
-            let found = check.judged()?.verdict().into();
-            write("the place of the verdict", verdict, found)
+        status(query(check, |check| {
+            write("the place of the verdict", verdict, check.judged()?.verdict().into())
         }))
     }
 }
 
-/// Whether the verdict is pass: 1 or 0; 0 after an error, too.
+/// Returns 1 if the verdict is pass, else 0, also after an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_passed(check: *mut Check) -> i32 {
-    // SAFETY: C's promise of checks.
-    let passed = unsafe { ask(check, |check| Ok(check.judged()?.passed())) };
+    // SAFETY: rules for checks.
+    let passed = unsafe { query(check, |check| Ok(check.judged()?.passed())) };
     i32::from(passed == Ok(true))
 }
 
-/// How many values a draw has; 0 after an error.
+/// Returns the number of values of a draw; 0 after an error.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_values(check: *mut Check) -> usize {
-    // SAFETY: C's promise of checks.
-    unsafe { ask(check, |check| Ok(check.judged()?.values.len())) }.unwrap_or(0)
+    // SAFETY: rules for checks.
+    unsafe { query(check, |check| Ok(check.judged()?.values.len())) }.unwrap_or(0)
 }
 
-/// What was found of one value of the draws, counted from 0.
+/// Returns the measurements of one value of the draws, counted from 0.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_numbers(
     check: *mut Check,
     value: usize,
     numbers: *mut Numbers,
 ) -> Status {
-    // SAFETY: C's promises of checks and of places.
+    // SAFETY: rules for checks and results.
     unsafe {
-        told(ask(check, |check| {
+        status(query(check, |check| {
             let outcome = check.judged()?;
             let found = outcome.values.get(value).ok_or_else(|| {
                 let (name, values) = (&outcome.name, outcome.values.len());
                 let message = format!(
-                    "check `{name}`: a draw has {values} values, there is no number {value}"
+                    "check `{name}`: there is no value {value}; the last one is value {}",
+                    values - 1
                 );
                 Error::new(Status::Index, message)
             })?;
@@ -125,37 +125,38 @@ pub unsafe extern "C" fn tf_check_numbers(
     }
 }
 
-/// The verdict in a few lines, as `trueflight judge` writes it; after an error its message. Never null, and valid until
-/// the check is freed; of a check that is null, it is `tf_last_error`.
+/// Returns the verdict in a few lines, as `trueflight judge` prints it; after an error its message. Never null, and valid
+/// until the check is freed. For a null check it returns `tf_last_error()`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_text(check: *mut Check) -> *const c_char {
-    // SAFETY: C's promise of checks.
+    // SAFETY: rules for checks.
     unsafe { words(check, |check| check.text().as_ptr()) }
 }
 
-/// Why the verdict is not pass, in words; empty for a plain pass, after an error its message. As long valid.
+/// Returns the reason of a verdict other than pass in words; empty for a plain pass, after an error its message. Valid as
+/// long as `tf_check_text`.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_reason(check: *mut Check) -> *const c_char {
-    // SAFETY: C's promise of checks.
+    // SAFETY: rules for checks.
     unsafe { words(check, |check| check.reason().as_ptr()) }
 }
 
-/// Frees a check; null is fine. A callback cannot free its own check, which is an error of the check.
+/// Frees a check; null is fine. A callback cannot free its own check: that is an error of the check.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn tf_check_free(check: *mut Check) {
-    // SAFETY: C's promise of checks.
+    // SAFETY: rules for checks.
     unsafe { free(check) }
 }
 
-fn told(answer: Result<(), Status>) -> Status {
-    answer.err().unwrap_or(Status::Ok)
+fn status(result: Result<(), Status>) -> Status {
+    result.err().unwrap_or(Status::Ok)
 }
 
-/// A text of a check that is judged; where there is no verdict, an error has left its message.
-unsafe fn words(check: *mut Check, words: impl Fn(&State) -> *const c_char) -> *const c_char {
-    // SAFETY: C's promise of checks.
+/// Returns a text of a check after judging it; without a verdict the text is the error's message.
+unsafe fn words(check: *mut Check, words: impl Fn(&Session) -> *const c_char) -> *const c_char {
+    // SAFETY: rules for checks.
     let found = unsafe {
-        ask(check, |check| {
+        query(check, |check| {
             let _ = check.judged();
             Ok(words(check))
         })

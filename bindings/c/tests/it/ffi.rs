@@ -1,4 +1,4 @@
-//! What crosses the border: errors, exceptions, threads, memory; and draws, which are those of Rust.
+//! Foreign function interface: errors, exceptions, threads, memory; and draws, which are those of Rust.
 
 use std::process::Command;
 
@@ -19,30 +19,33 @@ fn bad_input_gets_one_clear_error() {
         ("no check", "1 the check is null"),
         ("text of no check", "the check is null"),
         ("no check passes", "0"),
-        ("no draws pointer", "1 check `half`: the list of draws is null"),
-        ("it stays", "1 check `half`: the list of draws is null"),
-        ("and is the text", "check `half`: the list of draws is null"),
+        ("no draws pointer", "1 check `half`: the array of draws is null"),
+        ("it stays", "1 check `half`: the array of draws is null"),
+        ("and is the text", "check `half`: the array of draws is null"),
         ("passed", "0, open: 0"),
         ("no callback", "1 check `half`: the callback is null"),
-        ("too many", "6 check `half`: the callback tells 16385 draws, but was asked for 16384"),
+        ("too many", "6 check `half`: the callback returned 16385 draws, but was asked for 16384"),
         ("no draws", "5 check `half`: there are no draws; make one at least"),
-        ("no truth", "3 check `nothing said`: the truth is not known; give it by tf_check_truth"),
+        (
+            "no truth",
+            "3 check `nothing said`: the truth is not known; set TF_TRUTH, or call tf_check_of",
+        ),
         ("range", "3 check `half`: "),
         ("no such case", "4 check `half`: "),
         ("no such case", case),
         ("ragged", "5 check `pairs`: 3 numbers are no whole number of draws of 2 values"),
         (
             "one of two",
-            "3 check `pairs`: 2 truths, but a draw has 1 value; give one for each value, or one for all",
+            "3 check `pairs`: 2 numbers for the truth, but a draw has 1 value; give one for each value, or one for all",
         ),
         (
             "lookups",
-            "5 check `half`: lookups are claimed; push them by tf_check_absorb_with_lookups",
+            "5 check `half`: the claim has lookups; add draws by tf_check_absorb_with_lookups",
         ),
-        ("too late", "7 check `half`: say what is known before the first draw"),
+        ("too late", "7 check `half`: set the claim before the first draw"),
         ("no place", "1 check `half`: the place of the verdict is null"),
         ("no harm", "0 "),
-        ("no such value", "8 check `half`: a draw has 1 values, there is no number 1"),
+        ("no such value", "8 check `half`: there is no value 1; the last one is value 0"),
         ("after the verdict", "7 check `half`: the verdict was given; make a new check"),
         ("nan", "1 numeric: draw 0"),
     ];
